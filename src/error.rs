@@ -1,0 +1,166 @@
+//! What can go wrong, one enum per operation.
+
+use std::io;
+use std::path::PathBuf;
+
+/// A mesh file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The operating system refused.
+    #[error("{}: {source}. {remedy}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The content is not what the format asks for.
+    #[error("{}:{line}: {problem}. {remedy}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// One-based line of the offence.
+        line: usize,
+        /// What is wrong there.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The file is readable, but in no format this program knows.
+    #[error("{}: {problem}. {remedy}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What was found instead.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+}
+
+/// A mesh file could not be written. Whatever stood at its place before still stands there.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The operating system refused.
+    #[error("{}: {source}. {remedy}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The name asks for another format than the mesh was read in.
+    #[error("{}: {problem}. {remedy}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the name.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The points given do not make a mesh. A mistake of the caller, not of the user.
+    #[error("{}: not written: {problem}", path.display())]
+    Points {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with them.
+        problem: String,
+    },
+}
+
+/// A mesh that cannot be smoothed as it is. Indices are zero-based, as in [`Mesh`](crate::Mesh).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// There is no triangle at all.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// Vertices or triangle corners do not fit 32-bit indices.
+    #[error(
+        "{vertices} vertices and {triangles} triangles are more than 32-bit indices can number"
+    )]
+    TooLarge {
+        /// Number of vertices.
+        vertices: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not a finite number")]
+    NotFinite {
+        /// The first such vertex.
+        vertex: u32,
+    },
+    /// A triangle or the list of fixed vertices names a vertex that does not exist.
+    #[error("vertex {vertex} is used, but there are only {vertices}")]
+    IndexOutOfRange {
+        /// The triangle, or `None` if it is the list of fixed vertices.
+        triangle: Option<usize>,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A triangle names one vertex twice.
+    #[error("triangle {triangle} uses vertex {vertex} twice")]
+    RepeatedVertex {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Three or more triangles share an edge: not a 2D mesh.
+    #[error("the edge between vertices {} and {} belongs to {} triangles", edge[0], edge[1], triangles.len())]
+    EdgeOfThree {
+        /// The edge's vertices.
+        edge: [u32; 2],
+        /// Every triangle at the edge.
+        triangles: Vec<usize>,
+    },
+    /// Some triangles are inverted against their neighbours, or flat.
+    #[error("{count} triangles are inverted or flat, the first is triangle {first}")]
+    Infeasible {
+        /// How many.
+        count: usize,
+        /// The first of them.
+        first: usize,
+        /// Its vertices.
+        vertices: [u32; 3],
+        /// Whether the first is flat rather than inverted.
+        flat: bool,
+    },
+    /// Every vertex is on the boundary, on a constraint line or unused.
+    #[error("none of the {vertices} vertices is free to move")]
+    NothingFree {
+        /// Number of vertices.
+        vertices: usize,
+    },
+}
+
+/// A run could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum SmoothError {
+    /// The mesh is not one that can be smoothed.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// An option is out of its range.
+    #[error("{option} is {value}: {remedy}")]
+    Option {
+        /// The field of [`Options`](crate::Options).
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// What it should be.
+        remedy: &'static str,
+    },
+    /// The GPU cannot start.
+    #[error(transparent)]
+    Gpu(#[from] crate::gpu::GpuError),
+    /// The GPU failed during the run.
+    #[error(transparent)]
+    Engine(#[from] crate::engine::EngineError),
+}

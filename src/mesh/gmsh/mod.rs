@@ -1,0 +1,182 @@
+//! gmsh's `.msh` in ASCII, versions 2.2 and 4.1.
+//!
+//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
+//! `$MeshFormat`, `$Nodes` and `$Elements` are looked at.
+
+mod kind;
+mod reader;
+mod tags;
+mod v2;
+mod v4;
+
+pub(super) use reader::{parse, triangle_place, vertex_place};
+
+use super::source::Source;
+use super::text::{CUT_OFF, Cursor, quoted};
+use crate::error::ReadError;
+use kind::Kind;
+
+/// The layouts of the sections.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Version {
+    V2,
+    V4,
+}
+
+/// Takes what the sections hold, in the order of the file.
+trait Sink {
+    /// About this many nodes follow.
+    fn expect_nodes(&mut self, _count: usize) {}
+    /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
+    /// where the file says so.
+    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    /// No more nodes follow.
+    fn end_nodes(&mut self, _source: &Source) -> Result<(), ReadError> {
+        Ok(())
+    }
+    /// About this many elements follow.
+    fn expect_elements(&mut self, _count: usize) {}
+    /// An element with its node tags.
+    fn element(
+        &mut self,
+        cursor: &Cursor<'_>,
+        tag: u64,
+        kind: Kind,
+        nodes: &[u64],
+    ) -> Result<(), ReadError>;
+}
+
+/// Feeds a file's nodes and elements to the sink.
+fn walk(source: &Source, sink: &mut impl Sink) -> Result<Version, ReadError> {
+    let cursor = &mut Cursor::new(source);
+    let mut version = None;
+    let (mut nodes, mut elements) = (false, false);
+    while cursor.next_row() {
+        // Like gmsh, ignore what stands between sections.
+        let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
+            continue;
+        };
+        let opened = cursor.line();
+        match name {
+            b"MeshFormat" => {
+                version = Some(mesh_format(cursor)?);
+                end_of_section(cursor, "MeshFormat", opened, "one line")?;
+            }
+            b"Nodes" | b"ParametricNodes" => {
+                once(cursor, &mut nodes, "Nodes")?;
+                let count = match known(cursor, version)? {
+                    Version::V2 => v2::nodes(cursor, sink)?,
+                    Version::V4 => v4::nodes(cursor, sink)?,
+                };
+                let name = str::from_utf8(name).unwrap_or_default();
+                end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
+                sink.end_nodes(source)?;
+            }
+            b"Elements" => {
+                once(cursor, &mut elements, "Elements")?;
+                if !nodes {
+                    let problem = "$Elements stands before $Nodes";
+                    return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
+                }
+                let count = match known(cursor, version)? {
+                    Version::V2 => v2::elements(cursor, sink)?,
+                    Version::V4 => v4::elements(cursor, sink)?,
+                };
+                end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+            }
+            name if name.starts_with(b"End") => {
+                let problem = format!("${} ends a section that never began", quoted(name));
+                return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
+            }
+            name => skip_section(cursor, name, opened)?,
+        }
+    }
+    let missing = if !nodes { "$Nodes" } else { "$Elements" };
+    match version {
+        Some(version) if nodes && elements => Ok(version),
+        _ => Err(source.error(
+            format!("it has no {missing} section"),
+            "The file is cut off or was saved without its mesh: save it again",
+        )),
+    }
+}
+
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Version, ReadError> {
+    row(cursor, 0, 1, "format lines")?;
+    let name = cursor.token().unwrap_or_default();
+    let version = match name {
+        b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
+        b"4.1" => Version::V4,
+        _ => {
+            let problem = format!("gmsh's format version {} is not read", quoted(name));
+            let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
+            return Err(cursor.error(problem, remedy));
+        }
+    };
+    match cursor.integer("the file type")? {
+        0 => Ok(version),
+        1 => Err(cursor.error("binary .msh is not read yet", "Save as ASCII (Mesh.Binary=0)")),
+        other => {
+            let problem = format!("the file type is {other}, neither 0 nor 1");
+            Err(cursor.error(problem, "Save the mesh again with gmsh"))
+        }
+    }
+}
+
+fn known(cursor: &Cursor<'_>, version: Option<Version>) -> Result<Version, ReadError> {
+    let problem = "no $MeshFormat section stands before this one";
+    version.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
+}
+
+fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
+    if std::mem::replace(seen, true) {
+        let problem = format!("this is the second ${name} section");
+        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+    }
+    Ok(())
+}
+
+/// Moves to the next of `count` rows of a section, `done` of which were read.
+#[inline]
+fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if !cursor.next_row() {
+        return Err(cursor.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF));
+    }
+    if cursor.is_at(b'$') {
+        let problem = format!("the section ends after {done} of {count} {what}");
+        return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
+    }
+    Ok(())
+}
+
+/// Moves past the line that ends a section of which all that was announced is read.
+fn end_of_section(
+    cursor: &mut Cursor<'_>,
+    name: &str,
+    opened: usize,
+    announced: &str,
+) -> Result<(), ReadError> {
+    if cursor.next_row() && !cursor.is_at(b'$') {
+        let problem = format!("${name} goes on after the {announced} it announces");
+        return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
+    }
+    match cursor.token().and_then(|token| token.strip_prefix(b"$End")) {
+        Some(end) if end == name.as_bytes() => Ok(()),
+        _ => Err(no_end(cursor, name, opened)),
+    }
+}
+
+fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: usize) -> Result<(), ReadError> {
+    while cursor.next_row() {
+        if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)
+        {
+            return Ok(());
+        }
+    }
+    Err(no_end(cursor, &quoted(name), opened))
+}
+
+fn no_end(cursor: &Cursor<'_>, name: &str, opened: usize) -> ReadError {
+    let problem = format!("${name} has no $End{name}");
+    cursor.source.error_at(opened, problem, CUT_OFF)
+}

@@ -1,0 +1,85 @@
+//! The sections of version 4.1: blocks, one per entity of the model.
+
+use super::super::text::Cursor;
+use super::kind::{Kind, node_tags};
+use super::{Sink, row};
+use crate::error::ReadError;
+
+/// Reads `$Nodes` after its first line. Returns their number.
+pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let blocks = cursor.integer("the number of node blocks")?;
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
+    let mut done = 0;
+    let mut tags = Vec::new();
+    for block in 0..blocks {
+        row(cursor, block, blocks, "node blocks")?;
+        let dimension = cursor.integer("the dimension of a node block")?;
+        cursor.token(); // The entity's own tag, which may be negative.
+        cursor.integer("whether the nodes are parametric")?;
+        let size = block_size(cursor, count - done, "nodes")?;
+        tags.clear();
+        tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
+        for at in 0..size {
+            row(cursor, done + at, count, "node tags")?;
+            tags.push(cursor.integer("a node tag")?);
+        }
+        for &tag in &tags {
+            row(cursor, done, count, "nodes")?;
+            let owner = format_args!("node {tag}");
+            let (x_at, at) = cursor.point(owner)?;
+            // z is kept, but that the row holds it shows that it is whole.
+            cursor.coordinate('z', owner)?;
+            sink.node(cursor, tag, dimension, x_at, at);
+            done += 1;
+        }
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns their number.
+pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let blocks = cursor.integer("the number of element blocks")?;
+    let count = cursor.integer("the number of elements")?;
+    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    let mut done = 0;
+    for block in 0..blocks {
+        row(cursor, block, blocks, "element blocks")?;
+        cursor.token(); // The entity's dimension, and its tag, which may be negative.
+        cursor.token();
+        let kind = cursor.integer("the type of an element block")?;
+        let kind = Kind::new(cursor, kind)?;
+        let size = block_size(cursor, count - done, "elements")?;
+        for at in 0..size {
+            row(cursor, done + at, count, "elements")?;
+            let tag = cursor.integer("an element tag")?;
+            let mut tags = [0; 4];
+            let tags = node_tags(cursor, kind, tag, &mut tags)?;
+            sink.element(cursor, tag, kind, tags)?;
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "elements")?;
+    Ok(count)
+}
+
+/// Reads the size of a block, of which the section's count leaves `left`.
+fn block_size(cursor: &mut Cursor<'_>, left: u64, what: &str) -> Result<u64, ReadError> {
+    let size = cursor.integer(format_args!("the number of {what} of a block"))?;
+    if size > left {
+        let problem = format!("a block of {size} {what} where the section's count leaves {left}");
+        return Err(cursor.error(problem, "Correct the counts, or save the mesh again"));
+    }
+    Ok(size)
+}
+
+fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if done == count {
+        return Ok(());
+    }
+    let problem = format!("the blocks hold {done} of the {count} {what} the section announces");
+    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
+}

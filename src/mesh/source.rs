@@ -1,0 +1,80 @@
+//! The bytes of one file, and what a format's reader makes of them.
+
+use super::Mesh;
+use crate::error::ReadError;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// A file as it was read.
+pub(super) struct Source {
+    pub(super) path: PathBuf,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// What a reader returns.
+pub(super) struct Parsed {
+    pub(super) mesh: Mesh,
+    /// Offset of each vertex's x token in the text that holds the vertices, ascending.
+    pub(super) x_at: Vec<usize>,
+    /// One-line remarks for the user.
+    pub(super) notes: Vec<String>,
+}
+
+impl Source {
+    pub(super) fn load(path: &Path) -> Result<Source, ReadError> {
+        match fs::read(path) {
+            Ok(bytes) => Ok(Source { path: path.to_owned(), bytes }),
+            Err(source) => {
+                let remedy = match source.kind() {
+                    ErrorKind::NotFound => "Check the name",
+                    ErrorKind::IsADirectory => "Name a mesh file, not a directory",
+                    ErrorKind::PermissionDenied => "Check its permissions",
+                    ErrorKind::OutOfMemory => "Use a machine with more memory",
+                    _ => "Check the disk, or copy the file elsewhere and try again",
+                };
+                Err(ReadError::Io { path: path.to_owned(), source, remedy: remedy.into() })
+            }
+        }
+    }
+
+    #[cold]
+    pub(super) fn error_at(
+        &self,
+        line: usize,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        // Nothing was read of a file without lines, yet editors count from one.
+        let line = line.max(1);
+        let path = self.path.clone();
+        ReadError::Content { path, line, problem: problem.into(), remedy: remedy.into() }
+    }
+
+    #[cold]
+    pub(super) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
+        let path = self.path.clone();
+        ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
+    }
+
+    /// One-based line of a byte.
+    pub(super) fn line_of(&self, at: usize) -> usize {
+        1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
+    }
+
+    /// The last part of the path, for messages.
+    pub(super) fn name(&self) -> String {
+        file_name(&self.path)
+    }
+}
+
+/// The last part of a path, for messages.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The remark that elements other than triangles hold their vertices.
+pub(super) fn fixed_note(count: u64, what: &str, of: &str) -> String {
+    let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
+    format!("{count} {what}{s}{of}: {their} vertices stay fixed")
+}

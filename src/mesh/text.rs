@@ -1,0 +1,323 @@
+//! Rows and tokens of a text file, and the replacement of single tokens in it.
+
+use super::source::Source;
+use crate::error::ReadError;
+use std::fmt::Display;
+use std::io::{self, Write};
+
+/// What to do about a single wrong line.
+pub(super) const CORRECT: &str = "Correct the line, or write the mesh again";
+/// What to do about a file that stops too early.
+pub(super) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
+const WHOLE: &str = "a whole number from 0 to 2^64-1";
+
+/// Walks over the rows of a file: the lines that hold more than blanks and a `#` comment.
+pub(super) struct Cursor<'a> {
+    pub(super) source: &'a Source,
+    at: usize,
+    line: usize,
+}
+
+impl<'a> Cursor<'a> {
+    /// Stands before the first row.
+    pub(super) fn new(source: &'a Source) -> Self {
+        let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
+        Cursor { source, at, line: 0 }
+    }
+
+    /// One-based number of the line it stands on, which is the last one once the rows are used up.
+    pub(super) fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Moves to the first token of the next row. False when there is none.
+    pub(super) fn next_row(&mut self) -> bool {
+        let bytes = &self.source.bytes;
+        loop {
+            if self.line > 0 {
+                let end = memchr::memchr(b'\n', &bytes[self.at..]);
+                self.at = end.map_or(bytes.len(), |n| self.at + n + 1);
+            }
+            if self.at == bytes.len() {
+                return false;
+            }
+            self.line += 1;
+            self.at = skip_blanks(bytes, self.at);
+            if !matches!(bytes.get(self.at), None | Some(b'\n' | b'#')) {
+                return true;
+            }
+        }
+    }
+
+    /// The next token of the row, or none at its end.
+    #[inline]
+    pub(super) fn token(&mut self) -> Option<&'a [u8]> {
+        let bytes = &self.source.bytes;
+        let start = skip_blanks(bytes, self.at);
+        self.at = token_end(bytes, start);
+        (self.at > start).then(|| &bytes[start..self.at])
+    }
+
+    /// Whether the next token starts with this byte.
+    pub(super) fn is_at(&self, byte: u8) -> bool {
+        self.source.bytes.get(skip_blanks(&self.source.bytes, self.at)) == Some(&byte)
+    }
+
+    /// Reads a number from zero up, called `what` in messages.
+    #[inline]
+    pub(super) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
+        let bytes = &self.source.bytes;
+        let start = skip_blanks(bytes, self.at);
+        let mut at = start;
+        let mut number = 0_u64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=19).contains(&(at - start)) && token_end(bytes, at) == at {
+            self.at = at;
+            return Ok(number);
+        }
+        let token = self.token();
+        token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
+    }
+
+    /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
+    pub(super) fn integer_or(&mut self, absent: u64, what: &str) -> Result<u64, ReadError> {
+        match self.token() {
+            None => Ok(absent),
+            token => token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE)),
+        }
+    }
+
+    /// Reads how many vertices there are. Their indices have to fit into 32 bits.
+    pub(super) fn vertex_count(&mut self) -> Result<u64, ReadError> {
+        let count = self.integer("the number of vertices")?;
+        if count > u64::from(u32::MAX) {
+            let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
+            return Err(self.error(problem, "Correct the count, or split the mesh"));
+        }
+        Ok(count)
+    }
+
+    /// Reads one coordinate, `axis` of `owner` in messages.
+    #[inline]
+    pub(super) fn coordinate(&mut self, axis: char, owner: impl Display) -> Result<f64, ReadError> {
+        let token = self.token();
+        let value = token.and_then(float).filter(|x| x.is_finite());
+        value.ok_or_else(|| {
+            self.unusable(token, format_args!("{axis} of {owner}"), "a finite number")
+        })
+    }
+
+    /// Reads x and y. Returns where x stands, and both.
+    #[inline]
+    pub(super) fn point(
+        &mut self,
+        owner: impl Display + Copy,
+    ) -> Result<(usize, [f64; 2]), ReadError> {
+        let x_at = skip_blanks(&self.source.bytes, self.at);
+        Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
+    }
+
+    /// How many of `count` rows to reserve space for: no more than can follow, a count proves nothing.
+    pub(super) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
+        let possible = (self.source.bytes.len() - self.at) / bytes_per_row;
+        usize::try_from(count).map_or(possible, |count| count.min(possible))
+    }
+
+    /// An error on the current line.
+    #[cold]
+    pub(super) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
+        self.source.error_at(self.line, problem, remedy)
+    }
+
+    #[cold]
+    fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
+        match token {
+            // Nothing follows, not even the end of the line.
+            None if memchr::memchr(b'\n', &self.source.bytes[self.at..]).is_none() => {
+                self.error(format!("{what} is missing"), CUT_OFF)
+            }
+            None => self.error(format!("{what} is missing"), CORRECT),
+            Some(token) => {
+                self.error(format!("{what} is `{}`, not {wanted}", quoted(token)), CORRECT)
+            }
+        }
+    }
+}
+
+/// A token as it can stand in a one-line message.
+pub(super) fn quoted(token: &[u8]) -> String {
+    const SHOWN: usize = 40;
+    let text = String::from_utf8_lossy(&token[..token.len().min(4 * SHOWN)]);
+    let mut quoted: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        quoted.push_str("...");
+    }
+    quoted
+}
+
+/// Copies `bytes` to `out`, with the coordinates replaced whose bits differ between `old` and `new`.
+///
+/// `x_at` is where each vertex's x starts, ascending; its y is the token after it.
+pub(super) fn write_patched(
+    out: &mut dyn Write,
+    bytes: &[u8],
+    x_at: &[usize],
+    old: &[[f64; 2]],
+    new: &[[f64; 2]],
+) -> io::Result<()> {
+    let mut copied = 0;
+    for ((&x_at, old), new) in x_at.iter().zip(old).zip(new) {
+        let mut start = x_at;
+        for (old, new) in old.iter().zip(new) {
+            start = skip_blanks(bytes, start);
+            let end = token_end(bytes, start);
+            if old.to_bits() != new.to_bits() {
+                out.write_all(&bytes[copied..start])?;
+                // The fewest digits that parse back to the same bits.
+                write!(out, "{new:?}")?;
+                copied = end;
+            }
+            start = end;
+        }
+    }
+    out.write_all(&bytes[copied..])
+}
+
+#[inline]
+fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+    while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
+        at += 1;
+    }
+    at
+}
+
+#[inline]
+fn token_end(bytes: &[u8], mut at: usize) -> usize {
+    while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
+        at += 1;
+    }
+    at
+}
+
+#[inline]
+pub(super) fn integer(token: &[u8]) -> Option<u64> {
+    let digits = token.strip_prefix(b"+").unwrap_or(token);
+    if digits.is_empty() {
+        return None;
+    }
+    digits.iter().try_fold(0_u64, |number, &byte| {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        number.checked_mul(10)?.checked_add(u64::from(digit))
+    })
+}
+
+#[inline]
+fn float(token: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(token).ok()?;
+    text.parse().ok().or_else(|| fortran_float(text))
+}
+
+/// Fortran marks a double's exponent with D.
+#[cold]
+fn fortran_float(text: &str) -> Option<f64> {
+    let (mantissa, exponent) = text.split_once(['d', 'D'])?;
+    format!("{mantissa}e{exponent}").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &[u8]) -> Source {
+        Source { path: "m.txt".into(), bytes: text.to_vec() }
+    }
+
+    #[test]
+    fn integers() {
+        assert_eq!(integer(b"0"), Some(0));
+        assert_eq!(integer(b"+17"), Some(17));
+        assert_eq!(integer(b"18446744073709551615"), Some(u64::MAX));
+        for wrong in ["", "+", "-1", "1.0", "1e3", "18446744073709551616", "7a", ":"] {
+            assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn floats() {
+        for (text, value) in [
+            ("1", 1.0),
+            ("+1.5", 1.5),
+            (".5", 0.5),
+            ("2.", 2.0),
+            ("1.5D+02", 150.0),
+            ("-1d-1", -0.1),
+        ] {
+            assert_eq!(float(text.as_bytes()), Some(value), "{text}");
+        }
+        for wrong in ["", "x", "1,5", "1.5.2", "D", "1D", "0x10", "--1", "\u{e9}"] {
+            assert_eq!(float(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn rows_skip_blank_and_comment_lines_and_count_them() {
+        let source = source(b"\xEF\xBB\xBF# one\r\n\r\n \t a  b # c\r\nd#e\n\n\xFF f");
+        let mut cursor = Cursor::new(&source);
+        let mut rows = Vec::new();
+        while cursor.next_row() {
+            let mut row = vec![cursor.line().to_string().into_bytes()];
+            while let Some(token) = cursor.token() {
+                row.push(token.to_vec());
+            }
+            rows.push(row.join(&b' '));
+        }
+        assert_eq!(rows, [&b"3 a b"[..], b"4 d", b"6 \xFF f"]);
+        assert!(!cursor.next_row());
+        assert_eq!(cursor.line(), 6);
+    }
+
+    #[test]
+    fn capacity_is_bounded_by_what_is_left() {
+        let source = source(b"1 2 3 4 5 6\n");
+        assert_eq!(Cursor::new(&source).capacity(u64::MAX, 4), 3);
+        assert_eq!(Cursor::new(&source).capacity(2, 4), 2);
+    }
+
+    #[test]
+    fn written_numbers_parse_back_to_the_same_bits() {
+        let values = [
+            -0.0,
+            0.0,
+            1e-7,
+            1e16,
+            -1.0 / 3.0,
+            f64::MIN_POSITIVE,
+            f64::from_bits(1),
+            f64::MAX,
+            123_456_789.123_456_79,
+            1e15,
+            0.1 + 0.2,
+        ];
+        for value in values {
+            let mut out = Vec::new();
+            let old = [[7.0, 8.0]];
+            write_patched(&mut out, b"1 7 8 9", &[2], &old, &[[value, 8.0]]).unwrap();
+            let token = out[2..].split(|&b| b == b' ').next().unwrap();
+            assert_eq!(float(token).map(f64::to_bits), Some(value.to_bits()));
+            assert!(out.ends_with(b" 8 9"));
+        }
+    }
+
+    #[test]
+    fn quoting_keeps_a_message_on_one_short_line() {
+        assert_eq!(quoted(b"a\x07\xFFb"), "a\\u{7}\u{FFFD}b");
+        assert_eq!(quoted(&[b'x'; 5000]).len(), 43);
+    }
+}

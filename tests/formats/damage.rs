@@ -1,0 +1,65 @@
+//! Damaged files.
+
+use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
+use gpu_smooth::MeshFile;
+use std::fs;
+
+/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+#[test]
+fn damaged_files_never_panic() {
+    let mut state = 7_u64;
+    let mut random = move |below: usize| {
+        // SplitMix64.
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % below as u64) as usize
+    };
+    let folder = triangle();
+    fs::write(folder.path("a.msh"), "").unwrap();
+    let samples: [(&str, &str); 5] = [
+        ("la.1.node", NODE),
+        ("la.1.ele", ELE),
+        ("la.1.poly", POLY),
+        ("a.msh", GMSH22),
+        ("a.msh", GMSH41),
+    ];
+    let bytes = b"0123456789 \n\r\t#$.-+eEdDnaifE\"\0\xFF";
+    let mut read = 0;
+    for round in 0..4000 {
+        let (name, text) = samples[round % samples.len()];
+        let mut damaged = text.as_bytes().to_vec();
+        for _ in 0..=random(3) {
+            let at = random(damaged.len());
+            match random(5) {
+                0 => damaged.truncate(at + 1),
+                1 => damaged[at] = bytes[random(bytes.len())],
+                2 => damaged.insert(at, bytes[random(bytes.len())]),
+                3 => damaged.extend_from_within(at..),
+                _ => drop(damaged.drain(at..(at + 1 + random(9)).min(damaged.len() - 1).max(at))),
+            }
+        }
+        fs::write(folder.path(name), &damaged).unwrap();
+        let given = if name == "la.1.poly" { "la.1" } else { name };
+        if let Ok(file) = MeshFile::read(&folder.path(given)) {
+            read += 1;
+            let mesh = file.mesh();
+            for vertex in 0..mesh.points.len() {
+                assert!(file.vertex_place(vertex as u32).line > 1);
+            }
+            for triangle in 0..mesh.triangles.len() {
+                assert!(file.triangle_place(triangle).line > 1);
+            }
+            let vertices = mesh.triangles.iter().flatten().chain(&mesh.fixed);
+            assert!(vertices.into_iter().all(|&vertex| (vertex as usize) < mesh.points.len()));
+            if round % 63 == 0 {
+                file.write(&folder.path("out"), &mesh.points).unwrap();
+                let out = if name == "a.msh" { "out" } else { &name.replace("la.1", "out") };
+                assert_eq!(fs::read(folder.path(out)).unwrap(), damaged);
+            }
+        }
+        fs::write(folder.path(name), text).unwrap();
+    }
+    assert!((400..3600).contains(&read), "{read} of 4000 damaged files were read");
+}
