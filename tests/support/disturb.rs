@@ -1,0 +1,159 @@
+//! Meshes made worse, never inverted: what a smoother has to undo.
+
+use super::check::{held, imr, orient, squared_distance};
+use super::rng::SplitMix64;
+use super::trig::sin_turns;
+use gpu_smooth::Mesh;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// No move of [`perturb_random`] makes a triangle worse than this. A triangle is flatter than any
+/// bound with a chance that falls only as the inverse of the bound, so that without one the flattest
+/// triangle, and f_imr with it, would be a matter of luck and of the number of vertices.
+const WORST: f64 = 1000.0;
+
+/// How far toward its random place strength 1 takes a vertex. All the way would leave a flat triangle
+/// at about every vertex rather than here and there.
+const FARTHEST: f64 = 0.7;
+
+/// Moves each vertex that may move, one after the other, toward a random place of its star, or half,
+/// a quarter and so on of the way until no triangle inverts. Strength 0.5 brings f_imr to about 1.3,
+/// 1 to well over 100, nearly all of it from the few triangles that end up nearly flat.
+/// Needs a mesh wound counterclockwise.
+pub fn perturb_random(mesh: &Mesh, strength: f64, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let (held, stars) = (held(mesh), Stars::new(mesh));
+    let mut moved = mesh.clone();
+    for v in (0..mesh.points.len()).filter(|&v| !held[v]) {
+        let (star, from) = (stars.of(v), moved.points[v]);
+        let [a, b, c] =
+            moved.triangles[star[rng.below(star.len())] as usize].map(|w| moved.points[w as usize]);
+        let (mut s, mut t) = (rng.unit(), rng.unit());
+        if s + t > 1.0 {
+            (s, t) = (1.0 - s, 1.0 - t);
+        }
+        let goal = [0, 1].map(|x| a[x] + s * (b[x] - a[x]) + t * (c[x] - a[x]));
+        let mut step = FARTHEST * strength * strength;
+        for _ in 0..20 {
+            moved.points[v] = [0, 1].map(|x| from[x] + step * (goal[x] - from[x]));
+            let fits = |&t: &u32| {
+                let corners = moved.triangles[t as usize].map(|w| moved.points[w as usize]);
+                imr(corners) <= WORST
+            };
+            if star.iter().all(fits) {
+                break;
+            }
+            moved.points[v] = from;
+            step /= 2.0;
+        }
+    }
+    moved
+}
+
+/// Which triangles each vertex has.
+struct Stars {
+    start: Vec<usize>,
+    triangles: Vec<u32>,
+}
+
+impl Stars {
+    fn new(mesh: &Mesh) -> Self {
+        let mut start = vec![0; mesh.points.len() + 1];
+        mesh.triangles.iter().flatten().for_each(|&v| start[v as usize + 1] += 1);
+        for v in 1..start.len() {
+            start[v] += start[v - 1];
+        }
+        let mut next = start.clone();
+        let mut triangles = vec![0; 3 * mesh.triangles.len()];
+        for (i, triangle) in mesh.triangles.iter().enumerate() {
+            for &v in triangle {
+                triangles[next[v as usize]] = i as u32;
+                next[v as usize] += 1;
+            }
+        }
+        Self { start, triangles }
+    }
+
+    fn of(&self, v: usize) -> &[u32] {
+        &self.triangles[self.start[v]..self.start[v + 1]]
+    }
+}
+
+/// Moves the interior by a few long waves that fade toward all that is held. An `amplitude` of 1 is
+/// where the first triangle would become flat. Needs a mesh wound counterclockwise.
+pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
+    let [[left, width], [bottom, height]] = [0, 1].map(|x| {
+        let low = mesh.points.iter().map(|p| p[x]).fold(f64::INFINITY, f64::min);
+        let high = mesh.points.iter().map(|p| p[x]).fold(f64::NEG_INFINITY, f64::max);
+        [low, high - low]
+    });
+    let distance = distance_to_held(mesh);
+    let farthest = distance.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
+    let waves = mesh.points.iter().zip(distance).map(|(&[x, y], distance)| {
+        let (u, v) = ((x - left) / width, (y - bottom) / height);
+        // Zero with zero slope at what is held, one with zero slope in the middle.
+        let near = distance / farthest;
+        let weight = near * near * (3.0 - 2.0 * near);
+        let across = sin_turns(1.3 * v + 0.1) + 0.6 * sin_turns(2.1 * u + 0.9 * v);
+        let along = sin_turns(1.1 * u + 0.4) - 0.6 * sin_turns(1.7 * v - 1.2 * u);
+        [weight * width * across, weight * height * along]
+    });
+    let waves: Vec<_> = waves.collect();
+    let flattens = mesh
+        .triangles
+        .iter()
+        .map(|&t| flattens_at(t.map(|v| mesh.points[v as usize]), t.map(|v| waves[v as usize])));
+    let mut step = amplitude * flattens.fold(f64::INFINITY, f64::min);
+    assert!(step.is_finite(), "no vertex may move");
+    loop {
+        let mut moved = mesh.clone();
+        for (point, wave) in moved.points.iter_mut().zip(&waves) {
+            *point = [point[0] + step * wave[0], point[1] + step * wave[1]];
+        }
+        // Rounding may have flattened a triangle when the amplitude is close to 1.
+        if moved.triangles.iter().all(|t| orient(t.map(|v| moved.points[v as usize])) > 0.0) {
+            return moved;
+        }
+        step *= 0.99;
+    }
+}
+
+/// How far the corners go in direction of the waves until the triangle is flat.
+fn flattens_at([p, q, r]: [[f64; 2]; 3], [a, b, c]: [[f64; 2]; 3]) -> f64 {
+    let minus = |u: [f64; 2], v: [f64; 2]| [u[0] - v[0], u[1] - v[1]];
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let (e, f, de, df) = (minus(q, p), minus(r, p), minus(b, a), minus(c, a));
+    // Twice the area is `area + slope t + bend t^2`; wanted is its smallest positive root.
+    let (area, slope, bend) = (cross(e, f), cross(e, df) + cross(de, f), cross(de, df));
+    let discriminant = slope * slope - 4.0 * bend * area;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // Both roots by the formula that does not cancel.
+    let half = -(slope + discriminant.sqrt().copysign(slope)) / 2.0;
+    [half / bend, area / half].into_iter().filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
+}
+
+/// Distance of each vertex to the nearest held one, or nearly: what is nearest to a vertex is sought
+/// among what is nearest to its neighbors.
+fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
+    let stars = Stars::new(mesh);
+    let held = held(mesh);
+    let mut squared = vec![f64::INFINITY; mesh.points.len()];
+    // By distance first: positive floats order like their bits.
+    let mut queue: BinaryHeap<_> =
+        (0..squared.len()).filter(|&v| held[v]).map(|v| Reverse((0u64, v, v))).collect();
+    while let Some(Reverse((bits, v, source))) = queue.pop() {
+        if f64::from_bits(bits) >= squared[v] {
+            continue;
+        }
+        squared[v] = f64::from_bits(bits);
+        for &w in stars.of(v).iter().flat_map(|&t| &mesh.triangles[t as usize]) {
+            let candidate = squared_distance(mesh.points[w as usize], mesh.points[source]);
+            if candidate < squared[w as usize] {
+                queue.push(Reverse((candidate.to_bits(), w as usize, source)));
+            }
+        }
+    }
+    squared.into_iter().map(f64::sqrt).collect()
+}

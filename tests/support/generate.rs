@@ -1,0 +1,209 @@
+//! Meshes from nothing: a lattice, a graded ring, and what an outline encloses.
+
+use super::check::{area, boundary, is_ccw, is_valid};
+use super::outline::Outline;
+use super::trig::on_circle;
+use gpu_smooth::Mesh;
+use spade::{
+    AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
+};
+
+type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
+
+/// Refinement keeps angles above this, except where the outline itself has smaller ones.
+pub const ANGLE_LIMIT: f64 = 29.0;
+
+/// `columns` times `rows` equilateral pairs of unit edge: every triangle is ideal to rounding. The
+/// sides are ragged, so that it grows as a rectangle rather than lean over.
+pub fn lattice(columns: usize, rows: usize) -> Mesh {
+    let height = 3f64.sqrt() / 2.0;
+    let mut mesh = Mesh::default();
+    for row in 0..=rows {
+        let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+        mesh.points.extend((0..=columns).map(|i| [i as f64 + shift, row as f64 * height]));
+    }
+    for row in 0..rows {
+        for i in 0..columns {
+            let a = (row * (columns + 1) + i) as u32;
+            let (b, c) = (a + 1, a + columns as u32 + 1);
+            let d = c + 1;
+            mesh.triangles.extend(if row % 2 == 0 {
+                [[a, b, c], [b, d, c]]
+            } else {
+                [[a, b, d], [a, d, c]]
+            });
+        }
+    }
+    mesh
+}
+
+/// Rings of `around` vertices each between the unit circle and a hole of radius `ratio` about the
+/// origin. The elements shrink with the radius, so that they keep their shape: nearly equilateral.
+pub fn graded(around: usize, ratio: f64) -> Mesh {
+    assert!(around >= 8 && ratio > 0.0, "a ring needs 8 vertices and a hole");
+    let turns = 1.0 / around as f64;
+    // Between the shrinkage that makes the triangles standing on a ring equilateral and that which
+    // does so for those hanging from it.
+    let [cos, sin] = on_circle(turns / 2.0);
+    let height = 3f64.sqrt() * sin;
+    let shrink = ((cos - height) / (cos + height)).sqrt();
+    let mut mesh = Mesh::default();
+    let (mut radius, mut ring) = (1.0, 0);
+    loop {
+        let shift = if ring % 2 == 0 { 0.0 } else { 0.5 };
+        for i in 0..around {
+            let [cos, sin] = on_circle((i as f64 + shift) * turns);
+            mesh.points.push([radius * cos, radius * sin]);
+        }
+        if radius <= ratio {
+            return mesh;
+        }
+        for i in 0..around {
+            let index = |ring: usize, i: usize| (ring * around + i % around) as u32;
+            let (a, b) = (index(ring, i), index(ring, i + 1));
+            let (c, d) = (index(ring + 1, i), index(ring + 1, i + 1));
+            mesh.triangles.extend(if ring % 2 == 0 {
+                [[a, b, c], [b, d, c]]
+            } else {
+                [[a, b, d], [a, d, c]]
+            });
+        }
+        radius *= shrink;
+        ring += 1;
+    }
+}
+
+/// Triangles inside the outline with no angle below [`ANGLE_LIMIT`] but at its own sharper corners,
+/// of a size that makes the number of vertices `vertices` within 1 %. The corners of the outline come
+/// first, in its order. The same for the same version of spade, wherever it runs.
+pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
+    let (domain, target) = (outline.area(), vertices as f64);
+    // As many as a typical mesh has; then by what came out, between sizes that were too small and too large.
+    let (mut size, mut low, mut high) = (domain / (1.2 * target), 0.0, f64::INFINITY);
+    let mut closest: Option<(f64, Mesh)> = None;
+    for _ in 0..24 {
+        let refined = refine(outline, size, 2 * vertices + 10_000)?;
+        let count = refined.as_ref().map_or(2.0 * target, |mesh| mesh.points.len() as f64);
+        let off = (count / target - 1.0).abs();
+        if let Some(mesh) = refined
+            && closest.as_ref().is_none_or(|(best, _)| off < *best)
+        {
+            closest = Some((off, mesh));
+        }
+        if off < 0.005 || size > domain {
+            break;
+        }
+        if count > target {
+            low = size
+        } else {
+            high = size
+        }
+        size *= count / target;
+        if size <= low || size >= high {
+            size = if high.is_finite() { (low + high) / 2.0 } else { 2.0 * low };
+        }
+    }
+    match closest {
+        Some((off, mesh)) if off < 0.01 => Ok(mesh),
+        Some((_, mesh)) => Err(format!(
+            "no size of triangles makes {vertices} vertices; the closest makes {}",
+            mesh.points.len()
+        )),
+        None => Err(format!("the outline alone takes more than {vertices} vertices")),
+    }
+}
+
+/// Triangles of at most this area; nothing if it takes more than `limit` vertices.
+fn refine(outline: &Outline, size: f64, limit: usize) -> Result<Option<Mesh>, String> {
+    let mut cdt = Cdt::new();
+    let closed = outline.loops.iter().map(|ring| (ring, true));
+    for (points, closed) in closed.chain(outline.lines.iter().map(|line| (line, false))) {
+        let handles = points.iter().map(|&p| insert(&mut cdt, p)).collect::<Result<Vec<_>, _>>()?;
+        let back = closed.then(|| [handles[handles.len() - 1], handles[0]]);
+        for [from, to] in handles.windows(2).map(|pair| [pair[0], pair[1]]).chain(back) {
+            if from == to || !cdt.can_add_constraint(from, to) {
+                let p = cdt.vertex(from).position();
+                return Err(format!("the outline crosses or repeats itself near {} {}", p.x, p.y));
+            }
+            cdt.add_constraint(from, to);
+        }
+    }
+    let lone =
+        outline.vertices.iter().map(|&p| insert(&mut cdt, p)).collect::<Result<Vec<_>, _>>()?;
+    // spade takes every constraint edge for a border between inside and outside. With lines inside it
+    // must refine everything; a box around keeps the outline from making sharp angles with the hull.
+    let borders_only = outline.lines.is_empty();
+    if !borders_only {
+        for p in surrounding_box(outline) {
+            insert(&mut cdt, p)?;
+        }
+    }
+    let result = cdt.refine(
+        RefinementParameters::<f64>::new()
+            .with_angle_limit(AngleLimit::from_deg(ANGLE_LIMIT))
+            .with_max_allowed_area(size)
+            .with_max_additional_vertices(if borders_only { limit } else { 16 * limit })
+            .exclude_outer_faces(borders_only),
+    );
+    if !result.refinement_complete {
+        return Ok(None);
+    }
+    let mut outside = vec![!borders_only; cdt.num_all_faces()];
+    result.excluded_faces.iter().for_each(|face| outside[face.index()] = true);
+    let kept = cdt.inner_faces().filter(|face| {
+        let center = face.center();
+        if borders_only { !outside[face.index()] } else { outline.contains([center.x, center.y]) }
+    });
+    let triangles: Vec<_> =
+        kept.map(|face| face.vertices().map(|v| v.fix().index() as u32)).collect();
+    let points = cdt.vertices().map(|v| [v.position().x, v.position().y]).collect();
+    let on_lines = cdt
+        .undirected_edges()
+        .filter(|edge| edge.is_constraint_edge())
+        .flat_map(|edge| edge.vertices().map(|v| v.fix()));
+    let fixed = lone.into_iter().chain(on_lines).map(|v| v.index() as u32).collect();
+    let mesh = compacted(Mesh { points, triangles, fixed });
+    // Also that no loop was lost: the triangles fill what the loops enclose.
+    let fills = (area(&mesh) / outline.area() - 1.0).abs() < 1e-9;
+    if is_ccw(&mesh) && is_valid(&mesh) && fills {
+        Ok(Some(mesh))
+    } else {
+        Err("the outline could not be triangulated; do its loops cross?".into())
+    }
+}
+
+fn insert(cdt: &mut Cdt, [x, y]: [f64; 2]) -> Result<spade::handles::FixedVertexHandle, String> {
+    cdt.insert(Point2::new(x, y)).map_err(|e| format!("the point {x} {y} cannot be used: {e}"))
+}
+
+fn surrounding_box(outline: &Outline) -> [[f64; 2]; 4] {
+    let all = || outline.loops.iter().flatten();
+    let [[left, right], [bottom, top]] = [0, 1].map(|x| {
+        let low = all().map(|p| p[x]).fold(f64::INFINITY, f64::min);
+        let high = all().map(|p| p[x]).fold(f64::NEG_INFINITY, f64::max);
+        let margin = (high - low) / 8.0;
+        [low - margin, high + margin]
+    });
+    [[left, bottom], [right, bottom], [right, top], [left, top]]
+}
+
+/// Without the vertices of no triangle, and listing as fixed only those the boundary does not hold.
+fn compacted(mesh: Mesh) -> Mesh {
+    const UNUSED: u32 = u32::MAX;
+    let mut new_index = vec![UNUSED; mesh.points.len()];
+    mesh.triangles.iter().flatten().for_each(|&v| new_index[v as usize] = 0);
+    let mut points = Vec::new();
+    for (index, point) in new_index.iter_mut().zip(&mesh.points).filter(|(i, _)| **i != UNUSED) {
+        *index = points.len() as u32;
+        points.push(*point);
+    }
+    let renamed = |v: &u32| new_index[*v as usize];
+    let triangles = mesh.triangles.iter().map(|t| t.each_ref().map(renamed)).collect();
+    let fixed = mesh.fixed.iter().map(renamed).filter(|&v| v != UNUSED).collect();
+    let mut mesh = Mesh { points, triangles, fixed };
+    let on_boundary = boundary(&mesh);
+    mesh.fixed.retain(|&v| !on_boundary[v as usize]);
+    mesh.fixed.sort_unstable();
+    mesh.fixed.dedup();
+    mesh
+}

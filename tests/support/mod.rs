@@ -1,0 +1,26 @@
+//! Seeded meshes, and checks on meshes written independently of the library they test.
+//!
+//! Each user of this module (a test, an example, a bench) is a crate of its own that needs only part of it.
+#![allow(dead_code, unreachable_pub, unused_imports)]
+
+pub mod check;
+pub mod disturb;
+pub mod generate;
+pub mod outline;
+pub mod rearrange;
+pub mod recipe;
+pub mod rng;
+pub mod trig;
+pub mod write;
+
+pub use check::{
+    area, boundary, edge_uses, f_imr, is_ccw, is_valid, min_angle, mover_count, orientations,
+    same_orientations, worst_imr,
+};
+pub use disturb::{distort_smooth, perturb_random};
+pub use generate::{graded, lattice, triangulate};
+pub use outline::Outline;
+pub use rearrange::{renumbered, shuffled_windings, transformed};
+pub use recipe::Recipe;
+pub use rng::SplitMix64;
+pub use write::{triangle_text, write_msh22, write_msh41, write_triangle};

@@ -1,0 +1,93 @@
+//! The command line of `examples/make_mesh.rs`, here so that a test can run what a mesh says made it.
+
+use super::{Outline, distort_smooth, perturb_random, triangle_text, triangulate};
+use gpu_smooth::Mesh;
+use std::path::PathBuf;
+
+const USAGE: &str = "usage: make_mesh OUTLINE OUT_STEM [options]
+  --vertices N  make about N vertices, within 1 % (default 2000)
+  --perturb S   move each interior vertex at random; 0.5 is mild, 1 leaves some triangles nearly flat
+  --distort A   move the interior by long waves; 1 is where the first triangle becomes flat
+  --seed K      of the random moves (default 1)";
+
+/// What the command line asks for.
+#[derive(Debug)]
+pub struct Recipe {
+    /// The command as typed, for the comment in the files.
+    pub command: String,
+    pub outline: PathBuf,
+    pub stem: PathBuf,
+    vertices: usize,
+    perturb: Option<f64>,
+    distort: Option<f64>,
+    seed: u64,
+}
+
+impl Recipe {
+    /// From the arguments after the program's name.
+    pub fn parse(args: &[String]) -> Result<Self, String> {
+        let mut recipe = Self {
+            command: format!("cargo run --release --example make_mesh -- {}", args.join(" ")),
+            outline: PathBuf::new(),
+            stem: PathBuf::new(),
+            vertices: 2000,
+            perturb: None,
+            distort: None,
+            seed: 1,
+        };
+        let mut paths = Vec::new();
+        let mut args = args.iter();
+        while let Some(arg) = args.next() {
+            if !arg.starts_with("--") {
+                paths.push(PathBuf::from(arg));
+                continue;
+            }
+            let value = args.next().ok_or_else(|| format!("{arg} needs a value\n{USAGE}"))?;
+            match arg.as_str() {
+                "--vertices" => recipe.vertices = number(arg, value, 3..=100_000_000)?,
+                "--perturb" => recipe.perturb = Some(number(arg, value, 0.0..=1.0)?),
+                "--distort" => recipe.distort = Some(number(arg, value, 0.0..=1.0)?),
+                "--seed" => recipe.seed = number(arg, value, 0..=u64::MAX)?,
+                _ => return Err(format!("unknown option {arg}\n{USAGE}")),
+            }
+        }
+        if recipe.perturb.is_some() && recipe.distort.is_some() {
+            return Err("--perturb and --distort exclude each other".into());
+        }
+        [recipe.outline, recipe.stem] = paths
+            .try_into()
+            .map_err(|paths: Vec<_>| format!("expected two paths, got {}\n{USAGE}", paths.len()))?;
+        Ok(recipe)
+    }
+
+    /// The mesh, as the texts of its `.node` and `.ele` file.
+    pub fn texts(&self) -> Result<[String; 2], String> {
+        Ok(triangle_text(&self.mesh()?, &self.command))
+    }
+
+    pub fn mesh(&self) -> Result<Mesh, String> {
+        let named = |problem: String| format!("{}: {problem}", self.outline.display());
+        let text = std::fs::read_to_string(&self.outline).map_err(|e| named(e.to_string()))?;
+        let outline = Outline::parse(&text).map_err(named)?;
+        let mesh = triangulate(&outline, self.vertices).map_err(named)?;
+        Ok(match (self.perturb, self.distort) {
+            (Some(strength), _) => perturb_random(&mesh, strength, self.seed),
+            (_, Some(amplitude)) => distort_smooth(&mesh, amplitude),
+            _ => mesh,
+        })
+    }
+}
+
+fn number<T>(option: &str, value: &str, allowed: std::ops::RangeInclusive<T>) -> Result<T, String>
+where
+    T: std::str::FromStr + PartialOrd + std::fmt::Display,
+{
+    match value.parse() {
+        Ok(number) if allowed.contains(&number) => Ok(number),
+        _ => Err(format!(
+            "{option} takes a number from {} to {}, not '{value}'",
+            allowed.start(),
+            allowed.end()
+        )),
+    }
+}
