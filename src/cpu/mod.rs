@@ -1,0 +1,132 @@
+//! The f64 engine: the reference for tests, and what runs where there is no adapter.
+//!
+//! Same colors, same steps and same stopping as the GPU engine, on all cores.
+
+mod newton;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::engine::{Engine, EngineError, Objectives};
+use crate::metric::{Corner, Metric, specialize};
+use crate::plan::{Plan, Stop, StopRule};
+use crate::problem::Problem;
+use newton::{Patch, Step};
+
+/// A run on the CPU.
+pub struct CpuEngine<'a> {
+    problem: &'a Problem,
+    plan: Plan,
+    positions: Vec<DVec2>,
+    best: Option<Best>,
+    base_history: Vec<f64>,
+    stop: Option<Stop>,
+}
+
+struct Best {
+    objective: f64,
+    positions: Vec<DVec2>,
+}
+
+impl<'a> CpuEngine<'a> {
+    /// Starts a run from `positions`, normalised and in the problem's order.
+    pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
+        let best = (!plan.scheme.is_monotone())
+            .then(|| Best { objective: f64::INFINITY, positions: positions.clone() });
+        Self { problem, plan, positions, best, base_history: Vec::new(), stop: None }
+    }
+
+    fn sweep(&mut self, sweep: u32) {
+        let metric = self.plan.scheme.metric(sweep);
+        let step = Step {
+            omega: self.plan.omega(metric, sweep),
+            inner: self.plan.inner,
+            sharpness: self.plan.sharpness.of(sweep),
+            derivatives: self.plan.derivatives,
+        };
+        let mut moved = Vec::new();
+        for color in self.problem.colors() {
+            let color = color.start as usize..color.end as usize;
+            // Vertices of one color read each other's neighbours only, never each other.
+            specialize!(metric, METRIC => {
+                visit_all(METRIC, self.problem, &self.positions, color.clone(), &step, &mut moved);
+            });
+            self.positions[color].copy_from_slice(&moved);
+        }
+    }
+
+    fn evaluate(&mut self) -> Objectives {
+        let mut values = Objectives::untracked();
+        for metric in self.plan.tracked() {
+            let excess = mean_excess(metric, self.problem, &self.positions);
+            values.set(metric, metric.ideal_squared() + excess);
+        }
+        let base = values.of(self.plan.scheme.base()).unwrap_or(f64::NAN);
+        if let Some(best) = self.best.as_mut().filter(|best| base < best.objective) {
+            best.objective = base;
+            best.positions.copy_from_slice(&self.positions);
+        }
+        self.base_history.push(base);
+        let window = StopRule::window(&self.plan.scheme) as usize;
+        self.stop = self.plan.stop.judge(&self.base_history, window);
+        values
+    }
+}
+
+impl Engine for CpuEngine<'_> {
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+        let mut log = Vec::new();
+        if self.base_history.is_empty() {
+            log.push(self.evaluate());
+        }
+        for _ in 0..sweeps {
+            if self.stop.is_some() {
+                break;
+            }
+            self.sweep(self.base_history.len() as u32);
+            log.push(self.evaluate());
+        }
+        Ok(log)
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
+        Ok(self.best.as_ref().map_or(&self.positions, |best| &best.positions).clone())
+    }
+}
+
+#[inline(always)]
+fn visit_all(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    color: std::ops::Range<usize>,
+    step: &Step,
+    moved: &mut Vec<DVec2>,
+) {
+    let visit = |v: usize| {
+        let start = problem.ring_start();
+        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
+        let patch = Patch { ring, positions, mean_area: problem.mean_area() };
+        patch.visit(metric, positions[v], step)
+    };
+    color.into_par_iter().with_min_len(256).map(visit).collect_into_vec(moved);
+}
+
+/// Mean of q² - ideal² over all triangles, in an order of summation that does not depend on the
+/// number of threads.
+pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
+    let mean_area = problem.mean_area();
+    let sums: Vec<f64> = specialize!(metric, METRIC => {
+        let excess = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|v| positions[v as usize]);
+            METRIC.excess(&Corner { a: (q - p).to_array(), b: (r - p).to_array(), mean_area })
+        };
+        let sum = |chunk: &[[u32; 3]]| chunk.iter().map(excess).sum::<f64>();
+        problem.triangles().par_chunks(1024).map(sum).collect()
+    });
+    sums.iter().sum::<f64>() / problem.triangles().len() as f64
+}

@@ -1,0 +1,198 @@
+//! What both engines are given: normalised positions and one-rings, numbered color by color.
+
+use std::ops::Range;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::coloring::{Coloring, UNCOLORED};
+use crate::mesh::Mesh;
+use crate::topology::Topology;
+
+/// A mesh laid out for sweeping. Vertices are numbered anew: free ones first, color by color, along
+/// a space-filling curve within a color, then those fixed ones that some triangle uses.
+///
+/// Positions are centered and scaled by a power of two (which rounds nothing) such that the mean
+/// triangle has an area in [0.5, 2): then single precision serves meshes of any size at any place,
+/// and areas of triangles far smaller or larger than the mean neither vanish nor overflow.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    positions: Vec<DVec2>,
+    colors: Vec<Range<u32>>,
+    ring_start: Vec<u32>,
+    ring: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    mean_area: f64,
+    vertices: Vec<u32>,
+    center: DVec2,
+    scale: f64,
+}
+
+impl Problem {
+    /// Lays out a mesh with its topology and coloring.
+    pub fn new(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Self {
+        let (center, scale) = normalization(mesh, topology);
+        let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
+
+        let vertices = order(mesh, topology, coloring);
+        let mut number = vec![u32::MAX; mesh.points.len()];
+        for (new, &v) in vertices.iter().enumerate() {
+            number[v as usize] = new as u32;
+        }
+        let mut colors = vec![0..0; coloring.count() as usize];
+        for (new, &v) in vertices.iter().enumerate() {
+            let color = coloring.colors()[v as usize];
+            if color != UNCOLORED {
+                let range = &mut colors[color as usize];
+                if range.start == range.end {
+                    range.start = new as u32;
+                }
+                range.end = new as u32 + 1;
+            }
+        }
+
+        let free = colors.last().map_or(0, |range| range.end) as usize;
+        let rings: Vec<Vec<u32>> = vertices[..free]
+            .par_iter()
+            .map(|&v| topology.ring(v).into_iter().map(|u| number[u as usize]).collect())
+            .collect();
+        let mut ring_start = Vec::with_capacity(free + 1);
+        let mut ring = Vec::with_capacity(free * 6);
+        ring_start.push(0);
+        for row in rings {
+            ring.extend_from_slice(&row);
+            ring_start.push(ring.len() as u32);
+        }
+
+        let mut triangles: Vec<[u32; 3]> =
+            topology.triangles().iter().map(|t| t.map(|v| number[v as usize])).collect();
+        // The order decides how well the objective's reads are cached. Keyed by the least corner
+        // it follows the vertices' curve, and is the same whatever the input's order.
+        triangles.par_sort_unstable_by_key(|t| {
+            let least = t.iter().copied().min().unwrap_or(0);
+            (least, *t)
+        });
+
+        let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
+        let area = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|v| positions[v as usize]);
+            0.5 * (q - p).perp_dot(r - p)
+        };
+        let mean_area = triangles.iter().map(area).sum::<f64>() / triangles.len() as f64;
+        Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
+    }
+
+    /// Normalised position of each vertex.
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
+    /// The free vertices of each color.
+    pub fn colors(&self) -> &[Range<u32>] {
+        &self.colors
+    }
+
+    /// Number of free vertices; they come first.
+    pub fn free_count(&self) -> usize {
+        self.ring_start.len() - 1
+    }
+
+    /// Where each free vertex's neighbours start in [`Self::ring`], and one past the last.
+    pub fn ring_start(&self) -> &[u32] {
+        &self.ring_start
+    }
+
+    /// The neighbours of the free vertices, counter-clockwise, vertex by vertex.
+    pub fn ring(&self) -> &[u32] {
+        &self.ring
+    }
+
+    /// All triangles, counter-clockwise.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Mean area of all triangles, in normalised units.
+    pub fn mean_area(&self) -> f64 {
+        self.mean_area
+    }
+
+    /// Puts normalised positions back in the mesh's order and units. A vertex that did not move
+    /// keeps its bits.
+    pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
+        let mut points = mesh.points.clone();
+        for ((&v, &now), &was) in self.vertices.iter().zip(positions).zip(&self.positions) {
+            if now != was {
+                points[v as usize] = (self.center + now / self.scale).to_array();
+            }
+        }
+        points
+    }
+}
+
+/// Center of the bounding box, and the power of two that brings the mean area into [0.5, 2).
+fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
+    let used = topology.triangles().as_flattened().iter().map(|&v| mesh.points[v as usize]);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for point in used.map(DVec2::from) {
+        low = low.min(point);
+        high = high.max(point);
+    }
+    // Halved before they are added: the sum of two large coordinates may overflow.
+    let center = low * 0.5 + high * 0.5;
+    // Areas are taken in units of the bounding box, where their squares cannot overflow or vanish.
+    let extent = (high * 0.5 - low * 0.5).max_element();
+    let relative = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|v| (DVec2::from(mesh.points[v as usize]) - center) / extent);
+        0.5 * (q - p).perp_dot(r - p)
+    };
+    let sum: f64 = topology.triangles().iter().map(relative).sum();
+    let length = (sum / topology.triangles().len() as f64).sqrt() * extent;
+    (center, (-length.log2().round()).exp2())
+}
+
+/// The vertices in use, in the order [`Problem`] promises.
+fn order(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Vec<u32> {
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for &point in &mesh.points {
+        low = low.min(point.into());
+        high = high.max(point.into());
+    }
+    let cells = f64::from(u32::MAX) / (high - low).max_element();
+    let mut keyed: Vec<(u32, u64, u32)> = (0..mesh.points.len() as u32)
+        .into_par_iter()
+        .filter(|&v| !topology.star(v).is_empty())
+        .map(|v| {
+            let cell = (DVec2::from(mesh.points[v as usize]) - low) * cells;
+            (coloring.colors()[v as usize], z_order(cell.x as u32, cell.y as u32), v)
+        })
+        .collect();
+    // UNCOLORED is the largest color, so fixed vertices come last.
+    keyed.par_sort_unstable();
+    keyed.into_iter().map(|(_, _, v)| v).collect()
+}
+
+/// Position along the Z-order curve: the bits of x and y interleaved.
+fn z_order(x: u32, y: u32) -> u64 {
+    let spread = |bits: u32| {
+        let mut b = u64::from(bits);
+        b = (b | b << 16) & 0x0000_ffff_0000_ffff;
+        b = (b | b << 8) & 0x00ff_00ff_00ff_00ff;
+        b = (b | b << 4) & 0x0f0f_0f0f_0f0f_0f0f;
+        b = (b | b << 2) & 0x3333_3333_3333_3333;
+        (b | b << 1) & 0x5555_5555_5555_5555
+    };
+    spread(x) | spread(y) << 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn z_order_interleaves() {
+        assert_eq!(z_order(0b11, 0b00), 0b0101);
+        assert_eq!(z_order(0b01, 0b10), 0b1001);
+        assert_eq!(z_order(u32::MAX, u32::MAX), u64::MAX);
+    }
+}

@@ -1,0 +1,90 @@
+//! Alternation schemes: which metric each sweep uses.
+
+use crate::metric::{Metric, UnknownMetric};
+
+/// A sequence of metrics, used in turn sweep by sweep; the first is the base metric, which alone
+/// judges convergence (Park & Shontz, Section 2.2). Written `edge+imr+imr`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Scheme(Vec<Metric>);
+
+impl Scheme {
+    /// The most metrics a scheme can have: the stop rule looks back over two periods and more, as far
+    /// as the device remembers.
+    pub const LONGEST: u32 = 60;
+
+    /// A scheme of the given metrics; `None` when there are none.
+    pub fn new(metrics: impl Into<Vec<Metric>>) -> Option<Self> {
+        let metrics = metrics.into();
+        (!metrics.is_empty()).then_some(Self(metrics))
+    }
+
+    /// The metric that judges convergence.
+    pub fn base(&self) -> Metric {
+        self.0[0]
+    }
+
+    /// The metric of a sweep; sweeps count from 1, and sweep 1 uses the base metric.
+    pub fn metric(&self, sweep: u32) -> Metric {
+        self.0[(sweep.max(1) as usize - 1) % self.0.len()]
+    }
+
+    /// The number of sweeps after which the scheme repeats.
+    pub fn period(&self) -> u32 {
+        self.0.len() as u32
+    }
+
+    /// The metrics in order.
+    pub fn metrics(&self) -> &[Metric] {
+        &self.0
+    }
+
+    /// Whether every sweep lowers the base objective itself, so that the last state is the best:
+    /// one metric only, and one whose Newton model is the metric.
+    pub fn is_monotone(&self) -> bool {
+        self.0.iter().all(|&m| m == self.base()) && self.base() != Metric::Edge
+    }
+}
+
+impl From<Metric> for Scheme {
+    fn from(metric: Metric) -> Self {
+        Self(vec![metric])
+    }
+}
+
+impl std::fmt::Display for Scheme {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0.iter().map(|m| m.name()).collect::<Vec<_>>().join("+"))
+    }
+}
+
+impl std::str::FromStr for Scheme {
+    type Err = UnknownMetric;
+    fn from_str(text: &str) -> Result<Self, UnknownMetric> {
+        text.split('+').map(str::parse).collect::<Result<Vec<_>, _>>().map(Self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alternates_from_the_base() {
+        let scheme: Scheme = "EDGE+imr+ imr".parse().unwrap();
+        assert_eq!(scheme.to_string(), "edge+imr+imr");
+        assert_eq!(scheme.base(), Metric::Edge);
+        let metrics: Vec<_> = (1..=4).map(|k| scheme.metric(k).name()).collect();
+        assert_eq!(metrics, ["edge", "imr", "imr", "edge"]);
+    }
+
+    #[test]
+    fn unknown_names_are_named() {
+        let error = "edge+foo".parse::<Scheme>().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "no metric is called 'foo'; there are edge, area, rms, imr, ar"
+        );
+        assert!("".parse::<Scheme>().is_err());
+        assert!("imr+".parse::<Scheme>().is_err());
+    }
+}

@@ -1,0 +1,323 @@
+//! What hangs together in a mesh: consistent windings, the boundary, one-rings.
+
+use rayon::prelude::*;
+
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::validity;
+
+/// The triangles of a mesh made counter-clockwise, and its free vertices.
+#[derive(Clone, Debug)]
+pub struct Topology {
+    triangles: Vec<[u32; 3]>,
+    free: Vec<bool>,
+    stars: Stars,
+}
+
+/// The triangles at each vertex, in ascending order, as compressed rows.
+#[derive(Clone, Debug)]
+struct Stars {
+    start: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Stars {
+    fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
+        let mut start = vec![0u32; vertices + 1];
+        for &v in triangles.as_flattened() {
+            start[v as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            start[v + 1] += start[v];
+        }
+        let mut next = start.clone();
+        let mut rows = vec![0u32; triangles.len() * 3];
+        for (t, corners) in triangles.iter().enumerate() {
+            for &v in corners {
+                rows[next[v as usize] as usize] = t as u32;
+                next[v as usize] += 1;
+            }
+        }
+        Self { start, triangles: rows }
+    }
+
+    fn of(&self, vertex: u32) -> &[u32] {
+        let v = vertex as usize;
+        &self.triangles[self.start[v] as usize..self.start[v + 1] as usize]
+    }
+}
+
+/// No triangle lies across this edge.
+const NONE: u32 = u32::MAX;
+
+impl Topology {
+    /// Checks the mesh and finds its windings, boundary and free vertices.
+    ///
+    /// Windings are made consistent across shared edges, and each edge-connected part
+    /// counter-clockwise on the whole. A vertex is free unless it lies on the boundary, is listed
+    /// in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
+    ///
+    /// # Errors
+    /// What is no 2D triangle mesh at all: see [`MeshError`]. Whether it is feasible and has a free
+    /// vertex is for [`check_smoothable`](Self::check_smoothable) to say.
+    pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        let Mesh { points, triangles, fixed } = mesh;
+        check_indices(mesh)?;
+        let stars = Stars::new(points.len(), triangles);
+        let across = neighbors(triangles, &stars)?;
+        let triangles = wind(points, triangles, &across);
+
+        let mut free: Vec<bool> = (0..points.len() as u32)
+            .into_par_iter()
+            .map(|v| !stars.of(v).is_empty() && ring_of(&triangles, &stars, v).is_some())
+            .collect();
+        for &v in fixed {
+            free[v as usize] = false;
+        }
+        Ok(Self { triangles, free, stars })
+    }
+
+    /// Checks that there is something to smooth, and that smoothing can keep what it needs.
+    ///
+    /// # Errors
+    /// [`MeshError::Infeasible`] if a triangle is inverted or flat at `points`,
+    /// [`MeshError::NothingFree`] if no vertex is free.
+    pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        validity::check(points, &self.triangles)?;
+        match self.free.contains(&true) {
+            true => Ok(()),
+            false => Err(MeshError::NothingFree { vertices: points.len() }),
+        }
+    }
+
+    /// The triangles in the mesh's order, each counter-clockwise.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Whether each vertex is free to move.
+    pub fn free(&self) -> &[bool] {
+        &self.free
+    }
+
+    /// Number of free vertices.
+    pub fn free_count(&self) -> usize {
+        self.free.iter().filter(|&&f| f).count()
+    }
+
+    /// The triangles at a vertex, ascending.
+    pub fn star(&self, vertex: u32) -> &[u32] {
+        self.stars.of(vertex)
+    }
+
+    /// The neighbours of a free vertex in counter-clockwise cyclic order, starting with the
+    /// second corner of its first triangle. Triangle k of its patch is (vertex, r[k], r[k+1]).
+    pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
+        ring_of(&self.triangles, &self.stars, free_vertex).unwrap_or_default()
+    }
+}
+
+fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
+    let Mesh { points, triangles, fixed } = mesh;
+    if triangles.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
+        return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
+    }
+    if let Some(vertex) = points.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+        return Err(MeshError::NotFinite { vertex: vertex as u32 });
+    }
+    for (t, corners) in triangles.iter().enumerate() {
+        for (i, &vertex) in corners.iter().enumerate() {
+            if vertex as usize >= points.len() {
+                let vertices = points.len();
+                return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
+            }
+            if vertex == corners[(i + 1) % 3] {
+                return Err(MeshError::RepeatedVertex { triangle: t, vertex });
+            }
+        }
+    }
+    if let Some(&vertex) = fixed.iter().find(|&&v| v as usize >= points.len()) {
+        let vertices = points.len();
+        return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
+    }
+    Ok(())
+}
+
+/// The triangle across each edge (corner i to corner i + 1) of each triangle, or `NONE`.
+fn neighbors(triangles: &[[u32; 3]], stars: &Stars) -> Result<Vec<[u32; 3]>, MeshError> {
+    let across = |(t, corners): (usize, &[u32; 3])| {
+        let mut found = [NONE; 3];
+        for i in 0..3 {
+            let (a, b) = (corners[i], corners[(i + 1) % 3]);
+            let at_edge = |&&o: &&u32| o as usize != t && triangles[o as usize].contains(&b);
+            let mut others = stars.of(a).iter().filter(at_edge);
+            if let Some(&other) = others.next() {
+                found[i] = other;
+                if others.next().is_some() {
+                    let all = stars.of(a).iter().map(|&o| o as usize);
+                    let triangles = all.filter(|&o| triangles[o].contains(&b)).collect();
+                    return Err(MeshError::EdgeOfThree { edge: [a, b], triangles });
+                }
+            }
+        }
+        Ok(found)
+    };
+    triangles.par_iter().enumerate().map(across).collect()
+}
+
+/// Whether a triangle's corners run from a to b somewhere.
+fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
+    (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
+}
+
+/// The triangles with windings made consistent across edges, each edge-connected part
+/// counter-clockwise on the whole.
+fn wind(points: &[[f64; 2]], triangles: &[[u32; 3]], across: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut wound = triangles.to_vec();
+    let mut seen = vec![false; triangles.len()];
+    let mut part = Vec::new();
+    for seed in 0..triangles.len() {
+        if seen[seed] {
+            continue;
+        }
+        seen[seed] = true;
+        part.clear();
+        part.push(seed as u32);
+        let mut doubled_area = 0.0;
+        let mut next = 0;
+        while let Some(&t) = part.get(next) {
+            next += 1;
+            let corners = wound[t as usize];
+            doubled_area += validity::doubled_area(points, &corners);
+            // `across` belongs to the corners as given; a swap of the last two reverses its order.
+            let given = triangles[t as usize];
+            for (i, &other) in across[t as usize].iter().enumerate() {
+                if other == NONE || seen[other as usize] {
+                    continue;
+                }
+                let (mut a, mut b) = (given[i], given[(i + 1) % 3]);
+                if corners != given {
+                    (a, b) = (b, a);
+                }
+                if runs(&wound[other as usize], a, b) {
+                    wound[other as usize].swap(1, 2);
+                }
+                seen[other as usize] = true;
+                part.push(other);
+            }
+        }
+        if doubled_area < 0.0 {
+            for &t in &part {
+                wound[t as usize].swap(1, 2);
+            }
+        }
+    }
+    wound
+}
+
+/// The neighbours of a vertex in cyclic order; `None` unless its triangles close one cycle.
+fn ring_of(triangles: &[[u32; 3]], stars: &Stars, vertex: u32) -> Option<Vec<u32>> {
+    let star = stars.of(vertex);
+    let outer = |t: u32| {
+        let corners = triangles[t as usize];
+        let i = corners.iter().position(|&v| v == vertex).unwrap_or(0);
+        (corners[(i + 1) % 3], corners[(i + 2) % 3])
+    };
+    let first = outer(*star.first()?).0;
+    let mut ring = Vec::with_capacity(star.len());
+    let mut at = first;
+    for _ in star {
+        ring.push(at);
+        at = star.iter().map(|&t| outer(t)).find(|&(from, _)| from == at)?.1;
+        if at == first {
+            break;
+        }
+    }
+    (at == first && ring.len() == star.len() && star.len() >= 3).then_some(ring)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square with its center, counter-clockwise but for the third triangle.
+    fn fan() -> Mesh {
+        Mesh {
+            points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],
+            triangles: vec![[0, 1, 4], [1, 2, 4], [2, 4, 3], [3, 0, 4]],
+            fixed: vec![],
+        }
+    }
+
+    #[test]
+    fn mixed_windings_are_normalised() {
+        let mut mesh = fan();
+        let topology = Topology::new(&mesh).unwrap();
+        assert_eq!(topology.triangles()[2], [2, 3, 4]);
+        assert_eq!(topology.free(), [false, false, false, false, true]);
+        assert_eq!(topology.ring(4), [0, 1, 2, 3]);
+        mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        let clockwise = Topology::new(&mesh).unwrap();
+        assert!(validity::check(&mesh.points, clockwise.triangles()).is_ok());
+    }
+
+    #[test]
+    fn constraint_vertices_are_not_free() {
+        let mesh = Mesh { fixed: vec![4], ..fan() };
+        let topology = Topology::new(&mesh).unwrap();
+        let error = topology.check_smoothable(&mesh.points).unwrap_err();
+        assert_eq!(error, MeshError::NothingFree { vertices: 5 });
+    }
+
+    #[test]
+    fn folds_and_flat_triangles_are_refused() {
+        let mut mesh = fan();
+        let refusal =
+            |mesh: &Mesh| Topology::new(mesh).unwrap().check_smoothable(&mesh.points).unwrap_err();
+        mesh.points[4] = [1.0, -0.5];
+        let error = refusal(&mesh);
+        let vertices = [0, 1, 4];
+        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: false });
+        mesh.points[4] = [1.0, 0.0];
+        let error = refusal(&mesh);
+        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: true });
+    }
+
+    #[test]
+    fn an_edge_of_three_triangles_is_refused() {
+        let mut mesh = fan();
+        mesh.triangles.push([0, 4, 2]);
+        let error = Topology::new(&mesh).unwrap_err();
+        assert!(
+            matches!(error, MeshError::EdgeOfThree { ref triangles, .. } if triangles.len() == 3)
+        );
+    }
+
+    #[test]
+    fn bad_indices_are_refused() {
+        let mut mesh = fan();
+        mesh.triangles[1][2] = 9;
+        let error = Topology::new(&mesh).unwrap_err();
+        let expected = MeshError::IndexOutOfRange { triangle: Some(1), vertex: 9, vertices: 5 };
+        assert_eq!(error, expected);
+        mesh.triangles[1] = [1, 2, 1];
+        let error = Topology::new(&mesh).unwrap_err();
+        assert_eq!(error, MeshError::RepeatedVertex { triangle: 1, vertex: 1 });
+        mesh = fan();
+        mesh.points[3][1] = f64::NAN;
+        assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::NotFinite { vertex: 3 });
+    }
+
+    #[test]
+    fn a_vertex_joining_two_fans_stays() {
+        // Two closed fans around one vertex cannot lie flat without overlap, but their topology
+        // must not make a ring of either half.
+        let stars_of = |triangles: &[[u32; 3]]| Stars::new(7, triangles);
+        let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
+        assert_eq!(ring_of(&triangles, &stars_of(&triangles), 0), None);
+        assert_eq!(ring_of(&triangles[..3], &stars_of(&triangles[..3]), 0), Some(vec![1, 2, 3]));
+    }
+}
