@@ -1,0 +1,89 @@
+// Ends a sweep: adds up the partial sums, writes the history, and decides whether the run is over by
+// the rule of StopRule::judge in src/plan.rs. One workgroup.
+
+var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
+
+// The base metric's sum of an evaluation.
+fn base_sum(evaluation: u32) -> vec2<f32> {
+    return control.history[(evaluation % HISTORY) * METRICS + params.base];
+}
+
+fn gain(earlier: u32, later: u32) -> f32 {
+    let a = base_sum(earlier);
+    let b = base_sum(later);
+    return (a.x - b.x) + (a.y - b.y);
+}
+
+// What a geometric decay would still gain, from the gains of two successive windows.
+fn remaining(last: u32, window: u32) -> f32 {
+    let before = gain(last - 2u * window, last - window);
+    let now = gain(last - window, last);
+    if now >= before {
+        return 3.0e38;
+    }
+    return now * now / (before - now);
+}
+
+fn judge(last: u32) -> u32 {
+    let sum = base_sum(last);
+    if params.has_target != 0u && pair_less(sum, params.target_sum) {
+        return STOP_REACHED;
+    }
+    if last >= 2u * params.window {
+        let scale = sum.x + params.ideal_sum;
+        if gain(last - params.window, last) <= NOISE * scale {
+            if params.has_target == 0u && params.tolerance > 0.0 {
+                return STOP_CONVERGED;
+            }
+            return STOP_STALLED;
+        }
+        let left = max(remaining(last, params.window), remaining(last, params.window / 2u));
+        if 2.0 * left <= params.tolerance * scale {
+            return STOP_CONVERGED;
+        }
+    }
+    if last >= params.max_sweeps {
+        return STOP_MAX_SWEEPS;
+    }
+    return 0u;
+}
+
+@compute @workgroup_size(FINISH_WORKGROUP)
+fn finish(@builtin(local_invocation_index) local: u32) {
+    // Nothing returns early here: barriers must be met by all.
+    let running = control.done == 0u;
+    let evaluation = control.evaluated;
+    let partials = params.partials;
+    for (var i = 0u; i < TRACKED; i++) {
+        var sum = vec2(0.0);
+        for (var k = local; k < partials; k += FINISH_WORKGROUP) {
+            sum = pair_add(sum, partial_sums[i * partials + k]);
+        }
+        totals[local] = sum;
+        for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
+            workgroupBarrier();
+            if local < half {
+                totals[local] = pair_add(totals[local], totals[local + half]);
+            }
+        }
+        if local == 0u && running {
+            control.history[(evaluation % HISTORY) * METRICS + TRACKED_METRICS[i]] = totals[0];
+        }
+        workgroupBarrier();
+    }
+    if local != 0u {
+        return;
+    }
+    control.improved = 0u;
+    if !running {
+        return;
+    }
+    let sum = base_sum(evaluation);
+    if evaluation == 0u || pair_less(sum, control.best_sum) {
+        control.best_sum = sum;
+        control.best_sweep = evaluation;
+        control.improved = 1u;
+    }
+    control.done = judge(evaluation);
+    control.evaluated = evaluation + 1u;
+}

@@ -1,0 +1,15 @@
+// Value, gradient and Hessian of the active metric by forward differences of width h, with the 16
+// value evaluations an element that Mesquite spends (see plan::line_search::DISPLACEMENTS).
+
+fn differences(t: Corner, h: f32) -> Derivatives {
+    var displacements = DISPLACEMENTS;
+    var values: array<f32, 16>;
+    for (var i = 0u; i < 16u; i++) {
+        values[i] = metric_model(displaced(t, displacements[i] * h));
+    }
+    let here = vec2(values[1] - values[0], values[2] - values[0]) / h;
+    let right = vec2(values[5] - values[4], values[6] - values[4]) / h;
+    let up = vec2(values[9] - values[8], values[10] - values[8]) / h;
+    let mixed = 0.5 * ((right.y - here.y) + (up.x - here.x));
+    return Derivatives(values[0], here, vec3(right.x - here.x, mixed, up.y - here.y) / h);
+}

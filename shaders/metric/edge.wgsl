@@ -1,0 +1,73 @@
+// Edge ratio q = Lmax/Lmin. Newton works on the p-norm of the edge pairs, k = 2^sharpness:
+// q² ≈ (max/min) [mean A · mean B]^(1/k), A = (L/max)^k, B = (min/L)^k over squared lengths L.
+// By squarings and square roots of ratios below one: nothing overflows, whatever k.
+
+struct EdgePowers {
+    lengths: vec3<f32>,
+    ratio: f32,
+    a: vec3<f32>,
+    b: vec3<f32>,
+}
+
+fn edge_squared_lengths(t: Corner) -> vec3<f32> {
+    let c = t.b - t.a;
+    return vec3(dot(t.a, t.a), dot(t.b, t.b), dot(c, c));
+}
+
+fn edge_excess(t: Corner) -> f32 {
+    let l = edge_squared_lengths(t);
+    let least = min(l.x, min(l.y, l.z));
+    return (max(l.x, max(l.y, l.z)) - least) / least;
+}
+
+fn edge_powers(t: Corner) -> EdgePowers {
+    let l = edge_squared_lengths(t);
+    let most = max(l.x, max(l.y, l.z));
+    let least = min(l.x, min(l.y, l.z));
+    var a = l / most;
+    var b = least / l;
+    for (var i = 0u; i < sharpness; i++) {
+        a *= a;
+        b *= b;
+    }
+    return EdgePowers(l, most / least, a, b);
+}
+
+// The p-norm less one.
+fn edge_norm(p: EdgePowers) -> f32 {
+    var root = (p.a.x + p.a.y + p.a.z) * (p.b.x + p.b.y + p.b.z) / 9.0;
+    for (var i = 0u; i < sharpness; i++) {
+        root = sqrt(root);
+    }
+    return p.ratio * root - 1.0;
+}
+
+fn edge_model(t: Corner) -> f32 {
+    return edge_norm(edge_powers(t));
+}
+
+fn edge_derivatives(t: Corner) -> Derivatives {
+    let p = edge_powers(t);
+    let k = f32(1u << sharpness);
+    // Shares of each edge in the two sums; the third edge does not move with the vertex.
+    let wa = p.a / (p.a.x + p.a.y + p.a.z);
+    let wb = p.b / (p.b.x + p.b.y + p.b.z);
+    // u = ∇L / L of the two edges that do; their L have Hessian 2 times the identity.
+    let u = -2.0 * t.a / p.lengths.x;
+    let v = -2.0 * t.b / p.lengths.y;
+    let mean_a = wa.x * u + wa.y * v;
+    let mean_b = wb.x * u + wb.y * v;
+    let g = mean_a - mean_b;
+    let uu = 0.5 * symmetric(u, u);
+    let vv = 0.5 * symmetric(v, v);
+    let net = wa - wb;
+    let both = wa + wb;
+    // Hessian of the logarithm: the edges' own curvature, and how their shares shift.
+    let own = net.x * (vec3(2.0, 0.0, 2.0) / p.lengths.x - uu)
+        + net.y * (vec3(2.0, 0.0, 2.0) / p.lengths.y - vv);
+    let spread = both.x * uu + both.y * vv
+        - 0.5 * (symmetric(mean_a, mean_a) + symmetric(mean_b, mean_b));
+    let value = edge_norm(p);
+    let q = value + 1.0;
+    return Derivatives(value, q * g, q * (own + k * spread + 0.5 * symmetric(g, g)));
+}

@@ -1,0 +1,175 @@
+// One sweep over the free vertices of a color: local feasible Newton (Park & Shontz, Section 2.1),
+// the same steps as src/cpu/newton.rs.
+
+// A patch, its edges in units near their own length so that nothing overflows or vanishes.
+struct Patch {
+    start: u32,
+    end: u32,
+    at: vec4<f32>,
+    unit: f32,
+    mean_area: f32,
+}
+
+fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
+    return edge(p.at, positions[ring[i]]) * p.unit;
+}
+
+// A power of two that brings the length of an edge near one.
+fn unit_of(e: vec2<f32>) -> f32 {
+    let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
+    return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
+}
+
+fn inverse_mean_ratio(t: Corner) -> f32 {
+    return 0.28867513459 * squared_length_sum(t) / doubled_area(t);
+}
+
+// The least distance of the vertex from the line through a ring edge.
+fn least_height(p: Patch) -> f32 {
+    var least = 3.0e38;
+    var a = ring_edge(p, p.end - 1u);
+    for (var i = p.start; i < p.end; i++) {
+        let b = ring_edge(p, i);
+        least = min(least, cross2(a, b) / length(b - a));
+        a = b;
+    }
+    return least;
+}
+
+// Sum of the metric's model over the patch with the vertex moved by d; x is the sum, y is 0 if a
+// triangle is inverted or breaks the shape guard.
+fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
+    var sum = 0.0;
+    var a = ring_edge(p, p.end - 1u) - d;
+    for (var i = p.start; i < p.end; i++) {
+        let b = ring_edge(p, i) - d;
+        let t = Corner(a, b, p.mean_area);
+        if doubled_area(t) <= 0.0 {
+            return vec2(0.0, 0.0);
+        }
+        if GUARDED && inverse_mean_ratio(t) > limit {
+            return vec2(0.0, 0.0);
+        }
+        sum += metric_model(t);
+        a = b;
+    }
+    return vec2(sum, 1.0);
+}
+
+// The direction -H⁻¹g with H made positive definite by absolute eigenvalues with a floor, and the
+// slope g·d along it; a slope of zero where there is no descent.
+fn descent(gradient: vec2<f32>, hessian: vec3<f32>) -> vec3<f32> {
+    let scale = max(abs(hessian.x), max(abs(hessian.y), abs(hessian.z)));
+    if !(scale > 0.0 && scale < 3.0e38) {
+        return vec3(0.0);
+    }
+    // Before any product: the determinant of an ordinary bad patch overflows.
+    let g = gradient / scale;
+    let h = hessian / scale;
+    let mean = 0.5 * (h.x + h.z);
+    let half = 0.5 * (h.x - h.z);
+    let radius = length(vec2(half, h.y));
+    var high = abs(mean + radius);
+    var low = abs(mean - radius);
+    let least = EIGENVALUE_FLOOR * max(high, low);
+    high = max(high, least);
+    low = max(low, least);
+    // H = mean + R, R² = radius²: the projector on the upper eigenvector is (1 + R/radius)/2.
+    var upper = g;
+    if radius > 0.0 {
+        upper = 0.5 * (g + vec2(half * g.x + h.y * g.y, h.y * g.x - half * g.y) / radius);
+    }
+    let direction = -(upper / high + (g - upper) / low);
+    return vec3(direction, min(dot(direction, g) * scale, 0.0));
+}
+
+// The Newton step with its line search, in the patch's unit; zero if none improves the patch.
+fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
+    var value = 0.0;
+    var gradient = vec2(0.0);
+    var hessian = vec3(0.0);
+    var limit = SHAPE_GUARD;
+    let width = difference_width(p);
+    var a = ring_edge(p, p.end - 1u);
+    for (var i = p.start; i < p.end; i++) {
+        let b = ring_edge(p, i);
+        let t = Corner(a, b, p.mean_area);
+        if GUARDED {
+            limit = max(limit, inverse_mean_ratio(t));
+        }
+        let d = metric_derivatives(t, width);
+        value += d.value;
+        gradient += d.gradient;
+        hessian += d.hessian;
+        a = b;
+    }
+    let down = descent(gradient, hessian);
+    if down.z >= 0.0 {
+        return vec2(0.0);
+    }
+    let slack = SLACK * (value + f32(p.end - p.start) * IDEAL_SQUARED);
+    var length = omega;
+    for (var trial = 0u; trial < TRIALS; trial++) {
+        let d = down.xy * length;
+        let there = objective_at(p, d, limit);
+        if there.y == 0.0 {
+            length *= SHORTEN_INFEASIBLE;
+        } else if QUADRATIC || there.x <= value + SUFFICIENT_DECREASE * length * down.z + slack {
+            return d;
+        } else {
+            length *= SHORTEN;
+        }
+    }
+    return vec2(0.0);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn sweep(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let index = invocation(id, groups);
+    if index >= color.count || control.done != 0u {
+        return;
+    }
+    let vertex = color.first + index;
+    // The objective was evaluated once before the first sweep.
+    let number = control.evaluated;
+    let relaxed = params.omega[METRIC / 4u][METRIC % 4u];
+    let omega = select(1.0, relaxed, number > params.plain_sweeps);
+    sharpness = sharpness_of(number);
+
+    var p: Patch;
+    p.start = ring_start[vertex];
+    p.end = ring_start[vertex + 1u];
+    p.at = positions[vertex];
+    p.unit = unit_of(edge(p.at, positions[ring[p.start]]));
+    p.mean_area = params.mean_area * p.unit * p.unit;
+    var moved = false;
+    for (var i = 0u; i < params.inner; i++) {
+        let d = newton_step(p, omega);
+        if all(d == vec2(0.0)) {
+            break;
+        }
+        p.at = advanced(p.at, d / p.unit);
+        moved = true;
+    }
+    if moved {
+        positions[vertex] = p.at;
+    }
+}
+
+fn sharpness_of(number: u32) -> u32 {
+    var doublings = 0u;
+    if params.sharpness_every > 0u {
+        doublings = (number - 1u) / params.sharpness_every;
+    }
+    return min(params.sharpness_first + doublings, params.sharpness_last);
+}
+
+// The position moved by d, with its low part kept below half a unit of its high part.
+fn advanced(at: vec4<f32>, d: vec2<f32>) -> vec4<f32> {
+    let x = pair_add(at.xz, vec2(d.x, 0.0));
+    let y = pair_add(at.yw, vec2(d.y, 0.0));
+    return vec4(x.x, y.x, x.y, y.y);
+}

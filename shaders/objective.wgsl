@@ -1,0 +1,28 @@
+// Sums of q² - ideal² over all triangles for the tracked metrics: each invocation strides over the
+// triangles and leaves one pair of floats a metric; finish.wgsl adds those up. No barrier: those
+// are dear on software adapters.
+
+@compute @workgroup_size(WORKGROUP)
+fn objective(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    if control.done != 0u {
+        return;
+    }
+    let stride = groups.x * WORKGROUP;
+    var sums: array<vec2<f32>, TRACKED>;
+    for (var t = id.x; t < params.triangles; t += stride) {
+        let p = positions[triangles[3u * t]];
+        let a = edge(p, positions[triangles[3u * t + 1u]]);
+        let b = edge(p, positions[triangles[3u * t + 2u]]);
+        let values = tracked_excesses(Corner(a, b, params.mean_area));
+        for (var i = 0u; i < TRACKED; i++) {
+            let s = two_sum(sums[i].x, values[i]);
+            sums[i] = vec2(s.x, sums[i].y + s.y);
+        }
+    }
+    for (var i = 0u; i < TRACKED; i++) {
+        partial_sums[i * stride + id.x] = sums[i];
+    }
+}

@@ -1,0 +1,51 @@
+// Triangles as a metric sees them, and edges between positions held as pairs.
+
+// The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the mean
+// area of the mesh's triangles in the same unit, squared.
+struct Corner {
+    a: vec2<f32>,
+    b: vec2<f32>,
+    mean_area: f32,
+}
+
+// With respect to the vertex the edges start from; the Hessian as xx, xy, yy.
+struct Derivatives {
+    value: f32,
+    gradient: vec2<f32>,
+    hessian: vec3<f32>,
+}
+
+// log2 of the exponent of EDGE's p-norm in this sweep.
+var<private> sharpness: u32;
+
+fn edge(tail: vec4<f32>, head: vec4<f32>) -> vec2<f32> {
+    return (head.xy - tail.xy) + (head.zw - tail.zw);
+}
+
+fn cross2(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+fn doubled_area(t: Corner) -> f32 {
+    return cross2(t.a, t.b);
+}
+
+// Gradient of the doubled area.
+fn area_gradient(t: Corner) -> vec2<f32> {
+    return vec2(t.a.y - t.b.y, t.b.x - t.a.x);
+}
+
+fn squared_length_sum(t: Corner) -> f32 {
+    let c = t.b - t.a;
+    return dot(t.a, t.a) + dot(t.b, t.b) + dot(c, c);
+}
+
+// xx, xy, yy of u vᵀ + v uᵀ.
+fn symmetric(u: vec2<f32>, v: vec2<f32>) -> vec3<f32> {
+    return vec3(2.0 * u.x * v.x, u.x * v.y + u.y * v.x, 2.0 * u.y * v.y);
+}
+
+// The corner seen from its vertex moved by d.
+fn displaced(t: Corner, d: vec2<f32>) -> Corner {
+    return Corner(t.a - d, t.b - d, t.mean_area);
+}

@@ -1,0 +1,212 @@
+//! Adapters and devices, and every way wgpu says no.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::kernel::Pipelines;
+
+/// The GPU engine cannot start or go on.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter, or none of that name.
+    #[error("no GPU adapter{}", wanted.as_ref().map(|name| format!(" has '{name}' in its name; there are: {available}")).unwrap_or_else(|| " was found".into()))]
+    NoAdapter {
+        /// The name that was asked for.
+        wanted: Option<String>,
+        /// The names there are, separated by commas.
+        available: String,
+    },
+    /// The adapter would not give a device.
+    #[error("the adapter {adapter} gave no device: {message}")]
+    NoDevice {
+        /// The adapter.
+        adapter: String,
+        /// What wgpu said.
+        message: String,
+    },
+    /// A limit of the device is too low for this mesh.
+    #[error("{what} needs {needed}, but the device's {limit} is {available}")]
+    Limit {
+        /// What does not fit.
+        what: String,
+        /// How much it needs.
+        needed: u64,
+        /// The limit's name in wgpu.
+        limit: &'static str,
+        /// Its value on this device.
+        available: u64,
+    },
+    /// The device has no memory left.
+    #[error("the device is out of memory: {0}")]
+    OutOfMemory(String),
+    /// wgpu refused a call: a bug in this library, or a device made with other limits.
+    #[error("the device refused: {0}")]
+    Refused(String),
+    /// The device was lost or destroyed; the run is lost with it.
+    #[error("the device was lost: {0}")]
+    Lost(String),
+}
+
+/// What an adapter is called and how wgpu drives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterSummary {
+    /// The name, for example of the graphics card.
+    pub name: String,
+    /// Driver and version.
+    pub driver: String,
+    /// wgpu's backend: vulkan, metal, dx12 or gl.
+    pub backend: String,
+    /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" (software) or "other".
+    pub kind: &'static str,
+}
+
+impl AdapterSummary {
+    fn new(info: &wgpu::AdapterInfo) -> Self {
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+            wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+            wgpu::DeviceType::VirtualGpu => "virtual GPU",
+            wgpu::DeviceType::Cpu => "CPU",
+            wgpu::DeviceType::Other => "other",
+        };
+        let driver = [info.driver.trim(), info.driver_info.trim()];
+        let driver: Vec<_> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+        Self {
+            name: info.name.clone(),
+            driver: driver.join(" "),
+            backend: info.backend.to_string(),
+            kind,
+        }
+    }
+}
+
+/// A device with its pipelines: made once, it serves many meshes.
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) pipelines: Pipelines,
+    summary: AdapterSummary,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the best adapter, or the first whose name contains `name` (whatever the case).
+    /// Discrete GPUs come before integrated, virtual and software ones.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], or what the device refuses.
+    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = ranked_adapters();
+        let has_name = |adapter: &&wgpu::Adapter| {
+            let text = adapter.get_info().name.to_lowercase();
+            name.is_none_or(|name| text.contains(&name.to_lowercase()))
+        };
+        let adapter = adapters.iter().find(has_name).ok_or_else(|| {
+            let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+            GpuError::NoAdapter { wanted: name.map(str::to_owned), available: names.join(", ") }
+        })?;
+        let summary = AdapterSummary::new(&adapter.get_info());
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("gpu-smooth device"),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::NoDevice {
+            adapter: summary.name.clone(),
+            message: error.to_string(),
+        })?;
+        Self::new(device, queue, summary)
+    }
+
+    fn new(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        summary: AdapterSummary,
+    ) -> Result<Self, GpuError> {
+        let lost = Arc::new(Mutex::new(None));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            let text = if message.is_empty() { format!("{reason:?}") } else { message };
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+        });
+        // Every call is in an error scope; what still arrives here would otherwise panic.
+        let flag = Arc::clone(&lost);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+        }));
+        let available = device.limits().max_storage_buffers_per_shader_stage;
+        let needed = super::kernel::storage_bindings();
+        if needed > available {
+            return Err(GpuError::Limit {
+                what: "the number of storage buffers a kernel reads".into(),
+                needed: needed.into(),
+                limit: "max_storage_buffers_per_shader_stage",
+                available: available.into(),
+            });
+        }
+        let pipelines = scoped(&device, || Pipelines::new(&device))?;
+        Ok(Self { device, queue, pipelines, summary, lost })
+    }
+
+    /// The adapter in use.
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.summary
+    }
+
+    /// Fails if the device is lost: most calls on a lost device look as if they had worked.
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        match &*self.lost.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(message) => Err(GpuError::Lost(message.clone())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Every adapter there is, the one that would be chosen first in front.
+pub fn adapters() -> Vec<AdapterSummary> {
+    ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
+}
+
+/// Usable adapters, fastest kind first; of one device seen through two backends, the native one.
+fn ranked_adapters() -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        // Validation layers print to the caller's terminal.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let can_compute = |adapter: &wgpu::Adapter| {
+        let downlevel = adapter.get_downlevel_capabilities();
+        downlevel.flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+    };
+    adapters.retain(can_compute);
+    adapters.sort_by_key(|adapter| {
+        let info = adapter.get_info();
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Other => 3,
+            wgpu::DeviceType::Cpu => 4,
+        };
+        (kind, info.backend == wgpu::Backend::Gl)
+    });
+    adapters
+}
+
+/// Runs wgpu calls and turns whatever the device says about them into an error.
+pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let value = calls();
+    let internal = pollster::block_on(internal.pop());
+    let memory = pollster::block_on(memory.pop());
+    let validation = pollster::block_on(validation.pop());
+    if let Some(error) = memory {
+        return Err(GpuError::OutOfMemory(error.to_string()));
+    }
+    match internal.or(validation) {
+        Some(error) => Err(GpuError::Refused(error.to_string())),
+        None => Ok(value),
+    }
+}

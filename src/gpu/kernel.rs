@@ -1,0 +1,104 @@
+//! Pipelines: the only place that makes them, each once per device.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use super::device::{GpuError, scoped};
+use super::shaders::Kernel;
+
+/// How a kernel sees a binding of `shaders/common.wgsl`.
+const BINDINGS: [Binding; 9] = [
+    Binding::Uniform { dynamic: false },
+    Binding::Uniform { dynamic: true },
+    Binding::ReadWrite,
+    Binding::ReadOnly,
+    Binding::ReadOnly,
+    Binding::ReadOnly,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+];
+
+#[derive(Clone, Copy)]
+enum Binding {
+    Uniform { dynamic: bool },
+    ReadOnly,
+    ReadWrite,
+}
+
+impl Binding {
+    fn ty(self) -> wgpu::BindingType {
+        let (ty, has_dynamic_offset) = match self {
+            Binding::Uniform { dynamic } => (wgpu::BufferBindingType::Uniform, dynamic),
+            Binding::ReadOnly => (wgpu::BufferBindingType::Storage { read_only: true }, false),
+            Binding::ReadWrite => (wgpu::BufferBindingType::Storage { read_only: false }, false),
+        };
+        wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
+    }
+}
+
+/// Number of storage buffers a kernel sees, to be held against the device's limit.
+pub(crate) fn storage_bindings() -> u32 {
+    BINDINGS.iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
+}
+
+/// The pipelines of a device, all of one layout, made when first asked for.
+pub(crate) struct Pipelines {
+    pub(crate) bindings: wgpu::BindGroupLayout,
+    layout: wgpu::PipelineLayout,
+    made: Mutex<HashMap<Kernel, wgpu::ComputePipeline>>,
+}
+
+impl Pipelines {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let entries: Vec<_> = BINDINGS
+            .iter()
+            .zip(0..)
+            .map(|(kind, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: kind.ty(),
+                count: None,
+            })
+            .collect();
+        let bindings = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("gpu-smooth bindings"),
+            entries: &entries,
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("gpu-smooth layout"),
+            bind_group_layouts: &[Some(&bindings)],
+            immediate_size: 0,
+        });
+        Self { bindings, layout, made: Mutex::default() }
+    }
+
+    /// The pipeline of a kernel.
+    pub(crate) fn get(
+        &self,
+        device: &wgpu::Device,
+        kernel: &Kernel,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = made.get(kernel) {
+            return Ok(pipeline.clone());
+        }
+        let label = kernel.label();
+        let pipeline = scoped(device, || {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(&label),
+                source: wgpu::ShaderSource::Wgsl(kernel.wgsl().into()),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(&label),
+                layout: Some(&self.layout),
+                module: &module,
+                entry_point: Some(kernel.entry_point()),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
+        })?;
+        made.insert(kernel.clone(), pipeline.clone());
+        Ok(pipeline)
+    }
+}

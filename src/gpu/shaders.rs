@@ -1,0 +1,190 @@
+//! The kernels: one table of what there is, and the composition of their WGSL.
+
+use std::fmt::Write;
+
+use super::layout::{FINISH_WORKGROUP, HISTORY, WORKGROUP};
+use crate::metric::Metric;
+use crate::plan::{Derivatives, NOISE, Stop, line_search};
+
+/// What rounding in single precision may add to a patch's objective, relative to the sum of q².
+const SLACK: f64 = 1e-6;
+
+const COMMON: &str = include_str!("../../shaders/common.wgsl");
+const PATCH: &str = include_str!("../../shaders/patch.wgsl");
+const NEWTON: &str = include_str!("../../shaders/newton.wgsl");
+const FINITE_DIFFERENCE: &str = include_str!("../../shaders/finite_difference.wgsl");
+const OBJECTIVE: &str = include_str!("../../shaders/objective.wgsl");
+const FINISH: &str = include_str!("../../shaders/finish.wgsl");
+const KEEP_BEST: &str = include_str!("../../shaders/keep_best.wgsl");
+
+/// A compute kernel. Each is one WGSL module with one entry point and the bindings of
+/// `shaders/common.wgsl`, in core WebGPU.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Kernel {
+    /// Newton steps on the free vertices of one color.
+    Sweep(Metric, Derivatives),
+    /// Partial sums of the objectives of these metrics.
+    Objective(Vec<Metric>),
+    /// Completes the sums of these metrics, and judges.
+    Finish(Vec<Metric>),
+    /// Keeps the positions if they are the best so far.
+    KeepBest,
+}
+
+impl Kernel {
+    /// The name of the entry point.
+    pub fn entry_point(&self) -> &'static str {
+        match self {
+            Kernel::Sweep(..) => "sweep",
+            Kernel::Objective(_) => "objective",
+            Kernel::Finish(_) => "finish",
+            Kernel::KeepBest => "keep_best",
+        }
+    }
+
+    /// A label for tools such as RenderDoc.
+    pub fn label(&self) -> String {
+        match self {
+            Kernel::Sweep(metric, Derivatives::Analytic) => format!("gpu-smooth sweep {metric}"),
+            Kernel::Sweep(metric, Derivatives::FiniteDifference) => {
+                format!("gpu-smooth sweep {metric}, finite differences")
+            }
+            _ => format!("gpu-smooth {}", self.entry_point()),
+        }
+    }
+
+    /// The complete WGSL module.
+    pub fn wgsl(&self) -> String {
+        let mut source = constants();
+        source.push_str(COMMON);
+        match self {
+            Kernel::Sweep(metric, derivatives) => {
+                source.push_str(PATCH);
+                source.push_str(&active_metric(*metric, *derivatives));
+                source.push_str(NEWTON);
+            }
+            Kernel::Objective(metrics) => {
+                source.push_str(PATCH);
+                source.push_str(&tracked_metrics(metrics));
+                source.push_str(OBJECTIVE);
+            }
+            Kernel::Finish(metrics) => {
+                source.push_str(&tracked_slots(metrics));
+                source.push_str(FINISH);
+            }
+            Kernel::KeepBest => source.push_str(KEEP_BEST),
+        }
+        source
+    }
+}
+
+/// Constants shared with Rust.
+fn constants() -> String {
+    let mut text = String::new();
+    for (name, value) in [
+        ("WORKGROUP", WORKGROUP),
+        ("FINISH_WORKGROUP", FINISH_WORKGROUP),
+        ("HISTORY", HISTORY),
+        ("METRICS", Metric::ALL.len() as u32),
+        ("HISTORY_LENGTH", HISTORY * Metric::ALL.len() as u32),
+        ("TRIALS", line_search::TRIALS),
+    ] {
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    }
+    for (stop, code) in Stop::CODES {
+        let name = stop.name().to_uppercase().replace('-', "_");
+        let _ = writeln!(text, "const STOP_{name}: u32 = {code}u;");
+    }
+    for (name, value) in [
+        ("SUFFICIENT_DECREASE", line_search::SUFFICIENT_DECREASE),
+        ("SHORTEN_INFEASIBLE", line_search::SHORTEN_INFEASIBLE),
+        ("SHORTEN", line_search::SHORTEN),
+        ("DIFFERENCE", line_search::DIFFERENCE),
+        ("SLACK", SLACK),
+        ("NOISE", NOISE),
+    ] {
+        let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
+    }
+    text
+}
+
+/// The metric a sweep minimises, under the names newton.wgsl calls.
+fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
+    let properties = metric.properties();
+    let name = metric.name();
+    let guard = properties.shape_guard;
+    let mut text = properties.wgsl.to_owned();
+    let _ = write!(
+        text,
+        "
+const METRIC: u32 = {index}u;
+const EIGENVALUE_FLOOR: f32 = {floor:?}f;
+const IDEAL_SQUARED: f32 = {ideal:?}f;
+const QUADRATIC: bool = {quadratic};
+const GUARDED: bool = {guarded};
+const SHAPE_GUARD: f32 = {guard:?}f;
+fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
+",
+        index = metric as u32,
+        floor = properties.eigenvalue_floor,
+        ideal = metric.ideal_squared(),
+        quadratic = properties.quadratic,
+        guarded = guard.is_finite(),
+        guard = if guard.is_finite() { guard } else { 0.0 },
+    );
+    match derivatives {
+        Derivatives::Analytic => {
+            let _ = write!(
+                text,
+                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return {name}_derivatives(t); }}
+fn difference_width(p: Patch) -> f32 {{ return 0.0; }}
+"
+            );
+        }
+        Derivatives::FiniteDifference => {
+            let displacements: Vec<String> = line_search::DISPLACEMENTS
+                .iter()
+                .map(|[x, y]| format!("vec2({x}.0f, {y}.0f)"))
+                .collect();
+            let _ = write!(
+                text,
+                "const DISPLACEMENTS = array<vec2<f32>, 16>({});
+fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return differences(t, width); }}
+fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
+",
+                displacements.join(", ")
+            );
+            text.push_str(FINITE_DIFFERENCE);
+        }
+    }
+    text
+}
+
+/// The formulas of the tracked metrics, evaluated together.
+fn tracked_metrics(metrics: &[Metric]) -> String {
+    let mut text: String = metrics.iter().map(|m| m.properties().wgsl).collect();
+    let calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
+    let _ = write!(
+        text,
+        "const TRACKED: u32 = {count}u;
+fn tracked_excesses(t: Corner) -> array<f32, TRACKED> {{
+    return array<f32, TRACKED>({calls});
+}}
+",
+        count = metrics.len(),
+        calls = calls.join(", ")
+    );
+    text
+}
+
+/// Which metrics the tracked sums belong to.
+fn tracked_slots(metrics: &[Metric]) -> String {
+    let slots: Vec<String> = metrics.iter().map(|&m| format!("{}u", m as u32)).collect();
+    format!(
+        "const TRACKED: u32 = {count}u;
+const TRACKED_METRICS = array<u32, {count}>({slots});
+",
+        count = metrics.len(),
+        slots = slots.join(", ")
+    )
+}
