@@ -1,0 +1,68 @@
+//! Moves the interior vertices of 2D triangle meshes until the elements are as good as they can be,
+//! without ever inverting one: local feasible Newton sweeps over the vertices of one color at a time,
+//! in wgpu compute shaders or on the CPU.
+//!
+//! The method is that of J. Park and S. M. Shontz, *An Alternating Mesh Quality Metric Scheme for
+//! Efficient Mesh Quality Improvement*, Procedia Computer Science 4 (2011) 292-301: the objective
+//! f = (1/n) Σ q² over all triangles is lowered vertex by vertex, the boundary held fixed, and the
+//! metric q may change from sweep to sweep.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use gpu_smooth::{Backend, Mesh, Metric, Options, Smoother};
+//!
+//! // A square with one vertex inside, badly placed.
+//! let mesh = Mesh {
+//!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.2]],
+//!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+//!     fixed: vec![],
+//! };
+//! let smoother = Smoother::new(&mesh)?;
+//! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?)
+//! let outcome = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()))?;
+//! let [x, y] = outcome.points[4];
+//! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
+//! assert!(smoother.quality(&outcome.points).f(Metric::Imr) < 1.3334);
+//! # Ok::<(), gpu_smooth::SmoothError>(())
+//! ```
+//!
+//! By lifetime: a [`Gpu`] lives as long as the program and serves every mesh; a [`Smoother`] is one
+//! mesh prepared, as long as its triangles stay; a run is one call of [`Smoother::run`] with its
+//! [`Options`], and leaves an [`Outcome`]. Files are read and written by [`MeshFile`].
+//!
+//! Limits: triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
+//! 2³² vertices, and on a GPU no buffer larger than the device binds (128 MiB, the default limit, is
+//! eight million vertices).
+
+mod coloring;
+mod cpu;
+mod dual;
+mod engine;
+mod error;
+pub mod gpu;
+mod mesh;
+mod metric;
+mod options;
+mod plan;
+mod problem;
+mod quality;
+mod scheme;
+mod smoother;
+mod topology;
+pub mod validity;
+
+pub use coloring::{Coloring, UNCOLORED};
+pub use cpu::CpuEngine;
+pub use dual::{Dual, Real};
+pub use engine::{Engine, EngineError, Objectives};
+pub use error::{MeshError, ReadError, SmoothError, WriteError};
+pub use gpu::{Gpu, GpuError};
+pub use mesh::{Format, Mesh, MeshFile, Place};
+pub use metric::{Corner, Metric, Properties, UnknownMetric};
+pub use options::{Desired, Goal, Options};
+pub use plan::{Derivatives, Plan, Sharpness, Stop, StopRule};
+pub use problem::Problem;
+pub use quality::Quality;
+pub use scheme::Scheme;
+pub use smoother::{Backend, GoalOutcome, Outcome, Phase, Progress, Smoother};
+pub use topology::Topology;

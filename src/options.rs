@@ -1,0 +1,134 @@
+//! What a caller can ask for.
+
+use crate::error::SmoothError;
+use crate::metric::Metric;
+use crate::plan::{Derivatives, Plan, Sharpness, StopRule};
+use crate::scheme::Scheme;
+
+/// How to smooth. [`Options::default`] is IMR with over-relaxation until little is left to gain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The metric, or the metrics in turn. The first judges convergence.
+    pub scheme: Scheme,
+    /// The run ends after this many sweeps at the latest.
+    pub max_sweeps: u32,
+    /// The run ends when the estimated distance to its limit, relative to f, is below this. The
+    /// estimate extrapolates the decay over the last 16 or more sweeps, so it speaks of what
+    /// remains, not of the change in one sweep. 0 never ends a run.
+    pub tolerance: f64,
+    /// Ends the run at a share of the way to a desired objective; the tolerance then does not.
+    pub goal: Option<Goal>,
+    /// Over-relaxation: each Newton step is first tried at this multiple. `None` takes each metric's
+    /// own; 1 is the published method.
+    pub omega: Option<f64>,
+    /// Sweeps before over-relaxation starts.
+    pub plain_sweeps: u32,
+    /// Newton steps per visit of a vertex.
+    pub inner: u32,
+    /// How metrics are differentiated.
+    pub derivatives: Derivatives,
+    /// The exponent of the p-norm that stands in for EDGE in Newton's method.
+    pub sharpness: Sharpness,
+    /// Whether the history holds the objective of every metric.
+    pub track_all: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            scheme: Metric::Imr.into(),
+            max_sweeps: 1000,
+            tolerance: 1e-6,
+            goal: None,
+            omega: None,
+            plain_sweeps: 4,
+            inner: 1,
+            derivatives: Derivatives::Analytic,
+            sharpness: Sharpness::FIXED,
+            track_all: false,
+        }
+    }
+}
+
+impl Options {
+    /// The method as published: one plain Newton step, no over-relaxation.
+    pub fn paper(scheme: Scheme) -> Self {
+        Self { scheme, omega: Some(1.0), ..Self::default() }
+    }
+
+    /// Checks every field against its range.
+    pub(crate) fn check(&self) -> Result<(), SmoothError> {
+        let refuse = |option, value: f64, remedy| {
+            Err(SmoothError::Option { option, value: value.to_string(), remedy })
+        };
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return refuse("tolerance", self.tolerance, "it must be 0 or above");
+        }
+        if let Some(omega) = self.omega.filter(|omega| !(*omega > 0.0 && *omega < 2.0)) {
+            return refuse("omega", omega, "over-relaxation must be above 0 and below 2");
+        }
+        if self.inner == 0 {
+            return refuse("inner", 0.0, "a visit takes at least one Newton step");
+        }
+        if self.sharpness.first.max(self.sharpness.last) > Sharpness::MOST {
+            let most = f64::from(self.sharpness.first.max(self.sharpness.last));
+            return refuse("sharpness", most, "log2 k can be 10 at most");
+        }
+        if self.scheme.period() > Scheme::LONGEST {
+            let period = f64::from(self.scheme.period());
+            return refuse("scheme length", period, "a scheme can have 60 metrics at most");
+        }
+        match self.goal {
+            Some(Goal { fraction, .. }) if !(fraction > 0.0 && fraction <= 1.0) => {
+                refuse("fraction", fraction, "it must be above 0 and at most 1")
+            }
+            Some(Goal { desired: Desired::Value(desired), .. }) if !desired.is_finite() => {
+                refuse("desired", desired, "it must be a finite number")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Everything the engines need, with the run ending below `target` if there is one.
+    pub(crate) fn plan(&self, target: Option<f64>) -> Plan {
+        let omega = |&metric: &Metric| self.omega.unwrap_or(metric.properties().omega);
+        let mut by_metric = [1.0; Metric::ALL.len()];
+        for (slot, metric) in by_metric.iter_mut().zip(Metric::ALL) {
+            *slot = omega(metric);
+        }
+        Plan {
+            scheme: self.scheme.clone(),
+            omega: by_metric,
+            plain_sweeps: self.plain_sweeps,
+            inner: self.inner.max(1),
+            derivatives: self.derivatives,
+            sharpness: self.sharpness,
+            stop: StopRule {
+                target,
+                tolerance: if target.is_some() { 0.0 } else { self.tolerance },
+                max_sweeps: self.max_sweeps,
+            },
+            track_all: self.track_all,
+        }
+    }
+}
+
+/// The convergence test of Park & Shontz, equation (2): the run is done when
+/// f_initial - f > fraction · (f_initial - f_desired), f by the base metric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// The share of the way to go; the paper's is 0.95.
+    pub fraction: f64,
+    /// Where the way leads.
+    pub desired: Desired,
+}
+
+/// The objective a [`Goal`] is measured by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Desired {
+    /// This value.
+    Value(f64),
+    /// The fully converged optimum of the base metric, which is found first: the better of the base
+    /// metric alone and of the base metric after IMR, both over-relaxed.
+    Auto,
+}
