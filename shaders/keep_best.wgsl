@@ -1,4 +1,4 @@
-// Copies the positions when they are the best so far by the base metric.
+// Copies the free vertices' positions when they are the best so far by the base metric.
 
 @compute @workgroup_size(WORKGROUP)
 fn keep_best(
@@ -6,7 +6,7 @@ fn keep_best(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let vertex = invocation(id, groups);
-    if control.improved != 0u && vertex < arrayLength(&positions) {
+    if control.improved != 0u && vertex < arrayLength(&best_positions) {
         best_positions[vertex] = positions[vertex];
     }
 }

@@ -117,11 +117,12 @@ impl Problem {
         self.mean_area
     }
 
-    /// Puts normalised positions back in the mesh's order and units. A vertex that did not move
-    /// keeps its bits.
+    /// Puts normalised positions back in the mesh's order and units. A vertex that is fixed or did
+    /// not move keeps its bits.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();
-        for ((&v, &now), &was) in self.vertices.iter().zip(positions).zip(&self.positions) {
+        let free = self.vertices[..self.free_count()].iter();
+        for ((&v, &now), &was) in free.zip(positions).zip(&self.positions) {
             if now != was {
                 points[v as usize] = (self.center + now / self.scale).to_array();
             }

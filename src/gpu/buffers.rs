@@ -86,7 +86,8 @@ impl Buffers {
             };
             let readable = Usage::STORAGE | Usage::COPY_SRC;
             let bytes = bytemuck::cast_slice::<[f32; 4], u8>(&positions);
-            let best_bytes = if plan.scheme.is_monotone() { 16 } else { position_bytes };
+            let kept = if plan.scheme.is_monotone() { 1 } else { problem.free_count() as u64 };
+            let best_bytes = size_of::<[f32; 4]>() as u64 * kept;
             let pair_bytes = size_of::<[f32; 2]>() as u64;
 
             let params = filled("gpu-smooth params", bytemuck::bytes_of(&params), Usage::UNIFORM);
@@ -168,7 +169,7 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
 }
 
 /// A position as pairs of floats, laid out xy + zw.
-fn split(p: DVec2) -> [f32; 4] {
+pub(crate) fn split(p: DVec2) -> [f32; 4] {
     let ([x, x_low], [y, y_low]) = (pair(p.x), pair(p.y));
     [x, y, x_low, y_low]
 }

@@ -166,29 +166,32 @@ pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
 
-/// Usable adapters, fastest kind first; of one device seen through two backends, the native one.
+/// Usable adapters, fastest kind first. OpenGL is only looked at where there is nothing better: it
+/// shows the same devices again, and its driver is slow to start.
 fn ranked_adapters() -> Vec<wgpu::Adapter> {
+    let native = usable_adapters(wgpu::Backends::PRIMARY);
+    if native.is_empty() { usable_adapters(wgpu::Backends::SECONDARY) } else { native }
+}
+
+fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
         // Validation layers print to the caller's terminal.
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
     let can_compute = |adapter: &wgpu::Adapter| {
         let downlevel = adapter.get_downlevel_capabilities();
         downlevel.flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
     };
     adapters.retain(can_compute);
-    adapters.sort_by_key(|adapter| {
-        let info = adapter.get_info();
-        let kind = match info.device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu => 2,
-            wgpu::DeviceType::Other => 3,
-            wgpu::DeviceType::Cpu => 4,
-        };
-        (kind, info.backend == wgpu::Backend::Gl)
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
     });
     adapters
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::buffers::{Buffers, join};
+use super::buffers::{Buffers, join, split};
 use super::device::{Gpu, GpuError, scoped};
 use super::layout::{Control, HISTORY, WORKGROUP, unpair};
 use super::readback;
@@ -19,6 +19,7 @@ const FOLD: u32 = 32768;
 pub struct GpuEngine<'a> {
     gpu: &'a Gpu,
     problem: &'a Problem,
+    start: &'a [DVec2],
     plan: Plan,
     buffers: Buffers,
     sweeps: Vec<(Metric, wgpu::ComputePipeline)>,
@@ -31,7 +32,7 @@ pub struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `positions` (normalised and in the problem's order)
+    /// Uploads the problem with its vertices at `start` (normalised and in the problem's order)
     /// and makes the pipelines the plan needs.
     ///
     /// # Errors
@@ -39,11 +40,11 @@ impl<'a> GpuEngine<'a> {
     pub fn new(
         gpu: &'a Gpu,
         problem: &'a Problem,
-        positions: &[DVec2],
+        start: &'a [DVec2],
         plan: Plan,
     ) -> Result<Self, GpuError> {
         gpu.check()?;
-        let buffers = Buffers::new(gpu, problem, positions, &plan)?;
+        let buffers = Buffers::new(gpu, problem, start, &plan)?;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel);
         let mut sweeps: Vec<(Metric, wgpu::ComputePipeline)> = Vec::new();
         for &metric in plan.scheme.metrics() {
@@ -60,6 +61,7 @@ impl<'a> GpuEngine<'a> {
         Ok(Self {
             gpu,
             problem,
+            start,
             plan,
             buffers,
             sweeps,
@@ -116,7 +118,7 @@ impl<'a> GpuEngine<'a> {
         pass.dispatch_workgroups(1, 1, 1);
         if let Some(keep_best) = &self.keep_best {
             pass.set_pipeline(keep_best);
-            dispatch(pass, self.problem.positions().len() as u32);
+            dispatch(pass, self.problem.free_count() as u32);
         }
     }
 
@@ -163,9 +165,17 @@ impl Engine for GpuEngine<'_> {
             Some(_) => &self.buffers.best,
             None => &self.buffers.positions,
         };
-        let count = self.problem.positions().len();
-        let positions: Vec<[f32; 4]> = readback::read(self.gpu, buffer, count)?;
-        Ok(positions.into_iter().map(join).collect())
+        // Fixed vertices have not moved, and a free one that has not keeps all its bits, which the
+        // device's pairs of floats do not hold.
+        let free = self.problem.free_count();
+        let moved: Vec<[f32; 4]> = readback::read(self.gpu, buffer, free)?;
+        let mut positions = self.start.to_vec();
+        for (position, now) in positions.iter_mut().zip(moved) {
+            if now != split(*position) {
+                *position = join(now);
+            }
+        }
+        Ok(positions)
     }
 }
 

@@ -102,3 +102,52 @@ impl Pipelines {
         Ok(pipeline)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use naga::{AddressSpace, StorageAccess};
+
+    use super::*;
+    use crate::metric::Metric;
+    use crate::plan::Derivatives;
+
+    fn kernels() -> Vec<Kernel> {
+        let all = Metric::ALL.to_vec();
+        let sweep = |&metric| Kernel::Sweep(metric, Derivatives::Analytic);
+        let mut kernels: Vec<_> = all.iter().map(sweep).collect();
+        let differences = |&metric| Kernel::Sweep(metric, Derivatives::FiniteDifference);
+        kernels.extend(all.iter().map(differences));
+        kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
+        kernels
+    }
+
+    #[test]
+    fn every_kernel_declares_the_bindings_of_the_one_layout() {
+        for kernel in kernels() {
+            let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
+            let bound = module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?, v)));
+            let mut spaces: Vec<_> = bound
+                .map(|(at, variable)| (at.group, at.binding as usize, variable.space))
+                .collect();
+            spaces.sort_unstable_by_key(|&(group, binding, _)| (group, binding));
+            let wanted = BINDINGS.iter().enumerate().map(|(i, binding)| {
+                let space = match binding {
+                    Binding::Uniform { .. } => AddressSpace::Uniform,
+                    Binding::ReadOnly => AddressSpace::Storage { access: StorageAccess::LOAD },
+                    Binding::ReadWrite => {
+                        AddressSpace::Storage { access: StorageAccess::LOAD | StorageAccess::STORE }
+                    }
+                };
+                (0, i, space)
+            });
+            assert_eq!(spaces, wanted.collect::<Vec<_>>(), "{}", kernel.label());
+        }
+    }
+
+    #[test]
+    fn storage_bindings_fit_the_default_limits() {
+        let declared = wgpu::Limits::default().max_storage_buffers_per_shader_stage;
+        assert_eq!(storage_bindings(), 7);
+        assert!(storage_bindings() <= declared);
+    }
+}

@@ -68,3 +68,73 @@ pub(crate) fn pair(x: f64) -> [f32; 2] {
 pub(crate) fn unpair([high, low]: [f32; 2]) -> f64 {
     f64::from(high) + f64::from(low)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::Kernel;
+
+    /// Size, and name and offset of each member but padding, of a struct as naga lays it out.
+    fn reflected(name: &str) -> (usize, Vec<(String, usize)>) {
+        let module = naga::front::wgsl::parse_str(&Kernel::KeepBest.wgsl()).unwrap();
+        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct");
+        };
+        let named = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
+        (*span as usize, named.filter(|(name, _)| name != "padding").collect())
+    }
+
+    macro_rules! mirrors {
+        ($mirror:ident { $($field:ident),* $(,)? }) => {
+            let offsets = vec![$((stringify!($field).to_owned(), offset_of!($mirror, $field))),*];
+            assert_eq!(reflected(stringify!($mirror)), (size_of::<$mirror>(), offsets));
+            // Nothing but padding is left out above: the pattern names every other field.
+            let $mirror { $($field: _,)* .. } = $mirror::zeroed();
+        };
+    }
+
+    #[test]
+    fn structs_are_laid_out_as_in_wgsl() {
+        mirrors!(Params {
+            zero,
+            triangles,
+            partials,
+            plain_sweeps,
+            inner,
+            sharpness_first,
+            sharpness_every,
+            sharpness_last,
+            base,
+            window,
+            max_sweeps,
+            has_target,
+            target_sum,
+            ideal_sum,
+            tolerance,
+            mean_area,
+            omega,
+        });
+        mirrors!(Color { first, count });
+        mirrors!(Control { done, evaluated, improved, best_sweep, best_sum, history });
+    }
+
+    #[test]
+    fn a_uniform_holds_only_what_16_byte_rows_allow() {
+        // In a uniform an array's elements must be multiples of 16 bytes apart.
+        assert_eq!(offset_of!(Params, omega) % 16, 0);
+        assert_eq!(size_of::<Params>() % 16, 0);
+        assert!(size_of::<Params>() <= 256, "within the least dynamic offset alignment");
+    }
+
+    #[test]
+    fn pairs_of_floats_keep_48_bits() {
+        for x in [1.0, -std::f64::consts::PI, 1e-3, 4_000_000.123_456_789, -1.0 / 3.0] {
+            let [high, low] = pair(x);
+            assert_eq!(high, x as f32);
+            assert!((unpair([high, low]) - x).abs() <= x.abs() * 2f64.powi(-48), "{x}");
+        }
+    }
+}

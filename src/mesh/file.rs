@@ -144,6 +144,11 @@ impl MeshFile {
         MeshFile { mesh, format, notes, x_at, sources }
     }
 
+    /// The file that was read; of a Triangle mesh its `.node`.
+    pub fn path(&self) -> &Path {
+        &self.sources[0].path
+    }
+
     /// The mesh, vertices and triangles in the order of the file.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh

@@ -1,0 +1,201 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use gpu_smooth::{Derivatives, Desired, Goal, Options, Scheme, Sharpness};
+
+/// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
+/// without inverting one. OUT is IN but for the coordinates of vertices that moved.
+#[derive(Parser)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Boundary vertices and those on constraint lines stay where they are. Formats: \
+                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII).\n\n\
+                  Examples:\n  \
+                  gpu-smooth coast.msh better.msh\n  \
+                  gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
+                  gpu-smooth quality better.msh"
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) smooth: SmoothArgs,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Tells how good a mesh is
+    Quality(QualityArgs),
+    /// Lists the GPU adapters there are, the one taken by default first
+    Adapters,
+    /// Tells what each metric measures and what it is good for
+    Metrics,
+}
+
+#[derive(Args)]
+pub(crate) struct QualityArgs {
+    /// The mesh
+    pub(crate) mesh: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(group = ArgGroup::new("relaxation").args(["omega", "method"]))]
+pub(crate) struct SmoothArgs {
+    /// The mesh to read; its format is told by its content
+    #[arg(required = true, value_name = "IN")]
+    pub(crate) input: Option<PathBuf>,
+    /// Where to write the smoothed mesh, in the format of IN; may be IN itself
+    #[arg(required = true, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
+    /// convergence. Metrics: edge, area, rms, imr, ar (see `gpu-smooth metrics`)
+    #[arg(long, default_value = "imr", value_name = "A[+B...]")]
+    pub(crate) scheme: Scheme,
+
+    /// Where to compute: on a GPU adapter (software ones included) if there is one, else on the CPU
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) engine: EngineChoice,
+    /// Take the first adapter with NAME in its name
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+
+    /// Stop after N sweeps at the latest
+    #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Stopping")]
+    pub(crate) max_sweeps: u32,
+    /// Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep
+    #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = tolerance)]
+    pub(crate) tolerance: f64,
+    /// Stop at this share of the way from the first f to the desired one, instead of at the
+    /// tolerance; 0.95 is the paper's [default with --desired: 0.95]
+    #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction)]
+    pub(crate) fraction: Option<f64>,
+    /// The desired f by the first metric; auto finds the optimum before the run [default with
+    /// --fraction: auto]
+    #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired)]
+    pub(crate) desired: Option<Desired>,
+
+    /// Over-relaxed steps, or the paper's plain ones (the same as --omega 1)
+    #[arg(long, value_enum, default_value = "relaxed", help_heading = "Method")]
+    pub(crate) method: Method,
+    /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`]
+    #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega)]
+    pub(crate) omega: Option<f64>,
+    /// Newton steps per visit of a vertex
+    #[arg(long, default_value_t = 1, value_name = "N", help_heading = "Method", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) inner: u32,
+    /// How metrics are differentiated; finite differences only serve to test the paper's cost model
+    #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
+    pub(crate) derivatives: DerivativesChoice,
+    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 to 512,
+    /// which ends lower after more sweeps
+    #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
+    pub(crate) edge_norm: EdgeNorm,
+
+    /// Write a report with the history of every sweep, as JSON
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) report: Option<PathBuf>,
+    /// What f the report's history holds: the first metric's, or every metric's
+    #[arg(long, value_enum, default_value = "base", help_heading = "Output")]
+    pub(crate) history: History,
+    /// Print errors only
+    #[arg(short, long, conflicts_with = "verbose", help_heading = "Output")]
+    pub(crate) quiet: bool,
+    /// Print every sweep
+    #[arg(short, long, help_heading = "Output")]
+    pub(crate) verbose: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EngineChoice {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    Relaxed,
+    Paper,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DerivativesChoice {
+    Analytic,
+    FiniteDifference,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EdgeNorm {
+    Fixed,
+    Continued,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum History {
+    Base,
+    All,
+}
+
+impl SmoothArgs {
+    /// What the library is asked to do.
+    pub(crate) fn options(&self) -> Options {
+        let has_goal = self.fraction.is_some() || self.desired.is_some();
+        Options {
+            scheme: self.scheme.clone(),
+            max_sweeps: self.max_sweeps,
+            tolerance: self.tolerance,
+            goal: has_goal.then(|| Goal {
+                fraction: self.fraction.unwrap_or(0.95),
+                desired: self.desired.unwrap_or(Desired::Auto),
+            }),
+            omega: match self.method {
+                Method::Paper => Some(1.0),
+                Method::Relaxed => self.omega,
+            },
+            inner: self.inner,
+            derivatives: match self.derivatives {
+                DerivativesChoice::Analytic => Derivatives::Analytic,
+                DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
+            },
+            sharpness: match self.edge_norm {
+                EdgeNorm::Fixed => Sharpness::FIXED,
+                EdgeNorm::Continued => Sharpness::CONTINUED,
+            },
+            track_all: self.history == History::All,
+            ..Options::default()
+        }
+    }
+}
+
+/// Parses a number and refuses those for which `fits` does not hold.
+fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("not a number; it must be {range}"))?;
+    if fits(value) { Ok(value) } else { Err(format!("it must be {range}")) }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, |t| t >= 0.0 && t.is_finite(), "0 or above")
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+}
+
+fn omega(text: &str) -> Result<f64, String> {
+    number(text, |w| w > 0.0 && w < 2.0, "above 0 and below 2")
+}
+
+fn desired(text: &str) -> Result<Desired, String> {
+    match text {
+        "auto" => Ok(Desired::Auto),
+        _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
+    }
+}

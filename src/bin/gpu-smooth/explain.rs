@@ -1,0 +1,51 @@
+//! What is wrong with a mesh, in the terms of its file.
+
+use gpu_smooth::{MeshError, MeshFile};
+
+/// One line: file, place, problem, remedy.
+pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
+    let name = |v: u32| file.vertex_place(v).label;
+    match *error {
+        MeshError::Infeasible { count, first, vertices, flat } => {
+            let place = file.triangle_place(first);
+            let [a, b, c] = vertices.map(name);
+            let bad = if flat { "flat" } else { "inverted" };
+            let which = match count {
+                1 => format!("triangle {} (vertices {a}, {b}, {c}) is {bad}", place.label),
+                _ => format!(
+                    "{count} triangles are inverted or flat, the first is triangle {} (vertices {a}, {b}, {c}), which is {bad}",
+                    place.label
+                ),
+            };
+            format!(
+                "{place}: {which}. Untangle the mesh first: smoothing keeps triangles from \
+                 inverting, and cannot turn one back"
+            )
+        }
+        MeshError::EdgeOfThree { edge, ref triangles } => {
+            let places: Vec<_> = triangles.iter().map(|&t| file.triangle_place(t)).collect();
+            let labels: Vec<_> = places.iter().map(|place| place.label.to_string()).collect();
+            let [a, b] = edge.map(name);
+            format!(
+                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). In a 2D mesh \
+                 an edge has one or two: remove the others",
+                places.last().map(ToString::to_string).unwrap_or_default(),
+                labels.len(),
+                labels.join(", ")
+            )
+        }
+        MeshError::NotFinite { vertex } => {
+            format!("{}: {error}. Correct the line", file.vertex_place(vertex))
+        }
+        MeshError::NothingFree { .. } => format!(
+            "{}: {error}: all are on the boundary, on constraint lines or of other elements. There is \
+             nothing to smooth",
+            file.path().display()
+        ),
+        // The readers do not let these pass.
+        MeshError::Empty
+        | MeshError::TooLarge { .. }
+        | MeshError::IndexOutOfRange { .. }
+        | MeshError::RepeatedVertex { .. } => format!("{}: {error}", file.path().display()),
+    }
+}

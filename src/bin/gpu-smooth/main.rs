@@ -1,0 +1,31 @@
+//! The `gpu-smooth` command: reads a mesh, smooths it, writes it back with nothing else changed.
+
+mod cli;
+mod engine;
+mod explain;
+mod progress;
+mod report;
+mod smooth;
+mod tell;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use cli::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match &cli.command {
+        Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Adapters) => tell::adapters(),
+        Some(Command::Metrics) => tell::metrics(),
+        None => smooth::run(&cli.smooth),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            tell::error(&message);
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! What a run did, as JSON and as a table.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use gpu_smooth::{Metric, Outcome, Quality, Scheme};
+use serde::Serialize;
+
+/// The report of a run. Times are in seconds, angles in degrees.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    pub(crate) engine: EngineReport,
+    pub(crate) mesh: MeshReport,
+    pub(crate) scheme: String,
+    pub(crate) sweeps: u32,
+    /// The sweep whose state was written.
+    pub(crate) best_sweep: u32,
+    /// reached, converged, stalled or max-sweeps.
+    pub(crate) stop: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) goal: Option<GoalReport>,
+    /// Vertices put back because rounding had inverted a triangle.
+    pub(crate) returned: usize,
+    pub(crate) before: QualityReport,
+    pub(crate) after: QualityReport,
+    pub(crate) history: Vec<SweepReport>,
+    pub(crate) seconds: Seconds,
+}
+
+#[derive(Serialize)]
+pub(crate) struct EngineReport {
+    /// gpu or cpu.
+    pub(crate) kind: &'static str,
+    pub(crate) adapter: Option<String>,
+    pub(crate) driver: Option<String>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct MeshReport {
+    pub(crate) format: String,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) free: usize,
+    pub(crate) colors: usize,
+}
+
+#[derive(Serialize)]
+pub(crate) struct GoalReport {
+    pub(crate) fraction: f64,
+    pub(crate) desired: f64,
+    pub(crate) origin: String,
+    pub(crate) reached: bool,
+    pub(crate) best_fraction: f64,
+}
+
+#[derive(Serialize)]
+pub(crate) struct QualityReport {
+    /// By metric.
+    pub(crate) f: BTreeMap<&'static str, f64>,
+    pub(crate) min_angle: f64,
+    pub(crate) max_angle: f64,
+    pub(crate) worst_imr: f64,
+    /// Among triangles with a free vertex.
+    pub(crate) worst_movable_imr: f64,
+    pub(crate) inverted: usize,
+}
+
+#[derive(Serialize)]
+pub(crate) struct SweepReport {
+    pub(crate) sweep: u32,
+    /// The metric this sweep minimised; none before the first.
+    pub(crate) metric: Option<&'static str>,
+    /// The base metric's objective after the sweep.
+    pub(crate) f: f64,
+    /// Every metric's, where asked for.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) all: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) prepare: f64,
+    pub(crate) smooth: f64,
+    pub(crate) write: f64,
+    pub(crate) total: f64,
+}
+
+impl From<&Quality> for QualityReport {
+    fn from(quality: &Quality) -> Self {
+        Self {
+            f: Metric::ALL.iter().map(|&m| (m.name(), quality.f(m))).collect(),
+            min_angle: quality.min_angle,
+            max_angle: quality.max_angle,
+            worst_imr: quality.worst_imr,
+            worst_movable_imr: quality.worst_movable_imr,
+            inverted: quality.inverted,
+        }
+    }
+}
+
+/// The history of a run, sweep by sweep.
+pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
+    let one = |(sweep, objectives): (u32, &gpu_smooth::Objectives)| SweepReport {
+        sweep,
+        metric: (sweep > 0).then(|| scheme.metric(sweep).name()),
+        f: objectives.of(scheme.base()).unwrap_or(f64::NAN),
+        all: match all {
+            false => BTreeMap::new(),
+            true => Metric::ALL
+                .iter()
+                .filter_map(|&m| objectives.of(m).map(|f| (m.name(), f)))
+                .collect(),
+        },
+    };
+    (0..).zip(&outcome.history).map(one).collect()
+}
+
+impl Report {
+    /// The summary for the terminal: what was done, before and after, and where the time went.
+    pub(crate) fn summary(&self) -> String {
+        let mut text = String::new();
+        let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
+        let _ = writeln!(
+            text,
+            "{vertices} vertices ({free} free, {colors} colors), {triangles} triangles"
+        );
+        let on = self.engine.adapter.as_deref().unwrap_or("all cores");
+        let _ = writeln!(text, "{} on {} ({on})", self.scheme, self.engine.kind);
+        text.push('\n');
+        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
+        let mut row = |name: &str, before: String, after: String| {
+            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
+        };
+        let base = self.scheme.split('+').next().unwrap_or("imr");
+        let mut metrics = vec![base];
+        if !matches!(base, "imr" | "ar") {
+            metrics.push("imr");
+        }
+        for metric in metrics {
+            row(&format!("f {metric}"), six(self.before.f[metric]), six(self.after.f[metric]));
+        }
+        let angle = |a: f64| format!("{a:.2}°");
+        row("min angle", angle(self.before.min_angle), angle(self.after.min_angle));
+        row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
+        row("worst imr", six(self.before.worst_imr), six(self.after.worst_imr));
+        if self.after.worst_movable_imr < self.after.worst_imr {
+            let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
+            row("  of movable", six(before), six(after));
+        }
+        row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
+        let _ = writeln!(text, "\n{}", self.ending());
+        let Seconds { read, prepare, smooth, write, total } = self.seconds;
+        let _ = write!(
+            text,
+            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
+        );
+        text
+    }
+
+    /// Why the run ended, in a sentence.
+    fn ending(&self) -> String {
+        let sweeps = self.sweeps;
+        let mut text = match (self.stop, &self.goal) {
+            (stop, Some(goal)) => {
+                let went = format!(
+                    "{} % of the way to f = {}",
+                    percent(goal.best_fraction),
+                    six(goal.desired)
+                );
+                match (goal.reached, stop) {
+                    (true, _) => format!("reached after {sweeps} sweeps: {went}"),
+                    (false, "stalled") => {
+                        format!("not reached: no more progress after {sweeps} sweeps, {went}")
+                    }
+                    (false, _) => format!("not reached after {sweeps} sweeps (the most): {went}"),
+                }
+            }
+            ("converged", None) => format!("converged after {sweeps} sweeps"),
+            ("stalled", None) => format!("no more progress after {sweeps} sweeps"),
+            (_, None) => format!(
+                "stopped after {sweeps} sweeps, the most allowed; more may gain more (--max-sweeps)"
+            ),
+        };
+        if self.best_sweep != sweeps {
+            let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
+        }
+        if self.returned > 0 {
+            let _ = write!(text, "; {} vertices put back, for rounding", self.returned);
+        }
+        text
+    }
+}
+
+/// About six significant digits.
+pub(crate) fn six(x: f64) -> String {
+    match x.abs() {
+        a if !a.is_finite() => "infinite".into(),
+        a if (1e-4..1e6).contains(&a) || a == 0.0 => {
+            let before_point = if a < 1.0 { 1 } else { a.log10().floor() as usize + 1 };
+            format!("{x:.*}", 7usize.saturating_sub(before_point).max(1))
+        }
+        _ => format!("{x:.4e}"),
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2}", (share * 1e4).floor() / 1e2)
+}

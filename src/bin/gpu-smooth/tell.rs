@@ -1,0 +1,100 @@
+//! Everything that is printed, and the commands that only print.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use std::io::Write;
+
+use gpu_smooth::{Metric, Quality, Topology};
+
+use crate::cli::QualityArgs;
+use crate::explain;
+use crate::report::{QualityReport, six};
+use crate::smooth::read;
+
+/// Prints what the user asked for. A reader that went away, as `head` does, is no error.
+pub(crate) fn say(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Prints a remark to standard error, unless the user wants none.
+pub(crate) fn note(quiet: bool, text: &str) {
+    if !quiet {
+        eprintln!("gpu-smooth: {text}");
+    }
+}
+
+pub(crate) fn error(text: &str) {
+    eprintln!("gpu-smooth: error: {text}");
+}
+
+/// `gpu-smooth quality MESH`.
+pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
+    let file = read(&args.mesh)?;
+    let mesh = file.mesh();
+    let topology = Topology::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
+    let quality = Quality::of(&mesh.points, &topology);
+    let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
+    let free = topology.free_count();
+    if args.json {
+        let mut value =
+            serde_json::to_value(QualityReport::from(&quality)).map_err(|e| e.to_string())?;
+        value["vertices"] = vertices.into();
+        value["triangles"] = triangles.into();
+        value["free"] = free.into();
+        say(&format!("{value:#}"));
+        return Ok(());
+    }
+    say(&format!("{}: {}", args.mesh.display(), file.format()));
+    for remark in file.notes() {
+        say(remark);
+    }
+    say(&format!("{vertices} vertices ({free} free), {triangles} triangles\n"));
+    for &metric in Metric::ALL {
+        say(&format!("{:<22}{:>12}", format!("f {metric}"), six(quality.f(metric))));
+    }
+    say(&format!("{:<22}{:>11.2}°", "min angle", quality.min_angle));
+    say(&format!("{:<22}{:>11.2}°", "max angle", quality.max_angle));
+    let worst = file.triangle_place(quality.worst_triangle);
+    let at = format!("  triangle {} ({worst})", worst.label);
+    say(&format!("{:<22}{:>12}{at}", "worst imr", six(quality.worst_imr)));
+    if quality.worst_movable_imr < quality.worst_imr {
+        let movable = six(quality.worst_movable_imr);
+        say(&format!(
+            "{:<22}{movable:>12}  among triangles with a free vertex",
+            "worst imr movable"
+        ));
+    }
+    say(&format!("{:<22}{:>12}", "inverted or flat", quality.inverted));
+    Ok(())
+}
+
+/// `gpu-smooth adapters`.
+pub(crate) fn adapters() -> Result<(), String> {
+    let adapters = gpu_smooth::gpu::adapters();
+    if adapters.is_empty() {
+        say("no GPU adapter; runs are done on the CPU");
+    }
+    for adapter in adapters {
+        say(&format!(
+            "{} ({}, {}; {})",
+            adapter.name, adapter.kind, adapter.backend, adapter.driver
+        ));
+    }
+    Ok(())
+}
+
+/// `gpu-smooth metrics`.
+pub(crate) fn metrics() -> Result<(), String> {
+    for metric in Metric::ALL {
+        let row = metric.properties();
+        say(&format!("{:<5} q = {}", row.name, row.formula));
+        say(&format!("      {}", row.purpose));
+        let barrier = if row.barrier { "barrier at zero area" } else { "no barrier" };
+        let guard = match row.shape_guard {
+            guard if guard.is_finite() => format!(", shape guard at imr {guard}"),
+            _ => String::new(),
+        };
+        say(&format!("      best q {}, {barrier}{guard}, omega {}", row.ideal, row.omega));
+        say(&format!("      {}\n", row.citation));
+    }
+    Ok(())
+}
