@@ -18,10 +18,10 @@ fn gain(earlier: u32, later: u32) -> f32 {
 fn remaining(last: u32, window: u32) -> f32 {
     let before = gain(last - 2u * window, last - window);
     let now = gain(last - window, last);
-    if now >= before {
-        return 3.0e38;
+    if now > 0.0 && now < before {
+        return now * now / (before - now);
     }
-    return now * now / (before - now);
+    return 3.0e38;
 }
 
 fn judge(last: u32) -> u32 {
@@ -29,10 +29,11 @@ fn judge(last: u32) -> u32 {
     if params.has_target != 0u && pair_less(sum, params.target_sum) {
         return STOP_REACHED;
     }
-    if last >= 2u * params.window {
+    if last >= 2u * params.window && (params.has_target != 0u || params.tolerance > 0.0) {
         let scale = sum.x + params.ideal_sum;
-        if gain(last - params.window, last) <= NOISE * scale {
-            if params.has_target == 0u && params.tolerance > 0.0 {
+        let still = abs(gain(last - params.window, last)) <= NOISE * scale;
+        if still || last - control.best_sweep >= 2u * params.window {
+            if still && params.has_target == 0u {
                 return STOP_CONVERGED;
             }
             return STOP_STALLED;

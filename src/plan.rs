@@ -49,7 +49,8 @@ pub enum Stop {
     Reached,
     /// What is left to gain is estimated below the tolerance.
     Converged,
-    /// The base objective no longer improves, though the goal is not reached.
+    /// The base objective no longer improves: a goal is not reached, or an alternating scheme has
+    /// drifted away from the base metric's optimum.
     Stalled,
     /// The largest number of sweeps was done.
     MaxSweeps,
@@ -101,24 +102,24 @@ impl StopRule {
     }
 
     /// Judges after the last sweep of `history`, the base objective before the first sweep and
-    /// after each. The same rule as in `shaders/finish.wgsl`.
-    pub fn judge(&self, history: &[f64], window: usize) -> Option<Stop> {
+    /// after each. `best` is the sweep with the least of them. The same rule as in
+    /// `shaders/finish.wgsl`.
+    pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
         let last = history.len() - 1;
         let f = history[last];
         if self.target.is_some_and(|target| f < target) {
             return Some(Stop::Reached);
         }
-        if last >= 2 * window {
-            let remaining = |w: usize| {
-                let gain = history[last - w] - f;
-                remaining_gain(history[last - 2 * w] - history[last - w], gain)
-            };
-            let gained = history[last - window] - f;
-            if gained <= NOISE * f {
+        if last >= 2 * window && (self.target.is_some() || self.tolerance > 0.0) {
+            let gain = |from: usize, to: usize| history[from] - history[to];
+            let still = gain(last - window, last).abs() <= NOISE * f;
+            if still || last - best >= 2 * window {
                 // Nothing happens any more. Without a goal that is what was asked for.
-                let done = self.target.is_none() && self.tolerance > 0.0;
+                let done = still && self.target.is_none();
                 return Some(if done { Stop::Converged } else { Stop::Stalled });
             }
+            let remaining =
+                |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
             // Twice the estimate, as slow modes outlast those that a window sees.
             if 2.0 * remaining(window).max(remaining(window / 2)) <= self.tolerance * f {
                 return Some(Stop::Converged);
@@ -128,9 +129,10 @@ impl StopRule {
     }
 }
 
-/// What a geometric decay would still gain, from the gains of two successive windows.
+/// What a geometric decay would still gain, from the gains of two successive windows; infinite where
+/// these are none.
 fn remaining_gain(before: f64, gain: f64) -> f64 {
-    if gain >= before { f64::INFINITY } else { gain * gain / (before - gain) }
+    if gain > 0.0 && gain < before { gain * gain / (before - gain) } else { f64::INFINITY }
 }
 
 /// Everything both engines need to know to do the same sweeps.
@@ -220,7 +222,8 @@ mod tests {
     #[test]
     fn a_geometric_decay_ends_at_its_tolerance() {
         let history: Vec<f64> = (0..400).map(|k| 1.0 + 0.9f64.powi(k)).collect();
-        let ends = (1..400).find(|&n| rule(None, 1e-6).judge(&history[..n], 8).is_some()).unwrap();
+        let ends =
+            (1..400).find(|&n| rule(None, 1e-6).judge(&history[..n], n - 1, 8).is_some()).unwrap();
         let left = history[ends - 1] - 1.0;
         assert!(left <= 1e-6 && left > 0.25e-6, "{left:e} left at the end");
     }
@@ -230,14 +233,23 @@ mod tests {
         // A steep drop, then a slow decay: what a strongly perturbed mesh does.
         let slow = |k: i32| 1.0 + 100.0 * 0.1f64.powi(k) + 1e-2 * 0.99f64.powi(k);
         let history: Vec<f64> = (0..30).map(slow).collect();
-        assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], 8).is_none()));
+        assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], n - 1, 8).is_none()));
+    }
+
+    #[test]
+    fn a_drift_away_from_the_best_ends_as_stalled() {
+        let history: Vec<f64> = (0..99).map(|k| 2.0 + (k as f64 / 99.0 - 0.2).abs()).collect();
+        let ends = |n: &usize| rule(None, 1e-6).judge(&history[..*n], 20.min(n - 1), 8).is_some();
+        assert_eq!((1..99).find(ends), Some(37));
+        assert_eq!(rule(None, 1e-6).judge(&history[..37], 20, 8), Some(Stop::Stalled));
+        assert_eq!(rule(None, 0.0).judge(&history[..37], 20, 8), None);
     }
 
     #[test]
     fn a_goal_out_of_reach_ends_as_stalled() {
         let history: Vec<f64> = (0..99).map(|k| 2.0 + 0.1f64.powi(k)).collect();
-        assert_eq!(rule(Some(1.0), 0.0).judge(&history, 8), Some(Stop::Stalled));
-        assert_eq!(rule(Some(2.5), 0.0).judge(&history, 8), Some(Stop::Reached));
-        assert_eq!(rule(None, 1e-6).judge(&history, 8), Some(Stop::Converged));
+        assert_eq!(rule(Some(1.0), 0.0).judge(&history, 98, 8), Some(Stop::Stalled));
+        assert_eq!(rule(Some(2.5), 0.0).judge(&history, 98, 8), Some(Stop::Reached));
+        assert_eq!(rule(None, 1e-6).judge(&history, 98, 8), Some(Stop::Converged));
     }
 }

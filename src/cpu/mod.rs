@@ -18,22 +18,26 @@ pub struct CpuEngine<'a> {
     problem: &'a Problem,
     plan: Plan,
     positions: Vec<DVec2>,
-    best: Option<Best>,
+    /// The best state; of a monotone scheme it is the last.
+    best_positions: Option<Vec<DVec2>>,
+    best_sweep: usize,
     base_history: Vec<f64>,
     stop: Option<Stop>,
-}
-
-struct Best {
-    objective: f64,
-    positions: Vec<DVec2>,
 }
 
 impl<'a> CpuEngine<'a> {
     /// Starts a run from `positions`, normalised and in the problem's order.
     pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
-        let best = (!plan.scheme.is_monotone())
-            .then(|| Best { objective: f64::INFINITY, positions: positions.clone() });
-        Self { problem, plan, positions, best, base_history: Vec::new(), stop: None }
+        let best_positions = (!plan.scheme.is_monotone()).then(|| positions.clone());
+        Self {
+            problem,
+            plan,
+            positions,
+            best_positions,
+            best_sweep: 0,
+            base_history: Vec::new(),
+            stop: None,
+        }
     }
 
     fn sweep(&mut self, sweep: u32) {
@@ -62,13 +66,16 @@ impl<'a> CpuEngine<'a> {
             values.set(metric, metric.ideal_squared() + excess);
         }
         let base = values.of(self.plan.scheme.base()).unwrap_or(f64::NAN);
-        if let Some(best) = self.best.as_mut().filter(|best| base < best.objective) {
-            best.objective = base;
-            best.positions.copy_from_slice(&self.positions);
-        }
+        let evaluation = self.base_history.len();
         self.base_history.push(base);
+        if evaluation == 0 || base < self.base_history[self.best_sweep] {
+            self.best_sweep = evaluation;
+            if let Some(best) = &mut self.best_positions {
+                best.copy_from_slice(&self.positions);
+            }
+        }
         let window = StopRule::window(&self.plan.scheme) as usize;
-        self.stop = self.plan.stop.judge(&self.base_history, window);
+        self.stop = self.plan.stop.judge(&self.base_history, self.best_sweep, window);
         values
     }
 }
@@ -94,7 +101,7 @@ impl Engine for CpuEngine<'_> {
     }
 
     fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
-        Ok(self.best.as_ref().map_or(&self.positions, |best| &best.positions).clone())
+        Ok(self.best_positions.as_ref().unwrap_or(&self.positions).clone())
     }
 }
 

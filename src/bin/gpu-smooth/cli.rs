@@ -85,7 +85,8 @@ pub(crate) struct SmoothArgs {
     /// Over-relaxed steps, or the paper's plain ones (the same as --omega 1)
     #[arg(long, value_enum, default_value = "relaxed", help_heading = "Method")]
     pub(crate) method: Method,
-    /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`]
+    /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
+    /// metrics alternate]
     #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega)]
     pub(crate) omega: Option<f64>,
     /// Newton steps per visit of a vertex
