@@ -50,7 +50,7 @@ impl Coloring {
         &self.colors
     }
 
-    /// Whether every free vertex, and no other, has a color unlike those of its neighbours.
+    /// Whether every free vertex, and no other, has a color unlike those of its neighbors.
     pub fn is_proper(&self, topology: &Topology) -> bool {
         let differs = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.colors[v as usize]);
@@ -77,7 +77,7 @@ impl Graph {
         start.push(0);
         for v in 0..free.len() as u32 {
             if free[v as usize] {
-                // Around an interior vertex each neighbour follows it in exactly one triangle.
+                // Around an interior vertex each neighbor follows it in exactly one triangle.
                 for &t in topology.star(v) {
                     let corners = topology.triangles()[t as usize];
                     let i = corners.iter().position(|&u| u == v).unwrap_or(0);

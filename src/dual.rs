@@ -108,7 +108,6 @@ impl Mul for Dual {
 impl Div for Dual {
     type Output = Self;
     #[inline(always)]
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "a / b is a times the chain rule of 1/b")]
     fn div(self, o: Self) -> Self {
         let r = 1.0 / o.value;
         self * o.chain(r, -r * r, 2.0 * r * r * r)

@@ -18,7 +18,7 @@ pub trait Engine {
     /// Why the run has ended, if it has.
     fn stop(&self) -> Option<Stop>;
 
-    /// The normalised positions of the best state seen by the base metric.
+    /// The normalized positions of the best state seen by the base metric.
     ///
     /// # Errors
     /// When the device fails.

@@ -121,7 +121,7 @@ pub enum MeshError {
         /// Every triangle at the edge.
         triangles: Vec<usize>,
     },
-    /// Some triangles are inverted against their neighbours, or flat.
+    /// Some triangles are inverted against their neighbors, or flat.
     #[error("{count} triangles are inverted or flat, the first is triangle {first}")]
     Infeasible {
         /// How many.

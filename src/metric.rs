@@ -101,7 +101,7 @@ macro_rules! metrics {
                 match self { $( Metric::$variant => { let $t = corner; $excess } )* }
             }
 
-            /// What Newton minimises in place of [`Self::excess`]: the same, but for EDGE, which is
+            /// What Newton minimizes in place of [`Self::excess`]: the same, but for EDGE, which is
             /// not smooth. There it is the p-norm with k = 2^`sharpness`.
             #[inline(always)]
             pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
@@ -113,7 +113,7 @@ macro_rules! metrics {
         }
 
         /// Evaluates an expression with `$m` bound to a constant of the metric, so that the
-        /// compiler specialises the inner loops.
+        /// compiler specializes the inner loops.
         macro_rules! specialize {
             ($metric:expr, $m:ident => $body:expr) => {
                 match $metric { $( $crate::Metric::$variant => {
@@ -198,7 +198,7 @@ metrics! {
         properties {
             formula: "sqrt((L12² + L23² + L13²) / 3) / L0, L0² = 4 S_mean / sqrt(3)",
             citation: "Knupp, Algebraic mesh quality metrics, SIAM J. Sci. Comp. 23 (2001); Park & Shontz, Table 1, divided by L0 so that it is 1 at best",
-            purpose: "shortens edges: good shapes and evened-out sizes; each vertex moves to the mean of its neighbours (Laplacian smoothing that cannot invert)",
+            purpose: "shortens edges: good shapes and evened-out sizes; each vertex moves to the mean of its neighbors (Laplacian smoothing that cannot invert)",
             barrier: false,
             ideal: 1.0,
             scale_invariant: false,

@@ -172,6 +172,9 @@ impl Plan {
 pub(crate) mod line_search {
     /// Share of the predicted decrease that must be had (Armijo).
     pub(crate) const SUFFICIENT_DECREASE: f64 = 1e-4;
+    /// What rounding in single precision may add to a patch's objective, relative to the sum of q².
+    /// The f64 engine grants it too, so that both accept the same steps.
+    pub(crate) const SLACK: f64 = 1e-6;
     /// Trials before the vertex is left where it is.
     pub(crate) const TRIALS: u32 = 8;
     /// Shortening after a trial that inverts a triangle or breaks the shape guard.

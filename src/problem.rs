@@ -1,4 +1,4 @@
-//! What both engines are given: normalised positions and one-rings, numbered color by color.
+//! What both engines are given: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
 
@@ -82,7 +82,7 @@ impl Problem {
         Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
     }
 
-    /// Normalised position of each vertex.
+    /// Normalized position of each vertex.
     pub fn positions(&self) -> &[DVec2] {
         &self.positions
     }
@@ -97,12 +97,12 @@ impl Problem {
         self.ring_start.len() - 1
     }
 
-    /// Where each free vertex's neighbours start in [`Self::ring`], and one past the last.
+    /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last.
     pub fn ring_start(&self) -> &[u32] {
         &self.ring_start
     }
 
-    /// The neighbours of the free vertices, counter-clockwise, vertex by vertex.
+    /// The neighbors of the free vertices, counter-clockwise, vertex by vertex.
     pub fn ring(&self) -> &[u32] {
         &self.ring
     }
@@ -112,12 +112,12 @@ impl Problem {
         &self.triangles
     }
 
-    /// Mean area of all triangles, in normalised units.
+    /// Mean area of all triangles, in normalized units.
     pub fn mean_area(&self) -> f64 {
         self.mean_area
     }
 
-    /// Puts normalised positions back in the mesh's order and units. A vertex that is fixed or did
+    /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did
     /// not move keeps its bits.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();

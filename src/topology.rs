@@ -110,8 +110,9 @@ impl Topology {
         self.stars.of(vertex)
     }
 
-    /// The neighbours of a free vertex in counter-clockwise cyclic order, starting with the
-    /// second corner of its first triangle. Triangle k of its patch is (vertex, r[k], r[k+1]).
+    /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the
+    /// second corner of its first triangle. Each neighbor makes a
+    /// triangle of the patch with the vertex and the neighbor after it.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         ring_of(&self.triangles, &self.stars, free_vertex).unwrap_or_default()
     }
@@ -218,7 +219,7 @@ fn wind(points: &[[f64; 2]], triangles: &[[u32; 3]], across: &[[u32; 3]]) -> Vec
     wound
 }
 
-/// The neighbours of a vertex in cyclic order; `None` unless its triangles close one cycle.
+/// The neighbors of a vertex in cyclic order; `None` unless its triangles close one cycle.
 fn ring_of(triangles: &[[u32; 3]], stars: &Stars, vertex: u32) -> Option<Vec<u32>> {
     let star = stars.of(vertex);
     let outer = |t: u32| {
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn mixed_windings_are_normalised() {
+    fn mixed_windings_are_normalized() {
         let mut mesh = fan();
         let topology = Topology::new(&mesh).unwrap();
         assert_eq!(topology.triangles()[2], [2, 3, 4]);

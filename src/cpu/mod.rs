@@ -26,7 +26,7 @@ pub struct CpuEngine<'a> {
 }
 
 impl<'a> CpuEngine<'a> {
-    /// Starts a run from `positions`, normalised and in the problem's order.
+    /// Starts a run from `positions`, normalized and in the problem's order.
     pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
         let best_positions = (!plan.scheme.is_monotone()).then(|| positions.clone());
         Self {
@@ -51,7 +51,7 @@ impl<'a> CpuEngine<'a> {
         let mut moved = Vec::new();
         for color in self.problem.colors() {
             let color = color.start as usize..color.end as usize;
-            // Vertices of one color read each other's neighbours only, never each other.
+            // Vertices of one color read each other's neighbors only, never each other.
             specialize!(metric, METRIC => {
                 visit_all(METRIC, self.problem, &self.positions, color.clone(), &step, &mut moved);
             });

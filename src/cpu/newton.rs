@@ -9,7 +9,7 @@ use crate::plan::{Derivatives, line_search};
 /// A free vertex with its one-ring.
 #[derive(Clone, Copy)]
 pub(crate) struct Patch<'a> {
-    /// Neighbours, counter-clockwise.
+    /// Neighbors, counter-clockwise.
     pub(crate) ring: &'a [u32],
     /// All positions.
     pub(crate) positions: &'a [DVec2],
@@ -25,9 +25,6 @@ pub(crate) struct Step {
     pub(crate) sharpness: u32,
     pub(crate) derivatives: Derivatives,
 }
-
-/// What rounding may add to a patch's objective, relative to the sum of q².
-const SLACK: f64 = 1e-14;
 
 impl Patch<'_> {
     /// The patch's triangles, seen from the vertex at `at`.
@@ -86,7 +83,9 @@ impl Patch<'_> {
                 None => length *= line_search::SHORTEN_INFEASIBLE,
                 Some(value) => {
                     let wanted = line_search::SUFFICIENT_DECREASE * length * slope;
-                    if properties.quadratic || value <= sum.value + wanted + SLACK * squares {
+                    if properties.quadratic
+                        || value <= sum.value + wanted + line_search::SLACK * squares
+                    {
                         return Some(to);
                     }
                     length *= line_search::SHORTEN;
@@ -139,7 +138,7 @@ fn descent(at: &Dual, floor: f64) -> Option<(DVec2, f64)> {
     let g = DVec2::from(at.gradient) / scale;
     let (xx, xy, yy) = (xx / scale, xy / scale, yy / scale);
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = half.hypot(xy);
+    let radius = (half * half + xy * xy).sqrt();
     let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
     let least = floor * high.max(low);
     let (high, low) = (high.max(least), low.max(least));
@@ -164,7 +163,7 @@ fn differences(metric: Metric, corner: &Corner<f64>, sharpness: u32, h: f64) -> 
         let corner = Corner { a: moved(corner.a), b: moved(corner.b), ..*corner };
         *value = metric.model(&corner, sharpness);
     }
-    // Gradients here and one step along x and y, each from a value and its forward neighbours.
+    // Gradients here and one step along x and y, each from a value and its forward neighbors.
     let gradient = |k: usize| [(values[k + 1] - values[k]) / h, (values[k + 2] - values[k]) / h];
     let (here, right, up) = (gradient(0), gradient(4), gradient(8));
     Dual {

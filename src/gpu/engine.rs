@@ -32,7 +32,7 @@ pub struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `start` (normalised and in the problem's order)
+    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order)
     /// and makes the pipelines the plan needs.
     ///
     /// # Errors

@@ -6,9 +6,6 @@ use super::layout::{FINISH_WORKGROUP, HISTORY, WORKGROUP};
 use crate::metric::Metric;
 use crate::plan::{Derivatives, NOISE, Stop, line_search};
 
-/// What rounding in single precision may add to a patch's objective, relative to the sum of q².
-const SLACK: f64 = 1e-6;
-
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 const PATCH: &str = include_str!("../../shaders/patch.wgsl");
 const NEWTON: &str = include_str!("../../shaders/newton.wgsl");
@@ -100,7 +97,7 @@ fn constants() -> String {
         ("SHORTEN_INFEASIBLE", line_search::SHORTEN_INFEASIBLE),
         ("SHORTEN", line_search::SHORTEN),
         ("DIFFERENCE", line_search::DIFFERENCE),
-        ("SLACK", SLACK),
+        ("SLACK", line_search::SLACK),
         ("NOISE", NOISE),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
@@ -108,7 +105,7 @@ fn constants() -> String {
     text
 }
 
-/// The metric a sweep minimises, under the names newton.wgsl calls.
+/// The metric a sweep minimizes, under the names newton.wgsl calls.
 fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
     let properties = metric.properties();
     let name = metric.name();

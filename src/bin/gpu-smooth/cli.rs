@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Options, Scheme, Sharpness};
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
@@ -46,7 +47,6 @@ pub(crate) struct QualityArgs {
 }
 
 #[derive(Args)]
-#[command(group = ArgGroup::new("relaxation").args(["omega", "method"]))]
 pub(crate) struct SmoothArgs {
     /// The mesh to read; its format is told by its content
     #[arg(required = true, value_name = "IN")]
@@ -68,18 +68,24 @@ pub(crate) struct SmoothArgs {
     pub(crate) adapter: Option<String>,
 
     /// Stop after N sweeps at the latest
-    #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Stopping")]
+    #[arg(
+        long,
+        default_value_t = 1000,
+        value_name = "N",
+        help_heading = "Stopping",
+        allow_negative_numbers = true
+    )]
     pub(crate) max_sweeps: u32,
     /// Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep
-    #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = tolerance)]
+    #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = tolerance, allow_negative_numbers = true, conflicts_with_all = ["fraction", "desired"])]
     pub(crate) tolerance: f64,
     /// Stop at this share of the way from the first f to the desired one, instead of at the
     /// tolerance; 0.95 is the paper's [default with --desired: 0.95]
-    #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction)]
+    #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction, allow_negative_numbers = true)]
     pub(crate) fraction: Option<f64>,
     /// The desired f by the first metric; auto finds the optimum before the run [default with
     /// --fraction: auto]
-    #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired)]
+    #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
     /// Over-relaxed steps, or the paper's plain ones (the same as --omega 1)
@@ -87,10 +93,10 @@ pub(crate) struct SmoothArgs {
     pub(crate) method: Method,
     /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
     /// metrics alternate]
-    #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega)]
+    #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega, allow_negative_numbers = true)]
     pub(crate) omega: Option<f64>,
     /// Newton steps per visit of a vertex
-    #[arg(long, default_value_t = 1, value_name = "N", help_heading = "Method", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 1, value_name = "N", help_heading = "Method", value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
     pub(crate) inner: u32,
     /// How metrics are differentiated; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
@@ -104,7 +110,7 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
     /// What f the report's history holds: the first metric's, or every metric's
-    #[arg(long, value_enum, default_value = "base", help_heading = "Output")]
+    #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
     /// Print errors only
     #[arg(short, long, conflicts_with = "verbose", help_heading = "Output")]
@@ -145,7 +151,41 @@ pub(crate) enum History {
     All,
 }
 
+impl Cli {
+    /// The command line, or the end of the process with what is wrong with it.
+    pub(crate) fn read() -> Self {
+        let cli = Self::try_parse().unwrap_or_else(|error| one_mesh_only(error).exit());
+        if let Some((kept, dropped)) = cli.smooth.contradiction() {
+            let text = format!("{kept} leaves nothing for {dropped} to choose: drop one of them");
+            Self::command().error(ErrorKind::ArgumentConflict, text).exit();
+        }
+        cli
+    }
+}
+
+/// Says of a third file that it is one too many, where clap takes it for a misplaced command.
+fn one_mesh_only(error: clap::Error) -> clap::Error {
+    match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(extra)) if error.kind() == ErrorKind::ArgumentConflict => {
+            let text = format!("unexpected argument '{extra}': IN and OUT are all, one mesh a run");
+            Cli::command().error(ErrorKind::UnknownArgument, text)
+        }
+        _ => error,
+    }
+}
+
 impl SmoothArgs {
+    /// An option given along with another that settles the same.
+    fn contradiction(&self) -> Option<(&str, &str)> {
+        if self.method == Method::Paper && self.omega.is_some() {
+            Some(("--method paper", "--omega"))
+        } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
+            Some(("--engine cpu", "--adapter"))
+        } else {
+            None
+        }
+    }
+
     /// What the library is asked to do.
     pub(crate) fn options(&self) -> Options {
         let has_goal = self.fraction.is_some() || self.desired.is_some();

@@ -5,26 +5,24 @@ use gpu_smooth::{Backend, Gpu, GpuError, SmoothError};
 use crate::cli::{EngineChoice, SmoothArgs};
 use crate::tell;
 
-const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
+pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
-/// Opens the engine that the command line asks for. Without an adapter, `auto` is the CPU, and says so.
-pub(crate) fn open(args: &SmoothArgs) -> Result<Backend, String> {
+/// Opens the engine that the command line asks for. Without an adapter, `auto` is the CPU; the remark
+/// that comes along says so.
+pub(crate) fn open(args: &SmoothArgs) -> Result<(Backend, Option<String>), String> {
     if args.engine == EngineChoice::Cpu {
-        return match args.adapter {
-            Some(_) => Err("--adapter names a GPU adapter, but --engine is cpu. Drop one".into()),
-            None => Ok(Backend::Cpu),
-        };
+        return Ok((Backend::Cpu, None));
     }
     match Gpu::open(args.adapter.as_deref()) {
-        Ok(gpu) => Ok(Backend::Gpu(gpu)),
+        Ok(gpu) => Ok((Backend::Gpu(gpu), None)),
         Err(error) if is_optional(args) => {
-            tell::note(args.quiet, &format!("{error}: smoothing on the CPU"));
-            Ok(Backend::Cpu)
+            Ok((Backend::Cpu, Some(format!("{error}: smoothing on the CPU"))))
         }
         Err(GpuError::NoAdapter { wanted: Some(name), available }) if !available.is_empty() => {
             Err(format!("no GPU adapter has '{name}' in its name. There are: {available}"))
         }
+        Err(GpuError::NoAdapter { .. }) => Err(format!("no GPU adapter was found. {INSTALL}")),
         Err(error) => Err(format!("{error}. {INSTALL}")),
     }
 }

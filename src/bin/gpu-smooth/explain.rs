@@ -6,9 +6,10 @@ use gpu_smooth::{MeshError, MeshFile};
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
-        MeshError::Infeasible { count, first, vertices, flat } => {
+        MeshError::Infeasible { count, first, flat, .. } => {
             let place = file.triangle_place(first);
-            let [a, b, c] = vertices.map(name);
+            // As the file lists them; the error may have turned them over.
+            let [a, b, c] = file.mesh().triangles[first].map(name);
             let bad = if flat { "flat" } else { "inverted" };
             let which = match count {
                 1 => format!("triangle {} (vertices {a}, {b}, {c}) is {bad}", place.label),
@@ -25,7 +26,9 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         MeshError::EdgeOfThree { edge, ref triangles } => {
             let places: Vec<_> = triangles.iter().map(|&t| file.triangle_place(t)).collect();
             let labels: Vec<_> = places.iter().map(|place| place.label.to_string()).collect();
-            let [a, b] = edge.map(name);
+            let mut ends = edge.map(name);
+            ends.sort_unstable();
+            let [a, b] = ends;
             format!(
                 "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). In a 2D mesh \
                  an edge has one or two: remove the others",

@@ -10,11 +10,10 @@ mod tell;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use cli::{Cli, Command};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::read();
     let done = match &cli.command {
         Some(Command::Quality(args)) => tell::quality(args),
         Some(Command::Adapters) => tell::adapters(),

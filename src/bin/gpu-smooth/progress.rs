@@ -11,7 +11,8 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Shows sweeps, f and speed on standard error, if that is a terminal and the run takes a while.
 pub(crate) struct Bar {
     started: Instant,
-    phase: Option<Phase>,
+    /// And when it began.
+    phase: Option<(Phase, Instant)>,
     bar: ProgressBar,
     max_sweeps: u32,
 }
@@ -21,32 +22,36 @@ impl Bar {
         // Drawing to standard error is a no-op where that is not a terminal.
         let target =
             if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(None, target);
+        let bar = ProgressBar::with_draw_target(Some(max_sweeps.into()), target);
         Self { started: Instant::now(), phase: None, bar, max_sweeps }
     }
 
     pub(crate) fn update(&mut self, progress: &Progress) {
+        let began = match self.phase {
+            Some((phase, began)) if phase == progress.phase => began,
+            before => {
+                let began = if before.is_none() { self.started } else { Instant::now() };
+                self.phase = Some((progress.phase, began));
+                began
+            }
+        };
         if self.started.elapsed() < PATIENCE {
             return;
         }
-        if self.phase != Some(progress.phase) {
-            self.phase = Some(progress.phase);
-            let template = match progress.phase {
-                Phase::Reference => "finding the optimum: sweep {pos}  {msg}  {per_sec}",
-                Phase::Smoothing => "{bar:24} sweep {pos}/{len}  {msg}  {per_sec}  {elapsed}",
-            };
-            if let Ok(style) = ProgressStyle::with_template(template) {
-                let per_second = |state: &indicatif::ProgressState,
-                                  out: &mut dyn std::fmt::Write| {
-                    let _ = write!(out, "{:.0} sweeps/s", state.per_sec());
-                };
-                self.bar.set_style(style.with_key("per_sec", per_second));
+        let (sweep, seconds) = (progress.sweep, began.elapsed().as_secs_f64());
+        let speed = f64::from(sweep) / seconds.max(1e-3);
+        let figures = format!("f {:.7}  {speed:.0} sweeps/s  {seconds:.0} s", progress.f);
+        let (template, message) = match progress.phase {
+            Phase::Reference => ("{msg}", format!("finding the optimum: sweep {sweep}  {figures}")),
+            Phase::Smoothing => {
+                ("{bar:24} {msg}", format!("sweep {sweep}/{}  {figures}", self.max_sweeps))
             }
-            self.bar.set_length(self.max_sweeps.into());
-            self.bar.reset();
+        };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            self.bar.set_style(style);
         }
-        self.bar.set_message(format!("f {:.7}", progress.f));
-        self.bar.set_position(progress.sweep.into());
+        self.bar.set_message(message);
+        self.bar.set_position(sweep.into());
     }
 
     pub(crate) fn clear(&self) {

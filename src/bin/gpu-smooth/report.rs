@@ -68,7 +68,7 @@ pub(crate) struct QualityReport {
 #[derive(Serialize)]
 pub(crate) struct SweepReport {
     pub(crate) sweep: u32,
-    /// The metric this sweep minimised; none before the first.
+    /// The metric this sweep minimized; none before the first.
     pub(crate) metric: Option<&'static str>,
     /// The base metric's objective after the sweep.
     pub(crate) f: f64,
@@ -160,33 +160,39 @@ impl Report {
 
     /// Why the run ended, in a sentence.
     fn ending(&self) -> String {
-        let sweeps = self.sweeps;
+        let sweeps = match self.sweeps {
+            1 => "1 sweep".to_owned(),
+            n => format!("{n} sweeps"),
+        };
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {
-                let went = format!(
-                    "{} % of the way to f = {}",
-                    percent(goal.best_fraction),
-                    six(goal.desired)
-                );
+                let desired = six(goal.desired);
+                let went = match goal.best_fraction {
+                    beyond if beyond > 1.0 => format!("beyond f = {desired}"),
+                    share => format!("{} % of the way to f = {desired}", percent(share)),
+                };
                 match (goal.reached, stop) {
-                    (true, _) => format!("reached after {sweeps} sweeps: {went}"),
-                    (false, "stalled") => {
-                        format!("not reached: no more progress after {sweeps} sweeps, {went}")
+                    (true, _) if self.sweeps == 0 => {
+                        format!("nothing to do: f is as low as the desired {desired} already")
                     }
-                    (false, _) => format!("not reached after {sweeps} sweeps (the most): {went}"),
+                    (true, _) => format!("reached after {sweeps}: {went}"),
+                    (false, "stalled") => {
+                        format!("not reached: no more progress after {sweeps}, {went}")
+                    }
+                    (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
             }
-            ("converged", None) => format!("converged after {sweeps} sweeps"),
-            ("stalled", None) => format!("no more progress after {sweeps} sweeps"),
+            ("converged", None) => format!("converged after {sweeps}"),
+            ("stalled", None) => format!("no more progress after {sweeps}"),
             (_, None) => format!(
-                "stopped after {sweeps} sweeps, the most allowed; more may gain more (--max-sweeps)"
+                "stopped after {sweeps}, the most allowed; more may gain more (--max-sweeps)"
             ),
         };
-        if self.best_sweep != sweeps {
+        if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
         }
         if self.returned > 0 {
-            let _ = write!(text, "; {} vertices put back, for rounding", self.returned);
+            let _ = write!(text, "; vertices put back for rounding: {}", self.returned);
         }
         text
     }

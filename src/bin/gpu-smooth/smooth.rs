@@ -35,8 +35,9 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
         }
         let mesh = file.mesh();
         let smoother = Smoother::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
-        let backend =
+        let (backend, remark) =
             backend.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
+        remark.iter().for_each(|remark| tell::note(args.quiet, remark));
         let before = smoother.quality(&mesh.points);
         let prepared = Instant::now();
 
@@ -71,6 +72,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             history: report::history(&outcome, &args.scheme, args.history == History::All),
             seconds,
         };
+        write_report(args, &report)?;
         if args.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
@@ -80,7 +82,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
         if !args.quiet {
             tell::say(&report.summary());
         }
-        write_report(args, &report)
+        Ok(())
     })
 }
 
@@ -91,7 +93,7 @@ fn smooth(
     backend: Backend,
 ) -> Result<(Outcome, Backend), String> {
     let options = args.options();
-    let mut bar = Bar::new(args.quiet || args.verbose, args.max_sweeps);
+    let mut bar = Bar::new(args.quiet, args.max_sweeps);
     let mut observe = |progress: &gpu_smooth::Progress| {
         bar.update(progress);
         ControlFlow::Continue(())
@@ -111,6 +113,13 @@ fn smooth(
 fn check_destinations(args: &SmoothArgs, file: &MeshFile, output: &Path) -> Result<(), String> {
     file.check_destination(output).map_err(|error| error.to_string())?;
     let Some(report) = &args.report else { return Ok(()) };
+    let is_mesh = ["node", "ele", "poly", "msh"]
+        .iter()
+        .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
+    if is_mesh || report == output || report == file.path() {
+        let name = report.display();
+        return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
+    }
     let directory = match report.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

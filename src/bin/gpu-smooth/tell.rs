@@ -1,18 +1,26 @@
 //! Everything that is printed, and the commands that only print.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use gpu_smooth::{Metric, Quality, Topology};
 
 use crate::cli::QualityArgs;
+use crate::engine::INSTALL;
 use crate::explain;
 use crate::report::{QualityReport, six};
 use crate::smooth::read;
 
-/// Prints what the user asked for. A reader that went away, as `head` does, is no error.
+/// Prints what the user asked for. A reader that went away, as `head` does, is no error; a disk that
+/// is full ends the process.
 pub(crate) fn say(text: &str) {
-    let _ = writeln!(std::io::stdout(), "{text}");
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
+            error(&format!("standard output: {problem}"));
+            std::process::exit(1);
+        }
+        _ => {}
+    }
 }
 
 /// Prints a remark to standard error, unless the user wants none.
@@ -56,7 +64,7 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
     let worst = file.triangle_place(quality.worst_triangle);
     let at = format!("  triangle {} ({worst})", worst.label);
     say(&format!("{:<22}{:>12}{at}", "worst imr", six(quality.worst_imr)));
-    if quality.worst_movable_imr < quality.worst_imr {
+    if free > 0 && quality.worst_movable_imr < quality.worst_imr {
         let movable = six(quality.worst_movable_imr);
         say(&format!(
             "{:<22}{movable:>12}  among triangles with a free vertex",
@@ -71,7 +79,7 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
 pub(crate) fn adapters() -> Result<(), String> {
     let adapters = gpu_smooth::gpu::adapters();
     if adapters.is_empty() {
-        say("no GPU adapter; runs are done on the CPU");
+        say(&format!("no GPU adapter was found. {INSTALL}"));
     }
     for adapter in adapters {
         say(&format!(
