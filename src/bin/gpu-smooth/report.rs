@@ -121,9 +121,10 @@ impl Report {
     pub(crate) fn summary(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
+        let s = if colors == 1 { "" } else { "s" };
         let _ = writeln!(
             text,
-            "{vertices} vertices ({free} free, {colors} colors), {triangles} triangles"
+            "{vertices} vertices ({free} free, {colors} color{s}), {triangles} triangles"
         );
         let on = self.engine.adapter.as_deref().unwrap_or("all cores");
         let _ = writeln!(text, "{} on {} ({on})", self.scheme, self.engine.kind);

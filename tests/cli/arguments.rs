@@ -1,0 +1,86 @@
+//! Command lines that ask for nothing that can be done: exit code 2, and nothing touched.
+
+use super::{Folder, assert_holds, small};
+
+#[track_caller]
+fn assert_usage(folder: &Folder, line: &str, parts: &[&str]) {
+    let before = folder.content();
+    let run = folder.line(line);
+    assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{line}\n{}", run.err);
+    assert!(run.err.starts_with("error: ") && run.err.contains("--help"), "{}", run.err);
+    assert_holds(&run.err, parts);
+    assert!(folder.content() == before, "{line} has changed files");
+}
+
+#[test]
+fn missing_and_surplus_files_are_told() {
+    let folder = small();
+    assert_usage(&folder, "", &["<IN>", "<OUT>"]);
+    assert_usage(&folder, "in", &["<OUT>"]);
+    assert_usage(&folder, "in out extra", &["unexpected argument 'extra'", "one mesh a run"]);
+    assert_usage(&folder, "quality", &["<MESH>"]);
+    assert_usage(&folder, "quality in in", &["unexpected argument 'in'"]);
+    assert_usage(&folder, "adapters in", &["unexpected argument 'in'"]);
+    assert_usage(&folder, "in out --nonsense", &["unexpected argument '--nonsense'"]);
+}
+
+#[test]
+fn values_out_of_range_name_the_range() {
+    let folder = small();
+    let cases: [(&str, &[&str]); 22] = [
+        ("--scheme foo", &["no metric is called 'foo'; there are edge, area, rms, imr, ar"]),
+        ("--scheme edge+", &["no metric is called ''"]),
+        ("--engine opencl", &["auto, gpu, cpu"]),
+        ("--max-sweeps -1", &["'-1' for '--max-sweeps", "0..=4294967295"]),
+        ("--max-sweeps many", &["'many' for '--max-sweeps"]),
+        ("--tolerance -1", &["'-1' for '--tolerance", "0 or above"]),
+        ("--tolerance inf", &["0 or above"]),
+        ("--tolerance little", &["not a number; it must be 0 or above"]),
+        ("--fraction 0", &["above 0 and at most 1"]),
+        ("--fraction 95", &["above 0 and at most 1"]),
+        ("--fraction nan", &["above 0 and at most 1"]),
+        ("--fraction 95%", &["not a number; it must be above 0 and at most 1"]),
+        ("--desired best", &["a value of f, or auto"]),
+        ("--desired nan", &["a value of f, or auto"]),
+        ("--omega 0", &["above 0 and below 2"]),
+        ("--omega 2", &["above 0 and below 2"]),
+        ("--omega -0.5", &["'-0.5' for '--omega", "above 0 and below 2"]),
+        ("--inner 0", &["1..=1000"]),
+        ("--inner 1001", &["1..=1000"]),
+        ("--method other", &["relaxed, paper"]),
+        ("--derivatives exact", &["analytic, finite-difference"]),
+        ("--edge-norm 8", &["fixed, continued"]),
+    ];
+    for (option, parts) in cases {
+        assert_usage(&folder, &format!("in out {option}"), parts);
+    }
+}
+
+#[test]
+fn contradictions_are_refused() {
+    let folder = small();
+    let cases = [
+        ("--omega 1.5 --method paper", ["--omega", "--method paper"]),
+        ("--quiet --verbose", ["--quiet", "--verbose"]),
+        ("--engine cpu --adapter nvidia", ["--engine cpu", "--adapter"]),
+        ("--tolerance 1e-3 --fraction 0.9", ["--tolerance", "--fraction"]),
+        ("--tolerance 1e-3 --desired auto", ["--tolerance", "--desired"]),
+    ];
+    for (options, parts) in cases {
+        assert_usage(&folder, &format!("in out {options}"), &parts);
+    }
+    assert_usage(&folder, "in out --history all", &["--report <FILE>"]);
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    let folder = Folder::new(&[]);
+    for (line, parts) in [
+        ("--help", ["Usage: gpu-smooth", "--scheme"]),
+        ("-h", ["edge+imr", "quality"]),
+        ("quality --help", ["Usage: gpu-smooth quality", "--json"]),
+        ("--version", ["gpu-smooth ", env!("CARGO_PKG_VERSION")]),
+    ] {
+        assert_holds(&folder.line(line).clean().out, &parts);
+    }
+}

@@ -1,0 +1,160 @@
+//! The `gpu-smooth` command as a user meets it: run as a process, judged by what it prints and leaves.
+#![cfg(feature = "cli")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod adapters;
+mod arguments;
+mod files;
+mod options;
+mod output;
+mod plate;
+mod refusals;
+mod report;
+mod schemes;
+
+use gpu_smooth::{Mesh, MeshFile};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use support::check;
+use tempfile::TempDir;
+
+/// What a finished process left.
+struct Run {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl Run {
+    /// After it did all that was asked and had nothing to remark.
+    #[track_caller]
+    fn clean(self) -> Self {
+        assert_eq!((self.code, self.err.as_str()), (Some(0), ""), "{}", self.out);
+        self
+    }
+
+    /// After it failed with one line that holds each of the parts.
+    #[track_caller]
+    fn refused(self, parts: &[&str]) -> Self {
+        let Self { code, out, err } = &self;
+        assert_eq!((*code, out.as_str()), (Some(1), ""), "{err}");
+        assert!(err.starts_with("gpu-smooth: error: ") && err.lines().count() == 1, "{err}");
+        assert_holds(err, parts);
+        self
+    }
+}
+
+#[track_caller]
+fn assert_holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "no {part:?} in:\n{text}");
+    }
+}
+
+fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gpu-smooth"));
+    // Without it, some drivers complain on standard error.
+    command.env("XDG_RUNTIME_DIR", std::env::temp_dir()).stdin(Stdio::null());
+    command
+}
+
+fn finish(command: &mut Command) -> Run {
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Run { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// A directory of its own for a test, in which the command runs.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = Self(TempDir::new().unwrap());
+        for (name, text) in files {
+            fs::write(folder.path(name), text).unwrap();
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn mesh(&self, name: &str) -> Mesh {
+        MeshFile::read(&self.path(name)).unwrap().mesh().clone()
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    fn command(&self) -> Command {
+        let mut command = command();
+        command.current_dir(&self.0);
+        command
+    }
+
+    fn run<S: AsRef<OsStr>>(&self, args: impl IntoIterator<Item = S>) -> Run {
+        finish(self.command().args(args))
+    }
+
+    /// Runs a line without quotes or spaces in names.
+    fn line(&self, args: &str) -> Run {
+        self.run(args.split_whitespace())
+    }
+
+    /// Every file and its bytes.
+    fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut files: Vec<_> = fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .map(|path| (path.clone(), fs::read(&path).unwrap_or_default()))
+            .collect();
+        files.sort();
+        files
+    }
+}
+
+/// A small mesh with most of its vertices in bad places.
+fn disturbed() -> Mesh {
+    let mut mesh = support::lattice(10, 8);
+    // Wider than high, so that no place of the vertices makes all triangles equilateral.
+    mesh.points.iter_mut().for_each(|point| point[1] *= 0.625);
+    support::perturb_random(&mesh, 1.0, 5)
+}
+
+/// A folder with the small mesh, as `in.node` and `in.ele`.
+fn small() -> Folder {
+    let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
+    Folder::new(&[("in.node", &node), ("in.ele", &ele)])
+}
+
+/// Whether `after` is `before` smoothed: the triangles and what is held as they were, to the bit, no
+/// triangle turned or flat, no fold, and something moved.
+#[track_caller]
+fn assert_smoothed(before: &Mesh, after: &Mesh) {
+    assert_eq!((&before.triangles, &before.fixed), (&after.triangles, &after.fixed));
+    assert!(check::same_orientations(before, after) && check::is_valid(after));
+    assert_ne!(before.points, after.points);
+    let bits = |mesh: &Mesh, v: usize| mesh.points[v].map(f64::to_bits);
+    for (v, held) in check::held(before).into_iter().enumerate() {
+        assert!(!held || bits(before, v) == bits(after, v), "vertex index {v} has moved");
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+fn plate_path() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plate.node"))
+}

@@ -1,0 +1,157 @@
+//! What each option does.
+
+use super::{Folder, assert_holds, assert_smoothed, finish, number, plate_path, small};
+use serde_json::Value;
+
+/// A run on the CPU: its report and what it printed.
+#[track_caller]
+fn run(folder: &Folder, options: &str) -> (Value, String) {
+    let line = format!("in out --engine cpu --report r.json {options}");
+    let out = folder.line(&line).clean().out;
+    assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+    (folder.json("r.json"), out)
+}
+
+/// The report of a run on the plate.
+#[track_caller]
+fn on_plate(options: &[&str]) -> Value {
+    let folder = Folder::new(&[]);
+    let args = ["out", "--engine", "cpu", "--report", "r.json"];
+    finish(folder.command().arg(plate_path()).args(args).args(options)).clean();
+    folder.json("r.json")
+}
+
+fn sweeps(report: &Value) -> u64 {
+    report["sweeps"].as_u64().unwrap()
+}
+
+fn f(report: &Value, metric: &str) -> f64 {
+    number(&report["after"]["f"][metric])
+}
+
+#[test]
+fn max_sweeps_ends_a_run() {
+    let folder = small();
+    let (report, out) = run(&folder, "--max-sweeps 7");
+    assert_eq!((sweeps(&report), &report["stop"]), (7, &"max-sweeps".into()));
+    assert_holds(&out, &["stopped after 7 sweeps, the most allowed", "(--max-sweeps)"]);
+    let (report, out) = run(&folder, "--max-sweeps 1");
+    assert_eq!(sweeps(&report), 1);
+    assert_holds(&out, &["stopped after 1 sweep, the most"]);
+}
+
+#[test]
+fn a_loose_tolerance_ends_a_run_earlier_and_zero_never() {
+    let folder = small();
+    let (loose, _) = run(&folder, "--tolerance 1e-2");
+    let (tight, out) = run(&folder, "--tolerance 1e-8");
+    assert_holds(&out, &[&format!("\nconverged after {} sweeps\n", sweeps(&tight))]);
+    assert!(sweeps(&loose) < sweeps(&tight) && f(&loose, "imr") >= f(&tight, "imr"));
+    let (zero, _) = run(&folder, "--tolerance 0 --max-sweeps 400");
+    assert_eq!((sweeps(&zero), &zero["stop"]), (400, &"max-sweeps".into()));
+}
+
+#[test]
+fn a_goal_ends_a_run_when_reached() {
+    let folder = small();
+    let (full, _) = run(&folder, "--tolerance 1e-8");
+    for options in ["--fraction 0.95", "--desired auto", "--fraction 0.95 --desired auto"] {
+        let (report, out) = run(&folder, options);
+        let goal = &report["goal"];
+        assert_eq!((&report["stop"], number(&goal["fraction"])), (&"reached".into(), 0.95));
+        assert!((number(&goal["desired"]) / f(&full, "imr") - 1.0).abs() < 1e-6);
+        assert!(sweeps(&report) < sweeps(&full) && number(&goal["best_fraction"]) >= 0.95);
+        assert_holds(&out, &["\nreached after ", " % of the way to f = 1."]);
+    }
+    let (half, _) = run(&folder, "--fraction 0.5");
+    assert!(sweeps(&half) <= sweeps(&run(&folder, "--fraction 0.99").0));
+
+    let target = (f(&half, "imr") + number(&half["before"]["f"]["imr"])) / 2.0;
+    let (report, out) = run(&folder, &format!("--desired {target} --fraction 1"));
+    assert_eq!(report["stop"], "reached");
+    assert!(f(&report, "imr") < target);
+    assert_holds(&out, &["beyond f = "]);
+}
+
+#[test]
+fn a_goal_out_of_reach_is_told() {
+    let folder = small();
+    let (report, out) = run(&folder, "--desired 1 --fraction 1 --max-sweeps 3");
+    assert_eq!(
+        (&report["stop"], &report["goal"]["reached"]),
+        (&"max-sweeps".into(), &false.into())
+    );
+    assert_holds(
+        &out,
+        &["not reached after 3 sweeps (the most): ", " % of the way to f = 1.000000"],
+    );
+    let (report, out) = run(&folder, "--desired 1 --fraction 1");
+    assert_eq!((&report["stop"], &report["goal"]["reached"]), (&"stalled".into(), &false.into()));
+    assert_holds(&out, &["not reached: no more progress after "]);
+}
+
+#[test]
+fn a_goal_that_is_met_at_the_start_changes_nothing() {
+    let folder = small();
+    let out = folder.line("in out --engine cpu --desired 1e6").clean().out;
+    assert_holds(&out, &["nothing to do: f is as low as the desired 1.0000e6 already"]);
+    assert_eq!(folder.text("in.node"), folder.text("out.node"));
+}
+
+#[test]
+fn the_paper_method_is_omega_one() {
+    let folder = small();
+    let (paper, _) = run(&folder, "--method paper");
+    let bytes = folder.text("out.node");
+    let (plain, _) = run(&folder, "--omega 1");
+    assert_eq!((&paper["history"], bytes), (&plain["history"], folder.text("out.node")));
+    let (relaxed, _) = run(&folder, "");
+    assert_eq!(relaxed["history"], run(&folder, "--method relaxed").0["history"]);
+    assert_ne!(relaxed["history"], run(&folder, "--method relaxed --omega 1.5").0["history"]);
+}
+
+#[test]
+fn over_relaxation_saves_sweeps() {
+    let [relaxed, paper] = ["relaxed", "paper"].map(|method| on_plate(&["--method", method]));
+    assert!(sweeps(&relaxed) < sweeps(&paper), "{} {}", sweeps(&relaxed), sweeps(&paper));
+    assert!((f(&relaxed, "imr") / f(&paper, "imr") - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn more_inner_steps_gain_more_a_sweep() {
+    let folder = small();
+    let (one, _) = run(&folder, "--method paper --max-sweeps 1");
+    let (five, _) = run(&folder, "--method paper --max-sweeps 1 --inner 5");
+    assert!(f(&five, "imr") < f(&one, "imr"));
+}
+
+#[test]
+fn finite_differences_lead_to_the_same_place() {
+    let folder = small();
+    let (analytic, _) = run(&folder, "--derivatives analytic");
+    let (differences, _) = run(&folder, "--derivatives finite-difference");
+    assert_ne!(analytic["history"], differences["history"]);
+    assert!((f(&analytic, "imr") / f(&differences, "imr") - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn a_continued_edge_norm_ends_lower() {
+    let [fixed, continued] = ["fixed", "continued"]
+        .map(|norm| on_plate(&["--scheme", "edge", "--edge-norm", norm, "--max-sweeps", "200"]));
+    assert!(f(&continued, "edge") < f(&fixed, "edge"));
+}
+
+#[test]
+fn options_work_on_the_gpu_too() {
+    let folder = small();
+    for options in [
+        "--fraction 0.95",
+        "--method paper",
+        "--omega 1.2 --inner 2",
+        "--derivatives finite-difference",
+        "--scheme edge --edge-norm continued --max-sweeps 50",
+    ] {
+        folder.line(&format!("in out --engine gpu {options}")).clean();
+        assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+    }
+}

@@ -1,0 +1,203 @@
+//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, OUT untouched.
+
+use super::{Folder, assert_holds, output::INVERTED, plate_path};
+use std::fs;
+
+const NODE: &str = "5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 0.25 0.5\n";
+const ELE: &str = INVERTED[1];
+const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 1 1 0\n\
+40 0 1 0\n50 0.25 0.5 0\n$EndNodes\n$Elements\n4\n7 2 2 0 1 10 20 50\n8 2 2 0 1 20 30 50\n\
+9 2 2 0 1 30 40 50\n11 2 2 0 1 40 10 50\n$EndElements\n";
+const TRIANGULATED: [(&str, &str); 2] = [("in.node", NODE), ("in.ele", ELE)];
+
+/// Smoothing `input` is refused with each of the parts, and OUT left as it was, there or not.
+#[track_caller]
+fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
+    let gmsh = input.ends_with(".msh");
+    for old in [true, false] {
+        let folder = Folder::new(files);
+        let out = if gmsh { "out.msh" } else { "out.node" };
+        if old {
+            for name in [out, "out.ele", "r.json"] {
+                fs::write(folder.path(name), "old\n").unwrap();
+            }
+        }
+        let before = folder.content();
+        folder.run([input, out, "--engine", "cpu", "--report", "r.json"]).refused(parts);
+        assert!(folder.content() == before, "files have changed");
+    }
+}
+
+#[track_caller]
+fn assert_triangle_refused(node: &str, ele: &str, parts: &[&str]) {
+    assert_refused(&[("in.node", node), ("in.ele", ele)], "in.node", parts);
+}
+
+#[track_caller]
+fn assert_gmsh_refused(from: &str, to: &str, parts: &[&str]) {
+    assert!(GMSH.contains(from), "{from}");
+    assert_refused(&[("in.msh", &GMSH.replacen(from, to, 1))], "in.msh", parts);
+}
+
+#[test]
+fn the_meshes_that_the_others_spoil_are_smoothed() {
+    let folder = Folder::new(&TRIANGULATED);
+    let summary = folder.line("in.node out.node --engine cpu").clean().out;
+    assert_holds(&summary, &["5 vertices (1 free, 1 color), 4 triangles\n"]);
+    fs::write(folder.path("in.msh"), GMSH).unwrap();
+    folder.line("in.msh out.msh --engine cpu").clean();
+}
+
+#[test]
+fn files_that_are_not_there_are_told() {
+    assert_refused(&TRIANGULATED[..1], "in.node", &["in.ele: not found", "put it beside in.node"]);
+    assert_refused(&TRIANGULATED[1..], "in.ele", &["in.node: not found", "put it beside in.ele"]);
+    assert_refused(&[], "none.msh", &["none.msh: ", "Check the name"]);
+    assert_refused(&[], ".", &[".: ", "Name a mesh file, not a directory"]);
+}
+
+#[test]
+fn truncated_files_are_told() {
+    assert_triangle_refused(
+        &NODE[..20],
+        ELE,
+        &["in.node:3: the file ends after 2 of 5", "The file is cut off"],
+    );
+    assert_triangle_refused(
+        NODE,
+        &ELE[..22],
+        &["in.ele:3: the file ends after 2 of 4 triangles", "The file is cut off"],
+    );
+    assert_triangle_refused("", ELE, &["in.node: the file is empty. Write the mesh again"]);
+    let cut = GMSH.find("9 2 2").unwrap();
+    assert_gmsh_refused(
+        &GMSH[cut..],
+        "",
+        &["in.msh:15: the file ends after 2 of 4 elements", "The file is cut off"],
+    );
+    assert_gmsh_refused("$EndNodes\n", "", &["in.msh:4: $Nodes has no $EndNodes", "cut off"]);
+}
+
+#[test]
+fn numbers_that_make_no_sense_are_told() {
+    assert_triangle_refused(
+        NODE,
+        &ELE.replace("2 2 3 5", "2 2 6 5"),
+        &["in.ele:3: triangle 2 has vertex 6", "in.node has vertices 1 to 5"],
+    );
+    assert_triangle_refused(
+        NODE,
+        &ELE.replace("3 3 4 5", "3 3 3 5"),
+        &["in.ele:4: triangle 3 lists vertex 3 twice", "Remove"],
+    );
+    assert_gmsh_refused(
+        "20 30 50",
+        "20 31 50",
+        &["in.msh:15: triangle 8 has node 31, which $Nodes does not list"],
+    );
+    for nan in ["nan", "NaN", "inf", "1e999", "0,5"] {
+        assert_triangle_refused(
+            &NODE.replace("4 0 1", &format!("4 0 {nan}")),
+            ELE,
+            &[&format!("in.node:5: y of vertex 4 is `{nan}`, not a finite number"), "Correct"],
+        );
+    }
+    assert_gmsh_refused("40 0 1", "40 0 nan", &["in.msh:9: y of node 40 is `nan`", "Correct"]);
+}
+
+#[test]
+fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
+    let untangle = "Untangle the mesh first";
+    let moved = |to: &str| NODE.replace("0.25 0.5", to);
+    assert_triangle_refused(
+        &moved("1.5 0.5"),
+        ELE,
+        &["in.ele:3: triangle 2 (vertices 2, 3, 5) is inverted. ", untangle],
+    );
+    assert_triangle_refused(
+        &moved("1 0.5"),
+        ELE,
+        &["in.ele:3: triangle 2 (vertices 2, 3, 5) is flat. ", untangle],
+    );
+    assert_triangle_refused(
+        &moved("1.5 1.25"),
+        ELE,
+        &[
+            "in.ele:3: 2 triangles are inverted or flat, the first is triangle 2 (vertices 2, 3, 5)",
+            "which is inverted",
+            untangle,
+        ],
+    );
+    // Numbers from zero.
+    let zero = "5 2\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n4 1.5 .5\n";
+    let ele = "4 3\n0 0 1 4\n1 1 2 4\n2 2 3 4\n3 3 0 4\n";
+    assert_triangle_refused(zero, ele, &["in.ele:3: triangle 1 (vertices 1, 2, 4) is inverted"]);
+    assert_gmsh_refused(
+        "50 0.25 0.5",
+        "50 1.5 0.5",
+        &["in.msh:15: triangle 8 (vertices 20, 30, 50) is inverted", untangle],
+    );
+    // A folded mesh, all clockwise but for one.
+    let clockwise = "4 3\n1 2 1 5\n2 3 2 5\n3 4 3 5\n4 1 4 5\n";
+    assert_triangle_refused(&moved("0.5 -1"), clockwise, &["triangle 1 (vertices 2, 1, 5) is inv"]);
+}
+
+#[test]
+fn meshes_without_a_free_vertex_are_told() {
+    assert_refused(
+        &[("in.node", "3 2\n1 0 0\n2 1 0\n3 0 1\n"), ("in.ele", "1 3\n1 1 2 3\n")],
+        "in.node",
+        &["in.node: none of the 3 vertices is free to move", "nothing to smooth"],
+    );
+    assert_gmsh_refused(
+        "4\n7 2 2",
+        "5\n1 15 2 0 1 50\n7 2 2",
+        &["in.msh: none of the 5 vertices is free to move"],
+    );
+}
+
+#[test]
+fn an_edge_of_three_triangles_is_told() {
+    assert_triangle_refused(
+        &NODE.replace("5 2 0 0", "6 2 0 0").replace("5 0.25 0.5", "5 0.25 0.5\n6 2 -1"),
+        "6 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n# two more\n5 2 1 6\n6 6 5 1\n",
+        &["in.ele:8: the edge between vertices 1 and 5 belongs to 3 triangles (1, 4, 6)", "remove"],
+    );
+    assert_gmsh_refused(
+        "4\n7 2 2",
+        "5\n70 2 2 0 1 10 50 30\n7 2 2",
+        &["the edge between vertices 10 and 50 belongs to 3 triangles (70, 7, 11)"],
+    );
+}
+
+#[test]
+fn files_of_other_kinds_are_told() {
+    let elements = GMSH.find("4\n7 2 2").unwrap();
+    assert_gmsh_refused(
+        &GMSH[elements..],
+        "1\n7 3 2 0 1 10 20 30 40\n$EndElements\n",
+        &["in.msh: 5 vertices, but no triangle. "],
+    );
+    assert_gmsh_refused(
+        "2.2 0 8",
+        "2.2 1 8",
+        &["in.msh:2: binary .msh is not read yet. Save as ASCII (Mesh.Binary=0)"],
+    );
+    assert_gmsh_refused("2 2 0 1 10", "4 2 0 1 10", &["in.msh:14: ", "makes this a volume mesh"]);
+    assert_refused(&[("in.txt", "hello\n")], "in.txt", &["in.txt: the format is not recognized. "]);
+    assert_refused(
+        &[("in.vtk", "# vtk DataFile Version 2.0\n")],
+        "in.vtk",
+        &["in.vtk: not read yet: legacy VTK. Formats read: Triangle .node/.ele, gmsh 2.2 ASCII"],
+    );
+}
+
+#[test]
+fn quality_refuses_alike() {
+    let folder = Folder::new(&[("in.node", NODE), ("in.txt", "hello\n")]);
+    folder.line("quality in.node").refused(&["in.ele: not found"]);
+    folder.line("quality in.txt --json").refused(&["in.txt: the format is not recognized"]);
+    folder.line("quality none").refused(&["none: ", "Check the name"]);
+    let outline = plate_path().with_extension("outline");
+    folder.run(["quality".as_ref(), outline.as_os_str()]).refused(&["plate.outline: "]);
+}

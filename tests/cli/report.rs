@@ -1,0 +1,132 @@
+//! What the JSON report holds.
+
+use super::{number, small};
+use serde_json::Value;
+
+#[track_caller]
+fn assert_keys(value: &Value, keys: &[&str]) {
+    let mut keys = keys.to_vec();
+    keys.sort_unstable();
+    let mut found: Vec<_> = value.as_object().unwrap().keys().collect();
+    found.sort_unstable();
+    assert_eq!(found, keys);
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_else(|| panic!("{value} is not a text"))
+}
+
+const METRICS: [&str; 5] = ["edge", "area", "rms", "imr", "ar"];
+
+#[test]
+fn report_holds_the_documented_keys() {
+    let folder = small();
+    for engine in ["gpu", "cpu"] {
+        folder.line(&format!("in out --engine {engine} --report r.json")).clean();
+        let report = folder.json("r.json");
+        assert_keys(
+            &report,
+            &[
+                "engine",
+                "mesh",
+                "scheme",
+                "sweeps",
+                "best_sweep",
+                "stop",
+                "returned",
+                "before",
+                "after",
+                "history",
+                "seconds",
+            ],
+        );
+        assert_keys(&report["engine"], &["kind", "adapter", "driver"]);
+        assert_eq!(report["engine"]["kind"], engine);
+        for name in ["adapter", "driver"] {
+            let of_gpu = engine == "gpu";
+            assert_eq!((report["engine"][name].is_string(), of_gpu), (of_gpu, of_gpu));
+            assert!(of_gpu || report["engine"][name].is_null());
+        }
+        assert_keys(&report["mesh"], &["format", "vertices", "triangles", "free", "colors"]);
+        let mesh = &report["mesh"];
+        let counts = ["vertices", "triangles", "free"].map(|key| mesh[key].as_u64().unwrap());
+        assert_eq!(counts, [99, 160, 63]);
+        assert!((3..10).contains(&mesh["colors"].as_u64().unwrap()));
+        assert_eq!(
+            (text(&mesh["format"]), text(&report["scheme"])),
+            ("Triangle .node/.ele", "imr")
+        );
+        assert_eq!((text(&report["stop"]), &report["returned"]), ("converged", &Value::from(0)));
+        assert_eq!(report["best_sweep"], report["sweeps"]);
+
+        for state in ["before", "after"] {
+            let quality = &report[state];
+            assert_keys(
+                quality,
+                &["f", "min_angle", "max_angle", "worst_imr", "worst_movable_imr", "inverted"],
+            );
+            assert_keys(&quality["f"], &METRICS);
+            assert_eq!(quality["inverted"], 0);
+            assert!((0.0..60.0).contains(&number(&quality["min_angle"])));
+            assert!((60.0..180.0).contains(&number(&quality["max_angle"])));
+            assert!(number(&quality["worst_imr"]) >= number(&quality["worst_movable_imr"]));
+        }
+        let of = |state: &str, key: &str| number(&report[state][key]);
+        assert!(of("after", "min_angle") > of("before", "min_angle"));
+        assert!(of("after", "worst_imr") < of("before", "worst_imr"));
+
+        assert_keys(&report["seconds"], &["read", "prepare", "smooth", "write", "total"]);
+        let seconds = |part| number(&report["seconds"][part]);
+        let parts: f64 = ["read", "prepare", "smooth", "write"].into_iter().map(seconds).sum();
+        assert!(parts > 0.0 && (parts - seconds("total")).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn history_holds_the_first_state_and_every_sweep() {
+    let folder = small();
+    for engine in ["gpu", "cpu"] {
+        let line =
+            format!("in out --scheme edge+imr --max-sweeps 30 --tolerance 0 --engine {engine}");
+        folder.line(&format!("{line} --report base.json")).clean();
+        folder.line(&format!("{line} --report all.json --history all")).clean();
+        let [base, all] = ["base.json", "all.json"].map(|name| folder.json(name));
+        let rows = base["history"].as_array().unwrap();
+        assert_eq!((rows.len(), base["sweeps"].as_u64()), (31, Some(30)));
+        for (i, row) in rows.iter().enumerate() {
+            assert_keys(row, &["sweep", "metric", "f"]);
+            assert_eq!(row["sweep"], i);
+            let metric = [Value::from("imr"), Value::from("edge")][i % 2].clone();
+            assert_eq!(row["metric"], if i == 0 { Value::Null } else { metric });
+        }
+        let f = |row: &Value| number(&row["f"]);
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-5;
+        assert!(near(f(&rows[0]), number(&base["before"]["f"]["edge"])));
+        let best = base["best_sweep"].as_u64().unwrap() as usize;
+        assert!(near(f(&rows[best]), number(&base["after"]["f"]["edge"])));
+        assert!(rows.iter().all(|row| f(row) >= f(&rows[best])));
+
+        let all_rows = all["history"].as_array().unwrap();
+        assert_eq!(all_rows.len(), rows.len());
+        for (row, base_row) in all_rows.iter().zip(rows) {
+            assert_keys(row, &["sweep", "metric", "f", "all"]);
+            assert_keys(&row["all"], &METRICS);
+            assert_eq!((&row["f"], &row["all"]["edge"]), (&base_row["f"], &base_row["f"]));
+        }
+        assert!(near(number(&all_rows[0]["all"]["rms"]), number(&all["before"]["f"]["rms"])));
+    }
+}
+
+#[test]
+fn goal_is_in_the_report_of_a_run_that_has_one() {
+    let folder = small();
+    for (options, given) in [("--fraction 0.9", false), ("--desired 1.05 --fraction 0.8", true)] {
+        folder.line(&format!("in out --engine cpu --report r.json {options}")).clean();
+        let goal = &folder.json("r.json")["goal"];
+        assert_keys(goal, &["fraction", "desired", "origin", "reached", "best_fraction"]);
+        assert_eq!(goal["reached"], true);
+        assert!(number(&goal["best_fraction"]) > number(&goal["fraction"]));
+        assert_eq!(text(&goal["origin"]) == "given", given);
+        assert_eq!(number(&goal["desired"]) == 1.05, given);
+    }
+}

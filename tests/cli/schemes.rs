@@ -1,0 +1,51 @@
+//! Every metric and the paper's alternations, on both engines.
+
+use super::{Folder, assert_smoothed, number, small, support};
+
+const SCHEMES: [&str; 13] = [
+    "edge",
+    "area",
+    "rms",
+    "imr",
+    "ar",
+    "edge+imr",
+    "area+imr",
+    "rms+imr",
+    "edge+ar",
+    "area+ar",
+    "rms+ar",
+    "edge+imr+imr",
+    "edge+imr+imr+imr",
+];
+
+fn assert_scheme_works(folder: &Folder, scheme: &str, engine: &str) {
+    let line = format!("in out --scheme {scheme} --engine {engine} --max-sweeps 60");
+    let summary = folder.line(&format!("{line} --report r.json")).clean().out;
+    assert!(summary.contains(&format!("\n{scheme} on {engine} (")), "{summary}");
+    let (before, after, report) = (folder.mesh("in"), folder.mesh("out"), folder.json("r.json"));
+    assert_smoothed(&before, &after);
+    assert_eq!((&report["scheme"], &report["after"]["inverted"]), (&scheme.into(), &0.into()));
+    let metrics: Vec<_> = scheme.split('+').collect();
+    let f = |state: &str| number(&report[state]["f"][metrics[0]]);
+    assert!(f("after") < f("before"), "{scheme} on {engine}: f {}", f("after"));
+    let rows = report["history"].as_array().unwrap();
+    assert!(rows.len() > 4);
+    for (row, metric) in rows[1..].iter().zip(metrics.iter().cycle()) {
+        assert_eq!(row["metric"], *metric, "{scheme}");
+    }
+    if metrics.contains(&"imr") || metrics.contains(&"ar") {
+        assert!(support::f_imr(&after) < support::f_imr(&before));
+    }
+}
+
+#[test]
+fn every_scheme_leaves_a_valid_better_mesh_on_the_gpu() {
+    let folder = small();
+    SCHEMES.iter().for_each(|scheme| assert_scheme_works(&folder, scheme, "gpu"));
+}
+
+#[test]
+fn every_scheme_leaves_a_valid_better_mesh_on_the_cpu() {
+    let folder = small();
+    SCHEMES.iter().for_each(|scheme| assert_scheme_works(&folder, scheme, "cpu"));
+}
