@@ -5,7 +5,7 @@ var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
 // The base metric's sum of an evaluation.
 fn base_sum(evaluation: u32) -> vec2<f32> {
-    return control.history[(evaluation % HISTORY) * METRICS + params.base];
+    return control.history[(evaluation % HISTORY) * SLOTS + params.base];
 }
 
 fn gain(earlier: u32, later: u32) -> f32 {
@@ -68,7 +68,7 @@ fn finish(@builtin(local_invocation_index) local: u32) {
             }
         }
         if local == 0u && running {
-            control.history[(evaluation % HISTORY) * METRICS + TRACKED_METRICS[i]] = totals[0];
+            control.history[(evaluation % HISTORY) * SLOTS + TRACKED_SLOTS[i]] = totals[0];
         }
         workgroupBarrier();
     }

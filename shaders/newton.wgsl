@@ -133,21 +133,21 @@ fn sweep(
         return;
     }
     let vertex = color.first + index;
-    // The objective was evaluated once before the first sweep.
-    let number = control.evaluated;
-    let relaxed = params.omega[METRIC / 4u][METRIC % 4u];
-    let omega = select(1.0, relaxed, number > params.plain_sweeps);
-    sharpness = sharpness_of(number);
+    let start = ring_start[vertex];
+    if (start & HELD) != 0u {
+        return;
+    }
+    sharpness = color.sharpness;
 
     var p: Patch;
-    p.start = ring_start[vertex];
-    p.end = ring_start[vertex + 1u];
+    p.start = start;
+    p.end = ring_start[vertex + 1u] & ~HELD;
     p.at = positions[vertex];
     p.unit = unit_of(edge(p.at, positions[ring[p.start]]));
     p.mean_area = params.mean_area * p.unit * p.unit;
     var moved = false;
     for (var i = 0u; i < params.inner; i++) {
-        let d = newton_step(p, omega);
+        let d = newton_step(p, color.omega);
         if all(d == vec2(0.0)) {
             break;
         }
@@ -157,14 +157,6 @@ fn sweep(
     if moved {
         positions[vertex] = p.at;
     }
-}
-
-fn sharpness_of(number: u32) -> u32 {
-    var doublings = 0u;
-    if params.sharpness_every > 0u {
-        doublings = (number - 1u) / params.sharpness_every;
-    }
-    return min(params.sharpness_first + doublings, params.sharpness_last);
 }
 
 // The position moved by d, with its low part kept below half a unit of its high part.

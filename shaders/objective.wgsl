@@ -1,4 +1,4 @@
-// Sums of q² - ideal² over all triangles for the tracked metrics: each invocation strides over the
+// Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted: each invocation strides over the
 // triangles and leaves one pair of floats a metric; finish.wgsl adds those up. No barrier: those
 // are dear on software adapters.
 
@@ -16,7 +16,7 @@ fn objective(
         let p = positions[triangles[3u * t]];
         let a = edge(p, positions[triangles[3u * t + 1u]]);
         let b = edge(p, positions[triangles[3u * t + 2u]]);
-        let values = tracked_excesses(Corner(a, b, params.mean_area));
+        let values = tracked_values(Corner(a, b, params.mean_area));
         for (var i = 0u; i < TRACKED; i++) {
             let s = two_sum(sums[i].x, values[i]);
             sums[i] = vec2(s.x, sums[i].y + s.y);

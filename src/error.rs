@@ -95,6 +95,13 @@ pub enum MeshError {
         /// The first such vertex.
         vertex: u32,
     },
+    /// A coordinate is so large, or the whole mesh so small, that products of lengths leave the range
+    /// of double precision and exact predicates would not be exact.
+    #[error("the coordinates are of size {size:e}, outside of 1e-100 to 1e100")]
+    OutOfRange {
+        /// The largest coordinate.
+        size: f64,
+    },
     /// A triangle or the list of fixed vertices names a vertex that does not exist.
     #[error("vertex {vertex} is used, but there are only {vertices}")]
     IndexOutOfRange {

@@ -117,6 +117,26 @@ impl Problem {
         self.mean_area
     }
 
+    /// The mesh's number of each vertex.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// The center that positions are relative to, and the scale: normalized is (x - center) · scale.
+    pub fn normalization(&self) -> (DVec2, f64) {
+        (self.center, self.scale)
+    }
+
+    /// Puts the normalized positions of all vertices, fixed ones too, back in the mesh's order and
+    /// units. A vertex in no triangle is where `mesh` has it.
+    pub fn denormalize_all(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
+        let mut points = mesh.points.clone();
+        for (&v, &now) in self.vertices.iter().zip(positions) {
+            points[v as usize] = (self.center + now / self.scale).to_array();
+        }
+        points
+    }
+
     /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did
     /// not move keeps its bits.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {

@@ -5,15 +5,15 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::coloring::Coloring;
 use crate::cpu::{CpuEngine, mean_excess};
-use crate::engine::{Engine, Objectives};
+use crate::engine::{Engine, EngineError, Objectives};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine};
+use crate::gpu::{Gpu, GpuEngine, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::options::{Desired, Goal, Options};
 use crate::plan::{Plan, Sharpness, Stop};
+use crate::prepare::prepare;
 use crate::problem::Problem;
 use crate::quality::Quality;
 use crate::scheme::Scheme;
@@ -27,6 +27,9 @@ pub enum Backend {
     /// On a wgpu device.
     Gpu(Gpu),
 }
+
+/// Hears how far a run is, and may end it.
+pub type Observer<'o> = dyn FnMut(&Progress) -> ControlFlow<()> + 'o;
 
 /// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -98,10 +101,7 @@ impl<'a> Smoother<'a> {
     /// [`MeshError`] if the mesh is not one that can be smoothed.
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
-        let topology = Topology::new(mesh)?;
-        topology.check_smoothable(&mesh.points)?;
-        let coloring = Coloring::new(&topology);
-        let problem = Problem::new(mesh, &topology, &coloring);
+        let (topology, problem) = prepare(mesh)?;
         Ok(Self { mesh, topology, problem, prepare: start.elapsed() })
     }
 
@@ -141,20 +141,51 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         backend: &Backend,
-        observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        observe: &mut Observer<'_>,
+    ) -> Result<Outcome, SmoothError> {
+        let place = match backend {
+            Backend::Cpu => Place::Cpu,
+            Backend::Gpu(gpu) => Place::Gpu(gpu, Waiting::Block),
+        };
+        pollster::block_on(self.run_at(options, place, observe))
+    }
+
+    /// Smooths the mesh on a device without blocking the thread while the device works.
+    ///
+    /// The future completes only if somebody polls the device meanwhile, as an application does that
+    /// draws frames ([`wgpu::Device::poll`] with [`wgpu::PollType::Poll`] is enough; a browser polls by
+    /// itself). Dropping the future cancels the run, as `observe` can, which then returns the best
+    /// state so far.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub async fn run_async(
+        &self,
+        options: &Options,
+        gpu: &Gpu,
+        observe: &mut Observer<'_>,
+    ) -> Result<Outcome, SmoothError> {
+        self.run_at(options, Place::Gpu(gpu, Waiting::Await), observe).await
+    }
+
+    async fn run_at(
+        &self,
+        options: &Options,
+        place: Place<'_>,
+        observe: &mut Observer<'_>,
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         let goal = match options.goal {
-            Some(goal) => Some(self.aim(goal, options, backend, observe)?),
+            Some(goal) => Some(self.aim(goal, options, place, observe).await?),
             None => None,
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
-        let run = Run { smoother: self, backend, phase: Phase::Smoothing };
-        let end = run.sweep(options.plan(target), self.problem.positions(), observe)?;
+        let run = Run { smoother: self, place, phase: Phase::Smoothing };
+        let end = run.sweep(options.plan(target), self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if options.scheme.is_monotone() {
             end.history.len() - 1
@@ -188,12 +219,12 @@ impl<'a> Smoother<'a> {
     }
 
     /// Finds what a goal is measured by.
-    fn aim(
+    async fn aim(
         &self,
         goal: Goal,
         options: &Options,
-        backend: &Backend,
-        observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        place: Place<'_>,
+        observe: &mut Observer<'_>,
     ) -> Result<GoalOutcome, SmoothError> {
         let Goal { fraction, desired } = goal;
         if let Desired::Value(desired) = desired {
@@ -208,33 +239,68 @@ impl<'a> Smoother<'a> {
             sharpness: Sharpness::CONTINUED,
             ..Options::default()
         };
-        let run = Run { smoother: self, backend, phase: Phase::Reference };
+        let run = Run { smoother: self, place, phase: Phase::Reference };
         let start = self.problem.positions();
+        let mut starts = vec![(format!("{base} alone"), start.to_vec())];
+        if !matches!(base, Metric::Imr | Metric::Ar) {
+            let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
+            let after_imr = run.sweep(imr.plan(None), start, observe).await?;
+            starts.push((format!("imr, then {base}"), after_imr.positions));
+        }
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
-        let mut try_from = |from: &[DVec2], label: &str| -> Result<(), SmoothError> {
-            let end = run.sweep(full(base).plan(None), from, observe)?;
+        for (label, start) in starts {
+            let end = run.sweep(full(base).plan(None), &start, observe).await?;
             let f = self.objective(base, &end.positions);
             let sweeps = end.history.len() - 1;
             describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
             desired = desired.min(f);
-            Ok(())
-        };
-        try_from(start, &format!("{base} alone"))?;
-        if !matches!(base, Metric::Imr | Metric::Ar) {
-            let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
-            let after_imr = run.sweep(imr.plan(None), start, &mut |_| ControlFlow::Continue(()))?;
-            try_from(&after_imr.positions, &format!("imr, then {base}"))?;
         }
         let origin = format!("over-relaxed; {}", describe.join("; "));
         Ok(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
     }
 }
 
+/// Where a run computes, and who waits for it.
+#[derive(Clone, Copy)]
+enum Place<'g> {
+    Cpu,
+    Gpu(&'g Gpu, Waiting),
+}
+
+/// The engine of a run.
+enum AnyEngine<'e> {
+    Cpu(CpuEngine<'e>),
+    Gpu(Box<GpuEngine<'e>>),
+}
+
+impl AnyEngine<'_> {
+    async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+        match self {
+            AnyEngine::Cpu(engine) => engine.advance(sweeps),
+            AnyEngine::Gpu(engine) => Ok(GpuEngine::advance(engine, sweeps).await?),
+        }
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        match self {
+            AnyEngine::Cpu(engine) => engine.stop(),
+            AnyEngine::Gpu(engine) => engine.stop(),
+        }
+    }
+
+    async fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
+        match self {
+            AnyEngine::Cpu(engine) => engine.best_positions(),
+            AnyEngine::Gpu(engine) => Ok(GpuEngine::best_positions(engine).await?),
+        }
+    }
+}
+
 /// Sweeps from some positions to the end.
 struct Run<'s, 'a> {
     smoother: &'s Smoother<'a>,
-    backend: &'s Backend,
+    place: Place<'s>,
     phase: Phase,
 }
 
@@ -245,23 +311,26 @@ struct End {
 }
 
 impl Run<'_, '_> {
-    fn sweep(
+    async fn sweep(
         &self,
         plan: Plan,
         from: &[DVec2],
-        observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        observe: &mut Observer<'_>,
     ) -> Result<End, SmoothError> {
         let base = plan.scheme.base();
         let problem = &self.smoother.problem;
-        let mut engine: Box<dyn Engine> = match self.backend {
-            Backend::Cpu => Box::new(CpuEngine::new(problem, from.to_vec(), plan)),
-            Backend::Gpu(gpu) => Box::new(GpuEngine::new(gpu, problem, from, plan)?),
+        let mut engine = match self.place {
+            Place::Cpu => AnyEngine::Cpu(CpuEngine::new(problem, from.to_vec(), plan)),
+            Place::Gpu(gpu, waiting) => {
+                let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
+                AnyEngine::Gpu(Box::new(engine))
+            }
         };
         let mut history = Vec::new();
         let mut batch = 4;
         let stop = loop {
             let start = Instant::now();
-            let log = engine.advance(batch)?;
+            let log = engine.advance(batch).await?;
             batch = next_batch(batch, start.elapsed());
             history.extend_from_slice(&log);
             if let Some(stop) = engine.stop() {
@@ -276,7 +345,7 @@ impl Run<'_, '_> {
                 break Stop::Cancelled;
             }
         };
-        Ok(End { history, positions: engine.best_positions()?, stop })
+        Ok(End { history, positions: engine.best_positions().await?, stop })
     }
 }
 
@@ -285,4 +354,21 @@ impl Run<'_, '_> {
 fn next_batch(batch: u32, took: Duration) -> u32 {
     let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);
     (fits as u32).clamp(1, 4 * batch).min(100)
+}
+
+/// Smooths a mesh given as plain slices, in one blocking call: positions in any unit, and vertex triples,
+/// zero-based, in either winding. The boundary stays. Returns the positions in the same order.
+///
+/// # Errors
+/// As [`Smoother::new`] and [`Smoother::run`].
+pub fn smooth(
+    points: &[[f64; 2]],
+    triangles: &[[u32; 3]],
+    options: &Options,
+    backend: &Backend,
+) -> Result<Vec<[f64; 2]>, SmoothError> {
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
+    let smoother = Smoother::new(&mesh)?;
+    let outcome = smoother.run(options, backend, &mut |_| ControlFlow::Continue(()))?;
+    Ok(outcome.points)
 }

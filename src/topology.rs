@@ -129,6 +129,10 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     if let Some(vertex) = points.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
         return Err(MeshError::NotFinite { vertex: vertex as u32 });
     }
+    let largest = points.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if !(1e-100..=1e100).contains(&largest) {
+        return Err(MeshError::OutOfRange { size: largest });
+    }
     for (t, corners) in triangles.iter().enumerate() {
         for (i, &vertex) in corners.iter().enumerate() {
             if vertex as usize >= points.len() {
@@ -308,6 +312,8 @@ mod tests {
         let error = Topology::new(&mesh).unwrap_err();
         assert_eq!(error, MeshError::RepeatedVertex { triangle: 1, vertex: 1 });
         mesh = fan();
+        mesh.points[3][1] = 1e200;
+        assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::OutOfRange { size: 1e200 });
         mesh.points[3][1] = f64::NAN;
         assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::NotFinite { vertex: 3 });
     }

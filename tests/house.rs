@@ -34,12 +34,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("problem", &["coloring", "mesh", "topology"]),
     ("engine", &["metric", "plan", "gpu"]),
     ("cpu", &["dual", "engine", "metric", "plan", "problem"]),
-    ("gpu", &["engine", "metric", "plan", "problem"]),
+    ("prepare", &["coloring", "error", "mesh", "problem", "topology"]),
+    ("gpu", &["engine", "error", "mesh", "metric", "options", "plan", "prepare", "problem"]),
     ("quality", &["metric", "topology", "validity", "mesh"]),
     (
         "smoother",
         &[
-            "coloring", "cpu", "engine", "error", "gpu", "mesh", "metric", "options", "plan",
+            "cpu", "engine", "error", "gpu", "mesh", "metric", "options", "plan", "prepare",
             "problem", "quality", "scheme", "topology", "validity",
         ],
     ),

@@ -2,13 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::buffers::MeshSize;
 use super::kernel::Pipelines;
 
 /// The GPU engine cannot start or go on.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter, or none of that name.
-    #[error("no GPU adapter{}", wanted.as_ref().map(|name| format!(" has '{name}' in its name; there are: {available}")).unwrap_or_else(|| " was found".into()))]
+    #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
     NoAdapter {
         /// The name that was asked for.
         wanted: Option<String>,
@@ -38,12 +39,23 @@ pub enum GpuError {
     /// The device has no memory left.
     #[error("the device is out of memory: {0}")]
     OutOfMemory(String),
+    /// A buffer of the application cannot be used as asked.
+    #[error("the application's buffer cannot be used: {0}")]
+    Buffer(String),
     /// wgpu refused a call: a bug in this library, or a device made with other limits.
     #[error("the device refused: {0}")]
     Refused(String),
     /// The device was lost or destroyed; the run is lost with it.
     #[error("the device was lost: {0}")]
     Lost(String),
+}
+
+fn lacking(wanted: Option<&str>, available: &str) -> String {
+    match wanted {
+        None => " was found".into(),
+        Some(name) if available.is_empty() => format!(" was found, so none called '{name}'"),
+        Some(name) => format!(" has '{name}' in its name; there are: {available}"),
+    }
 }
 
 /// What an adapter is called and how wgpu drives it.
@@ -114,14 +126,6 @@ impl Gpu {
             adapter: summary.name.clone(),
             message: error.to_string(),
         })?;
-        Self::new(device, queue, summary)
-    }
-
-    fn new(
-        device: wgpu::Device,
-        queue: wgpu::Queue,
-        summary: AdapterSummary,
-    ) -> Result<Self, GpuError> {
         let lost = Arc::new(Mutex::new(None));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
@@ -133,6 +137,28 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
+        Self::with(device, queue, summary, lost)
+    }
+
+    /// Takes an application's own device and queue (both are handles: clones name the same device).
+    ///
+    /// It has to be made with [`Self::required_limits`] or better. Its callbacks for errors and
+    /// for loss stay the application's: this library catches the errors of its own calls in error
+    /// scopes, and learns of a lost device by reading back.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the device binds too few storage buffers, or what it refuses.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        let summary = AdapterSummary::new(&device.adapter_info());
+        Self::with(device, queue, summary, Arc::default())
+    }
+
+    fn with(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        summary: AdapterSummary,
+        lost: Arc<Mutex<Option<String>>>,
+    ) -> Result<Self, GpuError> {
         let available = device.limits().max_storage_buffers_per_shader_stage;
         let needed = super::kernel::storage_bindings();
         if needed > available {
@@ -145,6 +171,54 @@ impl Gpu {
         }
         let pipelines = scoped(&device, || Pipelines::new(&device))?;
         Ok(Self { device, queue, pipelines, summary, lost })
+    }
+
+    /// The features a device needs: none beyond core WebGPU.
+    pub fn required_features() -> wgpu::Features {
+        wgpu::Features::empty()
+    }
+
+    /// The limits a device needs for meshes of up to `size`: the defaults, raised where the mesh is
+    /// larger than they allow.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low; it names the limit.
+    pub fn required_limits(
+        size: MeshSize,
+        available: &wgpu::Limits,
+    ) -> Result<wgpu::Limits, GpuError> {
+        size.check(available)?;
+        let defaults = wgpu::Limits::downlevel_defaults();
+        let mut limits = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: super::kernel::storage_bindings()
+                .max(defaults.max_storage_buffers_per_shader_stage),
+            ..defaults
+        };
+        if limits.max_storage_buffers_per_shader_stage
+            > available.max_storage_buffers_per_shader_stage
+        {
+            return Err(GpuError::Limit {
+                what: "the number of storage buffers a kernel reads".into(),
+                needed: limits.max_storage_buffers_per_shader_stage.into(),
+                limit: "max_storage_buffers_per_shader_stage",
+                available: available.max_storage_buffers_per_shader_stage.into(),
+            });
+        }
+        let largest = size.largest();
+        limits.max_storage_buffer_binding_size =
+            limits.max_storage_buffer_binding_size.max(largest);
+        limits.max_buffer_size = limits.max_buffer_size.max(largest);
+        Ok(limits)
+    }
+
+    /// The device, a handle.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The queue, a handle.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
     }
 
     /// The adapter in use.

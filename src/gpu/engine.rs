@@ -2,30 +2,23 @@
 
 use glam::DVec2;
 
-use super::buffers::{Buffers, join, split};
+use super::buffers::MeshBuffers;
 use super::device::{Gpu, GpuError, scoped};
-use super::layout::{Control, HISTORY, WORKGROUP, unpair};
-use super::readback;
-use super::shaders::Kernel;
-use crate::engine::{Engine, EngineError, Objectives};
-use crate::metric::Metric;
+use super::layout::{Control, HISTORY, join, split, unpair};
+use super::readback::{self, Waiting};
+use super::run::Run;
+use crate::engine::{EngineError, Objectives};
 use crate::plan::{Plan, Stop};
 use crate::problem::Problem;
-
-/// Workgroups along x of a dispatch too long for one dimension.
-const FOLD: u32 = 32768;
 
 /// A run on a device.
 pub struct GpuEngine<'a> {
     gpu: &'a Gpu,
     problem: &'a Problem,
     start: &'a [DVec2],
-    plan: Plan,
-    buffers: Buffers,
-    sweeps: Vec<(Metric, wgpu::ComputePipeline)>,
-    objective: wgpu::ComputePipeline,
-    finish: wgpu::ComputePipeline,
-    keep_best: Option<wgpu::ComputePipeline>,
+    mesh: MeshBuffers,
+    run: Run,
+    waiting: Waiting,
     /// Evaluations read back so far.
     evaluated: u32,
     stop: Option<Stop>,
@@ -44,93 +37,54 @@ impl<'a> GpuEngine<'a> {
         plan: Plan,
     ) -> Result<Self, GpuError> {
         gpu.check()?;
-        let buffers = Buffers::new(gpu, problem, start, &plan)?;
-        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel);
-        let mut sweeps: Vec<(Metric, wgpu::ComputePipeline)> = Vec::new();
-        for &metric in plan.scheme.metrics() {
-            if sweeps.iter().all(|&(known, _)| known != metric) {
-                sweeps.push((metric, pipeline(Kernel::Sweep(metric, plan.derivatives))?));
-            }
-        }
-        let objective = pipeline(Kernel::Objective(plan.tracked()))?;
-        let finish = pipeline(Kernel::Finish(plan.tracked()))?;
-        let keep_best = match plan.scheme.is_monotone() {
-            true => None,
-            false => Some(pipeline(Kernel::KeepBest)?),
-        };
-        Ok(Self {
-            gpu,
-            problem,
-            start,
-            plan,
-            buffers,
-            sweeps,
-            objective,
-            finish,
-            keep_best,
-            evaluated: 0,
-            stop: None,
-        })
+        let mesh = MeshBuffers::new(gpu, problem, start)?;
+        let keep_best = !plan.scheme.is_monotone();
+        let run = Run::new(gpu, problem, &mesh, plan, keep_best)?;
+        let waiting = Waiting::Block;
+        Ok(Self { gpu, problem, start, mesh, run, waiting, evaluated: 0, stop: None })
+    }
+
+    /// Lets the asynchronous calls wait for somebody else to poll the device.
+    #[must_use]
+    pub(crate) fn waiting(mut self, waiting: Waiting) -> Self {
+        self.waiting = waiting;
+        self
     }
 
     /// Submits `sweeps` sweeps, the first evaluation in front if there was none yet.
     fn submit(&self, sweeps: u32) -> Result<(), GpuError> {
+        let label = Some("gpu-smooth sweeps");
         scoped(&self.gpu.device, || {
             let mut encoder =
-                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                    label: Some("gpu-smooth sweeps"),
-                });
+                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some("gpu-smooth sweeps"),
+                    label,
                     timestamp_writes: None,
                 });
                 if self.evaluated == 0 {
-                    self.encode_evaluation(&mut pass);
+                    self.run.encode_evaluation(&mut pass);
                 }
                 let first = self.evaluated.max(1);
                 for sweep in first..first + sweeps {
-                    self.encode_sweep(&mut pass, sweep);
-                    self.encode_evaluation(&mut pass);
+                    self.run.encode_sweep(&mut pass, sweep);
+                    self.run.encode_evaluation(&mut pass);
                 }
             }
             self.gpu.queue.submit([encoder.finish()]);
         })
     }
 
-    fn encode_sweep(&self, pass: &mut wgpu::ComputePass<'_>, sweep: u32) {
-        let metric = self.plan.scheme.metric(sweep);
-        if let Some((_, pipeline)) = self.sweeps.iter().find(|&&(known, _)| known == metric) {
-            pass.set_pipeline(pipeline);
-        }
-        for (color, range) in (0..).zip(self.problem.colors()) {
-            pass.set_bind_group(0, &self.buffers.bind_group, &[color * self.buffers.color_stride]);
-            dispatch(pass, range.end - range.start);
-        }
-    }
-
-    /// Evaluates the objectives, judges, and keeps the positions if they are the best.
-    fn encode_evaluation(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_bind_group(0, &self.buffers.bind_group, &[0]);
-        pass.set_pipeline(&self.objective);
-        pass.dispatch_workgroups(self.buffers.objective_groups, 1, 1);
-        pass.set_pipeline(&self.finish);
-        pass.dispatch_workgroups(1, 1, 1);
-        if let Some(keep_best) = &self.keep_best {
-            pass.set_pipeline(keep_best);
-            dispatch(pass, self.problem.free_count() as u32);
-        }
-    }
-
     /// Reads what the device has done since the last call.
-    fn collect(&mut self, log: &mut Vec<Objectives>) -> Result<(), GpuError> {
-        let control: Vec<Control> = readback::read(self.gpu, &self.buffers.control, 1)?;
+    async fn collect(&mut self, log: &mut Vec<Objectives>) -> Result<(), GpuError> {
+        let control: Vec<Control> =
+            readback::read(self.gpu, &self.run.control, 1, self.waiting).await?;
         let Some(control) = control.first() else { return Ok(()) };
         let triangles = self.problem.triangles().len() as f64;
         for evaluation in self.evaluated..control.evaluated {
             let sums = control.history[(evaluation % HISTORY) as usize];
             let mut values = Objectives::untracked();
-            for metric in self.plan.tracked() {
+            for metric in self.run.plan.tracked() {
                 let excess = unpair(sums[metric as usize]) / triangles;
                 values.set(metric, metric.ideal_squared() + excess);
             }
@@ -140,35 +94,31 @@ impl<'a> GpuEngine<'a> {
         self.stop = Stop::from_code(control.done);
         Ok(())
     }
-}
 
-impl Engine for GpuEngine<'_> {
-    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+    /// [`Engine::advance`](crate::Engine::advance), as a future.
+    pub(crate) async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
         let mut log = Vec::new();
         let mut left = sweeps;
         while self.stop.is_none() && (left > 0 || self.evaluated == 0) {
             // The device's history must be read before it wraps.
             let batch = left.min(HISTORY / 2);
             self.submit(batch)?;
-            self.collect(&mut log)?;
+            self.collect(&mut log).await?;
             left -= batch;
         }
         Ok(log)
     }
 
-    fn stop(&self) -> Option<Stop> {
-        self.stop
-    }
-
-    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
-        let buffer = match self.keep_best {
-            Some(_) => &self.buffers.best,
-            None => &self.buffers.positions,
+    /// [`Engine::best_positions`](crate::Engine::best_positions), as a future.
+    pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        let buffer = match self.run.plan.scheme.is_monotone() {
+            true => &self.mesh.positions,
+            false => &self.run.best,
         };
         // Fixed vertices have not moved, and a free one that has not keeps all its bits, which the
         // device's pairs of floats do not hold.
         let free = self.problem.free_count();
-        let moved: Vec<[f32; 4]> = readback::read(self.gpu, buffer, free)?;
+        let moved: Vec<[f32; 4]> = readback::read(self.gpu, buffer, free, self.waiting).await?;
         let mut positions = self.start.to_vec();
         for (position, now) in positions.iter_mut().zip(moved) {
             if now != split(*position) {
@@ -179,12 +129,16 @@ impl Engine for GpuEngine<'_> {
     }
 }
 
-/// Dispatches enough workgroups for `invocations`, folded where one dimension is too short.
-fn dispatch(pass: &mut wgpu::ComputePass<'_>, invocations: u32) {
-    let groups = invocations.div_ceil(WORKGROUP);
-    if groups <= FOLD {
-        pass.dispatch_workgroups(groups, 1, 1);
-    } else {
-        pass.dispatch_workgroups(FOLD, groups.div_ceil(FOLD), 1);
+impl crate::engine::Engine for GpuEngine<'_> {
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+        Ok(pollster::block_on(GpuEngine::advance(self, sweeps))?)
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
+        Ok(pollster::block_on(GpuEngine::best_positions(self))?)
     }
 }

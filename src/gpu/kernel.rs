@@ -1,23 +1,31 @@
-//! Pipelines: the only place that makes them, each once per device.
+//! Pipelines and bind groups: the only place that makes them, each pipeline once per device.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::device::{GpuError, scoped};
-use super::shaders::Kernel;
+use super::shaders::{Interface, Kernel};
 
-/// How a kernel sees a binding of `shaders/common.wgsl`.
-const BINDINGS: [Binding; 9] = [
-    Binding::Uniform { dynamic: false },
-    Binding::Uniform { dynamic: true },
-    Binding::ReadWrite,
-    Binding::ReadOnly,
-    Binding::ReadOnly,
-    Binding::ReadOnly,
-    Binding::ReadWrite,
-    Binding::ReadWrite,
-    Binding::ReadWrite,
-];
+/// The bindings of group 0, in order. Tests hold them against the WGSL.
+fn bindings(interface: Interface) -> &'static [Binding] {
+    use Binding::{ReadOnly, ReadWrite, Uniform};
+    const UNIFORM: Binding = Uniform { dynamic: false };
+    match interface {
+        Interface::Run => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadWrite,
+            ReadOnly,
+            ReadOnly,
+            ReadOnly,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+        ],
+        Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
+        Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
+    }
+}
 
 #[derive(Clone, Copy)]
 enum Binding {
@@ -37,21 +45,28 @@ impl Binding {
     }
 }
 
-/// Number of storage buffers a kernel sees, to be held against the device's limit.
+/// The most storage buffers a kernel sees, to be held against the device's limit.
 pub(crate) fn storage_bindings() -> u32 {
-    BINDINGS.iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
+    bindings(Interface::Run).iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
 }
 
-/// The pipelines of a device, all of one layout, made when first asked for.
+/// The pipelines of a device, made when first asked for.
 pub(crate) struct Pipelines {
-    pub(crate) bindings: wgpu::BindGroupLayout,
-    layout: wgpu::PipelineLayout,
+    run: Layout,
+    exchange: Layout,
+    publish: Layout,
     made: Mutex<HashMap<Kernel, wgpu::ComputePipeline>>,
 }
 
-impl Pipelines {
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let entries: Vec<_> = BINDINGS
+/// The layout of one [`Interface`].
+struct Layout {
+    bindings: wgpu::BindGroupLayout,
+    pipeline: wgpu::PipelineLayout,
+}
+
+impl Layout {
+    fn new(device: &wgpu::Device, interface: Interface) -> Self {
+        let entries: Vec<_> = bindings(interface)
             .iter()
             .zip(0..)
             .map(|(kind, binding)| wgpu::BindGroupLayoutEntry {
@@ -61,16 +76,57 @@ impl Pipelines {
                 count: None,
             })
             .collect();
+        let label = format!("gpu-smooth {interface:?}");
         let bindings = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("gpu-smooth bindings"),
+            label: Some(&label),
             entries: &entries,
         });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("gpu-smooth layout"),
+        let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(&label),
             bind_group_layouts: &[Some(&bindings)],
             immediate_size: 0,
         });
-        Self { bindings, layout, made: Mutex::default() }
+        Self { bindings, pipeline }
+    }
+}
+
+impl Pipelines {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let layout = |interface| Layout::new(device, interface);
+        Self {
+            run: layout(Interface::Run),
+            exchange: layout(Interface::Exchange),
+            publish: layout(Interface::Publish),
+            made: Mutex::default(),
+        }
+    }
+
+    fn layout(&self, interface: Interface) -> &Layout {
+        match interface {
+            Interface::Run => &self.run,
+            Interface::Exchange => &self.exchange,
+            Interface::Publish => &self.publish,
+        }
+    }
+
+    /// Binds resources in the order of the interface. To be called in an error scope.
+    pub(crate) fn bind(
+        &self,
+        device: &wgpu::Device,
+        interface: Interface,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = resources
+            .iter()
+            .cloned()
+            .zip(0..)
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&format!("gpu-smooth {interface:?}")),
+            layout: &self.layout(interface).bindings,
+            entries: &entries,
+        })
     }
 
     /// The pipeline of a kernel.
@@ -91,7 +147,7 @@ impl Pipelines {
             });
             device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(&label),
-                layout: Some(&self.layout),
+                layout: Some(&self.layout(kernel.interface()).pipeline),
                 module: &module,
                 entry_point: Some(kernel.entry_point()),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),

@@ -1,6 +1,7 @@
 //! Mirrors of the WGSL structs; tests hold their offsets against naga's.
 
 use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
 
 use crate::metric::Metric;
 
@@ -11,7 +12,12 @@ pub(crate) const WORKGROUP: u32 = 64;
 /// Invocations of the `finish` kernel.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
-const METRICS: usize = Metric::ALL.len();
+/// What is summed over the triangles: every metric's q² - ideal², and the number of inverted ones.
+pub(crate) const SLOTS: usize = Metric::ALL.len() + 1;
+/// The slot after the metrics'.
+pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
+/// Set in the ring start of a vertex that is to stay, though it has a ring.
+pub(crate) const HELD: u32 = 1 << 31;
 
 /// `Params` in shaders/common.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -20,11 +26,7 @@ pub(crate) struct Params {
     pub(crate) zero: u32,
     pub(crate) triangles: u32,
     pub(crate) partials: u32,
-    pub(crate) plain_sweeps: u32,
     pub(crate) inner: u32,
-    pub(crate) sharpness_first: u32,
-    pub(crate) sharpness_every: u32,
-    pub(crate) sharpness_last: u32,
     pub(crate) base: u32,
     pub(crate) window: u32,
     pub(crate) max_sweeps: u32,
@@ -33,19 +35,20 @@ pub(crate) struct Params {
     pub(crate) ideal_sum: f32,
     pub(crate) tolerance: f32,
     pub(crate) mean_area: f32,
-    pub(crate) padding: [u32; 3],
-    pub(crate) omega: [[f32; 4]; 2],
+    pub(crate) padding: u32,
 }
 
-/// `Color` in shaders/common.wgsl.
+/// `SweepColor` in shaders/common.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Color {
+pub(crate) struct SweepColor {
     pub(crate) first: u32,
     pub(crate) count: u32,
+    pub(crate) omega: f32,
+    pub(crate) sharpness: u32,
 }
 
-/// `Control` in shaders/common.wgsl.
+/// `Control` in shaders/control.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Control {
@@ -55,7 +58,31 @@ pub(crate) struct Control {
     pub(crate) best_sweep: u32,
     pub(crate) best_sum: [f32; 2],
     pub(crate) padding: [u32; 2],
-    pub(crate) history: [[[f32; 2]; METRICS]; HISTORY as usize],
+    pub(crate) history: [[[f32; 2]; SLOTS]; HISTORY as usize],
+}
+
+/// `Exchange` in shaders/exchange.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Exchange {
+    pub(crate) zero: u32,
+    pub(crate) vertices: u32,
+    pub(crate) offset: u32,
+    pub(crate) stride: u32,
+    pub(crate) center: [f32; 4],
+    pub(crate) scale: f32,
+    pub(crate) inverse_scale: f32,
+    pub(crate) padding: [u32; 2],
+}
+
+/// `Publish` in shaders/publish.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Publish {
+    pub(crate) offset: u32,
+    pub(crate) triangles: u32,
+    pub(crate) padding: [u32; 2],
+    pub(crate) ideal_squared: [[f32; 4]; 2],
 }
 
 /// A double as the sum of two floats.
@@ -135,4 +162,15 @@ mod tests {
             assert!((unpair([high, low]) - x).abs() <= x.abs() * 2f64.powi(-48), "{x}");
         }
     }
+}
+
+/// A point as pairs of floats, laid out xy + zw.
+pub(crate) fn split(p: DVec2) -> [f32; 4] {
+    let ([x, x_low], [y, y_low]) = (pair(p.x), pair(p.y));
+    [x, y, x_low, y_low]
+}
+
+/// The point that [`split`] gave or the device moved.
+pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
+    DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
 }

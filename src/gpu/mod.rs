@@ -1,16 +1,25 @@
-//! The wgpu engine, for any adapter, software ones included.
+//! The wgpu engine, for any adapter, software ones included, and for an application's own device.
 //!
-//! By lifetime: a [`Gpu`] is a device with its pipelines and serves many meshes; a [`GpuEngine`] is one
-//! run on one mesh. The kernels are core WebGPU, see [`Kernel`].
+//! By lifetime: a [`Gpu`] is a device with its pipelines and serves many meshes; a [`DeviceMesh`] is a mesh
+//! that stays on the device; [`Sweeps`] are a scheme bound to it, to be encoded into the application's own
+//! command encoder. The blocking and the asynchronous calls of [`Smoother`](crate::Smoother) make all
+//! three for themselves. The kernels are core WebGPU, see [`Kernel`].
 
 mod buffers;
 mod device;
+mod embed;
 mod engine;
+mod exchange;
 mod kernel;
 mod layout;
 mod readback;
+mod run;
 mod shaders;
 
+pub use buffers::MeshSize;
 pub use device::{AdapterSummary, Gpu, GpuError, adapters};
+pub use embed::{DeviceMesh, Sweeps};
 pub use engine::GpuEngine;
-pub use shaders::Kernel;
+pub use exchange::VertexBuffer;
+pub(crate) use readback::Waiting;
+pub use shaders::{Interface, Kernel};

@@ -5,23 +5,33 @@ use futures_intrusive::channel::shared::oneshot_channel;
 
 use super::device::{Gpu, GpuError, scoped};
 
+/// Who polls the device while a readback is under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Waiting {
+    /// This library, blocking the thread until the device is done.
+    Block,
+    /// The application, as it does for its own work; the future completes after one of its polls.
+    Await,
+}
+
 /// Copies `count` values from the start of `source` to the host, after everything submitted so far.
-pub(crate) fn read<T: Pod>(
+pub(crate) async fn read<T: Pod>(
     gpu: &Gpu,
     source: &wgpu::Buffer,
     count: usize,
+    waiting: Waiting,
 ) -> Result<Vec<T>, GpuError> {
     let size = (count * size_of::<T>()) as u64;
+    let label = Some("gpu-smooth readback");
     let staging = scoped(&gpu.device, || {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("gpu-smooth readback"),
+            label,
             size,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("gpu-smooth readback"),
-        });
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
         gpu.queue.submit([encoder.finish()]);
         staging
@@ -31,11 +41,13 @@ pub(crate) fn read<T: Pod>(
         // The receiver is only gone if this function has already failed.
         let _ = sender.send(result);
     });
-    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    gpu.check()?;
-    polled.map_err(|error| GpuError::Lost(error.to_string()))?;
-    match pollster::block_on(receiver.receive()) {
-        Some(Ok(())) => {}
+    if waiting == Waiting::Block {
+        let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        gpu.check()?;
+        polled.map_err(|error| GpuError::Lost(error.to_string()))?;
+    }
+    match receiver.receive().await {
+        Some(Ok(())) => gpu.check()?,
         Some(Err(error)) => return Err(GpuError::Lost(error.to_string())),
         None => return Err(GpuError::Lost("the readback was abandoned".into())),
     }

@@ -2,20 +2,23 @@
 
 use std::fmt::Write;
 
-use super::layout::{FINISH_WORKGROUP, HISTORY, WORKGROUP};
+use super::layout::{FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP};
 use crate::metric::Metric;
 use crate::plan::{Derivatives, NOISE, Stop, line_search};
 
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
+const PAIRS: &str = include_str!("../../shaders/pairs.wgsl");
+const CONTROL: &str = include_str!("../../shaders/control.wgsl");
 const PATCH: &str = include_str!("../../shaders/patch.wgsl");
 const NEWTON: &str = include_str!("../../shaders/newton.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../shaders/finite_difference.wgsl");
 const OBJECTIVE: &str = include_str!("../../shaders/objective.wgsl");
 const FINISH: &str = include_str!("../../shaders/finish.wgsl");
 const KEEP_BEST: &str = include_str!("../../shaders/keep_best.wgsl");
+const EXCHANGE: &str = include_str!("../../shaders/exchange.wgsl");
+const PUBLISH: &str = include_str!("../../shaders/publish.wgsl");
 
-/// A compute kernel. Each is one WGSL module with one entry point and the bindings of
-/// `shaders/common.wgsl`, in core WebGPU.
+/// A compute kernel: one WGSL module in core WebGPU, with the bindings of its [`Interface`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Kernel {
     /// Newton steps on the free vertices of one color.
@@ -26,6 +29,23 @@ pub enum Kernel {
     Finish(Vec<Metric>),
     /// Keeps the positions if they are the best so far.
     KeepBest,
+    /// Takes positions from an application's vertex buffer.
+    Import,
+    /// Writes positions to an application's vertex buffer.
+    Export,
+    /// Writes objectives to an application's buffer.
+    Publish,
+}
+
+/// What a kernel binds as group 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Interface {
+    /// A run on a mesh: `shaders/common.wgsl`.
+    Run,
+    /// A mesh and a vertex buffer: `shaders/exchange.wgsl`.
+    Exchange,
+    /// A run's history and a buffer: `shaders/publish.wgsl`.
+    Publish,
 }
 
 impl Kernel {
@@ -36,6 +56,18 @@ impl Kernel {
             Kernel::Objective(_) => "objective",
             Kernel::Finish(_) => "finish",
             Kernel::KeepBest => "keep_best",
+            Kernel::Import => "import_positions",
+            Kernel::Export => "export_positions",
+            Kernel::Publish => "publish",
+        }
+    }
+
+    /// What it binds.
+    pub fn interface(&self) -> Interface {
+        match self {
+            Kernel::Import | Kernel::Export => Interface::Exchange,
+            Kernel::Publish => Interface::Publish,
+            _ => Interface::Run,
         }
     }
 
@@ -53,7 +85,13 @@ impl Kernel {
     /// The complete WGSL module.
     pub fn wgsl(&self) -> String {
         let mut source = constants();
-        source.push_str(COMMON);
+        match self.interface() {
+            Interface::Run => {
+                [COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
+            }
+            Interface::Exchange => source.push_str(PAIRS),
+            Interface::Publish => source.push_str(CONTROL),
+        }
         match self {
             Kernel::Sweep(metric, derivatives) => {
                 source.push_str(PATCH);
@@ -70,6 +108,8 @@ impl Kernel {
                 source.push_str(FINISH);
             }
             Kernel::KeepBest => source.push_str(KEEP_BEST),
+            Kernel::Import | Kernel::Export => source.push_str(EXCHANGE),
+            Kernel::Publish => source.push_str(PUBLISH),
         }
         source
     }
@@ -82,8 +122,10 @@ fn constants() -> String {
         ("WORKGROUP", WORKGROUP),
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
         ("HISTORY", HISTORY),
-        ("METRICS", Metric::ALL.len() as u32),
-        ("HISTORY_LENGTH", HISTORY * Metric::ALL.len() as u32),
+        ("SLOTS", SLOTS as u32),
+        ("INVERTED", INVERTED),
+        ("HELD", HELD),
+        ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
         ("TRIALS", line_search::TRIALS),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
@@ -157,31 +199,37 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// The formulas of the tracked metrics, evaluated together.
+/// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted.
 fn tracked_metrics(metrics: &[Metric]) -> String {
     let mut text: String = metrics.iter().map(|m| m.properties().wgsl).collect();
-    let calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
+    let mut calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
+    calls.push("select(0.0, 1.0, doubled_area(t) <= 0.0)".to_owned());
     let _ = write!(
         text,
         "const TRACKED: u32 = {count}u;
-fn tracked_excesses(t: Corner) -> array<f32, TRACKED> {{
+fn tracked_values(t: Corner) -> array<f32, TRACKED> {{
     return array<f32, TRACKED>({calls});
 }}
 ",
-        count = metrics.len(),
+        count = calls.len(),
         calls = calls.join(", ")
     );
     text
 }
 
-/// Which metrics the tracked sums belong to.
+/// Which slots the tracked sums belong to.
 fn tracked_slots(metrics: &[Metric]) -> String {
-    let slots: Vec<String> = metrics.iter().map(|&m| format!("{}u", m as u32)).collect();
+    let slots: Vec<String> = metrics
+        .iter()
+        .map(|&m| m as u32)
+        .chain([INVERTED])
+        .map(|slot| format!("{slot}u"))
+        .collect();
     format!(
         "const TRACKED: u32 = {count}u;
-const TRACKED_METRICS = array<u32, {count}>({slots});
+const TRACKED_SLOTS = array<u32, {count}>({slots});
 ",
-        count = metrics.len(),
+        count = slots.len(),
         slots = slots.join(", ")
     )
 }

@@ -117,7 +117,7 @@ impl MeshFile {
         };
         if file.mesh.triangles.is_empty() {
             let problem = format!("{} vertices, but no triangle", file.mesh.points.len());
-            let remedy = "Mesh the surface, and save all its elements";
+            let remedy = "Only triangles are smoothed: mesh the surface with them, and save all its elements";
             return Err(file.sources[0].error(problem, remedy));
         }
         Ok(file)
@@ -258,7 +258,9 @@ impl MeshFile {
         };
         let ends_in_separator =
             path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
-        if path.is_dir() || ends_in_separator || path.file_name().is_none() {
+        // A device can take one file, but not the several of a Triangle mesh.
+        let is_device = path.exists() && !path.is_file() && self.sources.len() > 1;
+        if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
         }
         if let Some(owner) = sniff::owner_of_ending(path)

@@ -83,7 +83,8 @@ pub(crate) struct SmoothArgs {
     /// tolerance; 0.95 is the paper's [default with --desired: 0.95]
     #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction, allow_negative_numbers = true)]
     pub(crate) fraction: Option<f64>,
-    /// The desired f by the first metric; auto finds the optimum before the run [default with
+    /// The desired f by the first metric; auto finds the optimum before the run,
+    /// in up to 5000 sweeps a try [default with
     /// --fraction: auto]
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,

@@ -45,6 +45,9 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
              nothing to smooth",
             file.path().display()
         ),
+        MeshError::OutOfRange { .. } => {
+            format!("{}: {error}. Write the mesh in another unit", file.path().display())
+        }
         // The readers do not let these pass.
         MeshError::Empty
         | MeshError::TooLarge { .. }

@@ -1,0 +1,16 @@
+// How far a run is: written by finish.wgsl alone.
+
+struct Control {
+    // Not zero when the run has ended: every kernel then leaves everything as it is.
+    done: u32,
+    // How often the objective was evaluated: before the first sweep and after each.
+    evaluated: u32,
+    // Whether the last evaluation was the best so far.
+    improved: u32,
+    best_sweep: u32,
+    best_sum: vec2<f32>,
+    padding: vec2<u32>,
+    // Sums by evaluation (modulo HISTORY) and slot, each a pair of floats. A slot is a metric, or
+    // INVERTED: the number of triangles that are inverted or flat in single precision.
+    history: array<vec2<f32>, HISTORY_LENGTH>,
+}
