@@ -154,9 +154,11 @@ impl<'a> Smoother<'a> {
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
         let run = Run { smoother: self, backend, phase: Phase::Smoothing };
-        let end = run.sweep(options.plan(target), self.problem.positions(), observe)?;
+        let plan = options.plan(target);
+        let monotone = plan.is_monotone();
+        let end = run.sweep(plan, self.problem.positions(), observe)?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
-        let best_sweep = if options.scheme.is_monotone() {
+        let best_sweep = if monotone {
             end.history.len() - 1
         } else {
             let better = |best: usize, k: usize| {

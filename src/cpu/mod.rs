@@ -28,7 +28,7 @@ pub struct CpuEngine<'a> {
 impl<'a> CpuEngine<'a> {
     /// Starts a run from `positions`, normalized and in the problem's order.
     pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
-        let best_positions = (!plan.scheme.is_monotone()).then(|| positions.clone());
+        let best_positions = (!plan.is_monotone()).then(|| positions.clone());
         Self {
             problem,
             plan,

@@ -86,7 +86,7 @@ impl Buffers {
             };
             let readable = Usage::STORAGE | Usage::COPY_SRC;
             let bytes = bytemuck::cast_slice::<[f32; 4], u8>(&positions);
-            let kept = if plan.scheme.is_monotone() { 1 } else { problem.free_count() as u64 };
+            let kept = if plan.is_monotone() { 1 } else { problem.free_count() as u64 };
             let best_bytes = size_of::<[f32; 4]>() as u64 * kept;
             let pair_bytes = size_of::<[f32; 2]>() as u64;
 

@@ -54,7 +54,7 @@ impl<'a> GpuEngine<'a> {
         }
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
-        let keep_best = match plan.scheme.is_monotone() {
+        let keep_best = match plan.is_monotone() {
             true => None,
             false => Some(pipeline(Kernel::KeepBest)?),
         };
