@@ -17,7 +17,7 @@ struct Exchange {
 @group(0) @binding(1) var<storage, read_write> positions: array<vec4<f32>>;
 // The application's number of each vertex.
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
-@group(0) @binding(3) var<storage, read_write> external: array<f32>;
+@group(0) @binding(3) var<storage, read_write> vertex_buffer: array<f32>;
 
 fn opaque(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ exchange.zero);
@@ -37,6 +37,11 @@ fn imported(x: f32, center: vec2<f32>) -> vec2<f32> {
     return pair_add(vec2(x, 0.0), -center) * exchange.scale;
 }
 
+// By its bits: compilers may take it that there are no other numbers.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn import_positions(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -47,14 +52,17 @@ fn import_positions(
         return;
     }
     let at = exchange.offset + numbers[vertex] * exchange.stride;
-    let given = vec2(external[at], external[at + 1u]);
+    let given = vec2(vertex_buffer[at], vertex_buffer[at + 1u]);
     // A vertex the application has not moved keeps the bits that its floats do not hold.
     if all(given == exported(positions[vertex])) {
         return;
     }
     let x = imported(given.x, vec2(exchange.center.x, exchange.center.z));
     let y = imported(given.y, vec2(exchange.center.y, exchange.center.w));
-    positions[vertex] = vec4(x.x, y.x, x.y, y.y);
+    // One vertex that is nowhere would take its neighbors along, and these theirs.
+    if is_finite(x.x) && is_finite(y.x) {
+        positions[vertex] = vec4(x.x, y.x, x.y, y.y);
+    }
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -68,6 +76,6 @@ fn export_positions(
     }
     let at = exchange.offset + numbers[vertex] * exchange.stride;
     let p = exported(positions[vertex]);
-    external[at] = p.x;
-    external[at + 1u] = p.y;
+    vertex_buffer[at] = p.x;
+    vertex_buffer[at + 1u] = p.y;
 }

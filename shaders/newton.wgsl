@@ -44,7 +44,8 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
         let t = Corner(a, b, p.mean_area);
-        if doubled_area(t) <= 0.0 {
+        // Not the other way round: an area that is not a number is refused as well.
+        if !(doubled_area(t) > 0.0) {
             return vec2(0.0, 0.0);
         }
         if GUARDED && inverse_mean_ratio(t) > limit {

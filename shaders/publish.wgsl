@@ -5,13 +5,14 @@ struct Publish {
     offset: u32,
     triangles: u32,
     padding: vec2<u32>,
-    // By slot: what the sums leave out, per triangle. The last slot, INVERTED, is a count.
+    // By slot: what the sums leave out, per triangle; 0 where nothing is summed. The last slot, INVERTED, is
+    // a count.
     ideal_squared: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> publish_to: Publish;
 @group(0) @binding(1) var<storage, read> control: Control;
-@group(0) @binding(2) var<storage, read_write> external: array<f32>;
+@group(0) @binding(2) var<storage, read_write> destination: array<f32>;
 
 @compute @workgroup_size(SLOTS)
 fn publish(@builtin(local_invocation_index) slot: u32) {
@@ -21,5 +22,5 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
     if slot != INVERTED {
         value = publish_to.ideal_squared[slot / 4u][slot % 4u] + value / f32(publish_to.triangles);
     }
-    external[publish_to.offset + slot] = value;
+    destination[publish_to.offset + slot] = value;
 }

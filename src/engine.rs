@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::gpu::GpuError;
 use crate::metric::Metric;
 use crate::plan::Stop;
 
@@ -13,7 +14,7 @@ pub trait Engine {
     ///
     /// # Errors
     /// When the device fails; the run is then lost.
-    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError>;
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError>;
 
     /// Why the run has ended, if it has.
     fn stop(&self) -> Option<Stop>;
@@ -22,7 +23,7 @@ pub trait Engine {
     ///
     /// # Errors
     /// When the device fails.
-    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError>;
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
 }
 
 /// The objective f = (1/n) Σ q² (Park & Shontz, equation 1) of the metrics that were evaluated.
@@ -44,8 +45,3 @@ impl Objectives {
         Some(self.0[metric as usize]).filter(|f| !f.is_nan())
     }
 }
-
-/// An engine failed in the middle of a run.
-#[derive(Debug, thiserror::Error)]
-#[error(transparent)]
-pub struct EngineError(#[from] pub crate::gpu::GpuError);

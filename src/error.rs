@@ -164,10 +164,7 @@ pub enum SmoothError {
         /// What it should be.
         remedy: &'static str,
     },
-    /// The GPU cannot start.
+    /// The GPU cannot start or go on.
     #[error(transparent)]
     Gpu(#[from] crate::gpu::GpuError),
-    /// The GPU failed during the run.
-    #[error(transparent)]
-    Engine(#[from] crate::engine::EngineError),
 }

@@ -30,7 +30,41 @@
 //! mesh prepared, as long as its triangles stay; a run is one call of [`Smoother::run`] with its
 //! [`Options`], and leaves an [`Outcome`]. Files are read and written by [`MeshFile`].
 //!
-//! Limits: triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
+//! # Inside an application
+//!
+//! A [`Gpu`] can be made of the application's own device. A [`DeviceMesh`] then stays there as long as its
+//! triangles do, and [`Sweeps`] are encoded into the application's own command buffers: nothing is
+//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from.
+//!
+//! ```no_run
+//! # use gpu_smooth::*;
+//! # fn draw(_: &mut wgpu::CommandEncoder, _: &wgpu::Buffer) {}
+//! # fn f(
+//! #     (device, queue): (wgpu::Device, wgpu::Queue), mesh: &Mesh, vertices: &wgpu::Buffer
+//! # ) -> Result<(), SmoothError> {
+//! // Once; the device was made with the limits of `Gpu::required_limits`.
+//! let gpu = Gpu::new(device.clone(), queue.clone())?;
+//! let device_mesh = DeviceMesh::new(&gpu, mesh)?;
+//! let mut sweeps = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
+//! let place = VertexBuffer { buffer: vertices, offset: 0, stride: 12 };
+//!
+//! // In each frame, for a mesh whose boundary or vertices the application moves.
+//! let mut encoder = device.create_command_encoder(&Default::default());
+//! device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+//! sweeps.encode(&mut encoder, 5);
+//! device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+//! draw(&mut encoder, vertices);
+//! queue.submit([encoder.finish()]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! `examples/embed` and `examples/moving_boundary` are complete. To have a whole run with its stop rule
+//! without blocking the thread, there is [`Smoother::run_async`].
+//!
+//! # Limits
+//!
+//! Triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
 //! 2³² vertices, and on a GPU no buffer larger than the device binds (128 MiB, the default limit, is
 //! eight million vertices).
 
@@ -55,7 +89,7 @@ pub mod validity;
 pub use coloring::{Coloring, UNCOLORED};
 pub use cpu::CpuEngine;
 pub use dual::{Dual, Real};
-pub use engine::{Engine, EngineError, Objectives};
+pub use engine::{Engine, Objectives};
 pub use error::{MeshError, ReadError, SmoothError, WriteError};
 pub use gpu::{DeviceMesh, Gpu, GpuError, MeshSize, Sweeps, VertexBuffer};
 pub use mesh::{Format, Mesh, MeshFile, Place};

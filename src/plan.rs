@@ -162,6 +162,12 @@ impl Plan {
         if sweep <= self.plain_sweeps { 1.0 } else { self.omega[metric as usize] }
     }
 
+    /// Whether every sweep lowers the base objective, so that the last state is the best. Differences
+    /// promise nothing: their minimum is a little off.
+    pub fn is_monotone(&self) -> bool {
+        self.scheme.is_monotone() && self.derivatives == Derivatives::Analytic
+    }
+
     /// The metrics whose objective is evaluated after each sweep.
     pub fn tracked(&self) -> Vec<Metric> {
         if self.track_all { Metric::ALL.to_vec() } else { vec![self.scheme.base()] }

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 
 use crate::cpu::{CpuEngine, mean_excess};
-use crate::engine::{Engine, EngineError, Objectives};
+use crate::engine::{Engine, Objectives};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, Waiting};
+use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::options::{Desired, Goal, Options};
@@ -153,8 +153,7 @@ impl<'a> Smoother<'a> {
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
     /// The future completes only if somebody polls the device meanwhile, as an application does that
-    /// draws frames ([`wgpu::Device::poll`] with [`wgpu::PollType::Poll`] is enough; a browser polls by
-    /// itself). Dropping the future cancels the run, as `observe` can, which then returns the best
+    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as `observe` can, which then returns the best
     /// state so far.
     ///
     /// # Errors
@@ -185,9 +184,11 @@ impl<'a> Smoother<'a> {
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
         let run = Run { smoother: self, place, phase: Phase::Smoothing };
-        let end = run.sweep(options.plan(target), self.problem.positions(), observe).await?;
+        let plan = options.plan(target);
+        let monotone = plan.is_monotone();
+        let end = run.sweep(plan, self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
-        let best_sweep = if options.scheme.is_monotone() {
+        let best_sweep = if monotone {
             end.history.len() - 1
         } else {
             let better = |best: usize, k: usize| {
@@ -270,15 +271,15 @@ enum Place<'g> {
 
 /// The engine of a run.
 enum AnyEngine<'e> {
-    Cpu(CpuEngine<'e>),
+    Cpu(Box<CpuEngine<'e>>),
     Gpu(Box<GpuEngine<'e>>),
 }
 
 impl AnyEngine<'_> {
-    async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+    async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
         match self {
             AnyEngine::Cpu(engine) => engine.advance(sweeps),
-            AnyEngine::Gpu(engine) => Ok(GpuEngine::advance(engine, sweeps).await?),
+            AnyEngine::Gpu(engine) => GpuEngine::advance(engine, sweeps).await,
         }
     }
 
@@ -289,10 +290,10 @@ impl AnyEngine<'_> {
         }
     }
 
-    async fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
+    async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
         match self {
             AnyEngine::Cpu(engine) => engine.best_positions(),
-            AnyEngine::Gpu(engine) => Ok(GpuEngine::best_positions(engine).await?),
+            AnyEngine::Gpu(engine) => GpuEngine::best_positions(engine).await,
         }
     }
 }
@@ -320,7 +321,7 @@ impl Run<'_, '_> {
         let base = plan.scheme.base();
         let problem = &self.smoother.problem;
         let mut engine = match self.place {
-            Place::Cpu => AnyEngine::Cpu(CpuEngine::new(problem, from.to_vec(), plan)),
+            Place::Cpu => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, from.to_vec(), plan))),
             Place::Gpu(gpu, waiting) => {
                 let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
                 AnyEngine::Gpu(Box::new(engine))

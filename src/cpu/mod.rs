@@ -7,7 +7,8 @@ mod newton;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::engine::{Engine, EngineError, Objectives};
+use crate::engine::{Engine, Objectives};
+use crate::gpu::GpuError;
 use crate::metric::{Corner, Metric, specialize};
 use crate::plan::{Plan, Stop, StopRule};
 use crate::problem::Problem;
@@ -28,7 +29,7 @@ pub struct CpuEngine<'a> {
 impl<'a> CpuEngine<'a> {
     /// Starts a run from `positions`, normalized and in the problem's order.
     pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
-        let best_positions = (!plan.scheme.is_monotone()).then(|| positions.clone());
+        let best_positions = (!plan.is_monotone()).then(|| positions.clone());
         Self {
             problem,
             plan,
@@ -81,7 +82,7 @@ impl<'a> CpuEngine<'a> {
 }
 
 impl Engine for CpuEngine<'_> {
-    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
         let mut log = Vec::new();
         if self.base_history.is_empty() {
             log.push(self.evaluate());
@@ -100,7 +101,7 @@ impl Engine for CpuEngine<'_> {
         self.stop
     }
 
-    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
         Ok(self.best_positions.as_ref().unwrap_or(&self.positions).clone())
     }
 }

@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 use wgpu::BufferUsages as Usage;
-use wgpu::util::DeviceExt;
 
 use super::device::{Gpu, GpuError, scoped};
 use super::layout::split;
@@ -87,11 +86,20 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     contents: &[T],
     usage: Usage,
 ) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let bytes: &[u8] = bytemuck::cast_slice(contents);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&format!("gpu-smooth {label}")),
-        contents: bytemuck::cast_slice(contents),
+        size: (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
         usage,
-    })
+        mapped_at_creation: true,
+    });
+    // A device that is lost or out of memory maps nothing, and the error scope hears of it: no reason
+    // to panic, as wgpu's own `create_buffer_init` does.
+    if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+        view.slice(..bytes.len()).copy_from_slice(bytes);
+    }
+    buffer.unmap();
+    buffer
 }
 
 /// A buffer of zeros. To be called in an error scope.

@@ -91,12 +91,13 @@ impl AdapterSummary {
     }
 }
 
-/// A device with its pipelines: made once, it serves many meshes.
+/// A device with its pipelines: made once, it serves many meshes. A handle: clones name the same.
+#[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
-    pub(crate) pipelines: Pipelines,
-    summary: AdapterSummary,
+    pub(crate) pipelines: Arc<Pipelines>,
+    summary: Arc<AdapterSummary>,
     lost: Arc<Mutex<Option<String>>>,
 }
 
@@ -169,8 +170,8 @@ impl Gpu {
                 available: available.into(),
             });
         }
-        let pipelines = scoped(&device, || Pipelines::new(&device))?;
-        Ok(Self { device, queue, pipelines, summary, lost })
+        let pipelines = Arc::new(scoped(&device, || Pipelines::new(&device))?);
+        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost })
     }
 
     /// The features a device needs: none beyond core WebGPU.
@@ -178,8 +179,12 @@ impl Gpu {
         wgpu::Features::empty()
     }
 
-    /// The limits a device needs for meshes of up to `size`: the defaults, raised where the mesh is
-    /// larger than they allow.
+    /// The limits a device needs for meshes of up to `size`: [`wgpu::Limits::downlevel_defaults`], raised
+    /// where the kernels or the mesh need more.
+    ///
+    /// For a device that has other work too, ask for
+    /// `own.or_better_values_from(&Gpu::required_limits(size, &adapter.limits())?)`. A vertex buffer
+    /// with a stride above 16 bytes may need a larger `max_storage_buffer_binding_size` than the mesh.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low; it names the limit.
@@ -283,7 +288,26 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
         return Err(GpuError::OutOfMemory(error.to_string()));
     }
     match internal.or(validation) {
+        // What wgpu says of a lost device are its consequences: "... is invalid".
+        Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
         Some(error) => Err(GpuError::Refused(error.to_string())),
         None => Ok(value),
     }
+}
+
+/// Whether the device is lost, found by trial: it then makes a buffer that cannot be mapped, without
+/// a word to the error scopes.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("gpu-smooth trial"),
+        size: wgpu::COPY_BUFFER_ALIGNMENT,
+        usage: wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: true,
+    });
+    let is_mapped = buffer.get_mapped_range_mut(..).is_ok();
+    let memory = pollster::block_on(memory.pop());
+    let _ = pollster::block_on(validation.pop());
+    !is_mapped && memory.is_none()
 }

@@ -19,7 +19,9 @@ use crate::problem::Problem;
 /// A mesh on the device, as long as its triangles stay. Several can be alive at once.
 ///
 /// Its vertices are moved by [`Sweeps`], or by the application through
-/// [`encode_import`](Self::encode_import), topology and pipelines staying as they are.
+/// [`encode_import`](Self::encode_import), topology and pipelines staying as they are. So does the mean
+/// area of the triangles that AREA and RMS measure by: where the application makes the whole mesh larger or
+/// smaller, IMR, AR and EDGE suit better.
 pub struct DeviceMesh {
     problem: Problem,
     buffers: MeshBuffers,
@@ -92,7 +94,8 @@ impl DeviceMesh {
     /// the command buffer runs.
     ///
     /// A vertex whose floats are those of the last export has not been moved by the application and
-    /// keeps its full precision.
+    /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
+    /// where it was. Triangles may arrive inverted; sweeps then go on around them.
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`.
@@ -208,7 +211,8 @@ impl Sweeps {
     /// [`OBJECTIVE_FLOATS`](Self::OBJECTIVE_FLOATS) f32 into `buffer` at byte `offset`: f by each
     /// metric in the order of [`Metric::ALL`](crate::Metric::ALL) (0 for one that
     /// [`Options::track_all`] does not ask for and that is not the base), then the number of
-    /// triangles that are inverted or flat in single precision.
+    /// triangles that are inverted or flat in single precision. Unless that number is 0, f by IMR and AR
+    /// says nothing.
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`.
@@ -219,7 +223,8 @@ impl Sweeps {
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<(), GpuError> {
-        let bind_group = bind_objectives(gpu, self.triangles, &self.run.control, buffer, offset)?;
+        let (tracked, control) = (self.run.plan.tracked(), &self.run.control);
+        let bind_group = bind_objectives(gpu, self.triangles, &tracked, control, buffer, offset)?;
         let pipeline = pipeline(gpu, Kernel::Publish)?;
         scoped(&gpu.device, || {
             let mut pass = begin(encoder, "gpu-smooth objective");

@@ -7,7 +7,7 @@ use super::device::{Gpu, GpuError, scoped};
 use super::layout::{Control, HISTORY, join, split, unpair};
 use super::readback::{self, Waiting};
 use super::run::Run;
-use crate::engine::{EngineError, Objectives};
+use crate::engine::Objectives;
 use crate::plan::{Plan, Stop};
 use crate::problem::Problem;
 
@@ -38,7 +38,7 @@ impl<'a> GpuEngine<'a> {
     ) -> Result<Self, GpuError> {
         gpu.check()?;
         let mesh = MeshBuffers::new(gpu, problem, start)?;
-        let keep_best = !plan.scheme.is_monotone();
+        let keep_best = !plan.is_monotone();
         let run = Run::new(gpu, problem, &mesh, plan, keep_best)?;
         let waiting = Waiting::Block;
         Ok(Self { gpu, problem, start, mesh, run, waiting, evaluated: 0, stop: None })
@@ -111,7 +111,7 @@ impl<'a> GpuEngine<'a> {
 
     /// [`Engine::best_positions`](crate::Engine::best_positions), as a future.
     pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        let buffer = match self.run.plan.scheme.is_monotone() {
+        let buffer = match self.run.plan.is_monotone() {
             true => &self.mesh.positions,
             false => &self.run.best,
         };
@@ -130,15 +130,15 @@ impl<'a> GpuEngine<'a> {
 }
 
 impl crate::engine::Engine for GpuEngine<'_> {
-    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, EngineError> {
-        Ok(pollster::block_on(GpuEngine::advance(self, sweeps))?)
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
+        pollster::block_on(GpuEngine::advance(self, sweeps))
     }
 
     fn stop(&self) -> Option<Stop> {
         self.stop
     }
 
-    fn best_positions(&mut self) -> Result<Vec<DVec2>, EngineError> {
-        Ok(pollster::block_on(GpuEngine::best_positions(self))?)
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        pollster::block_on(GpuEngine::best_positions(self))
     }
 }

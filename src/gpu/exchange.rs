@@ -39,7 +39,7 @@ impl<'a> Window<'a> {
             let usage = buffer.usage();
             return refuse(format!("it was made for {usage:?}, and needs STORAGE as well"));
         }
-        if offset % 4 != 0 {
+        if !offset.is_multiple_of(4) {
             return refuse(format!("the offset is {offset} bytes, not a multiple of 4"));
         }
         let Some(end) = offset.checked_add(bytes).filter(|&end| end <= buffer.size()) else {
@@ -54,7 +54,7 @@ impl<'a> Window<'a> {
         let size = end - start;
         if size > limits.max_storage_buffer_binding_size {
             return Err(GpuError::Limit {
-                what: "the application's vertex buffer".into(),
+                what: "the application's buffer".into(),
                 needed: size,
                 limit: "max_storage_buffer_binding_size",
                 available: limits.max_storage_buffer_binding_size,
@@ -82,12 +82,11 @@ pub(crate) fn bind_vertices(
     with: &VertexBuffer<'_>,
 ) -> Result<wgpu::BindGroup, GpuError> {
     let VertexBuffer { buffer, offset, stride } = *with;
-    if stride % 4 != 0 || stride < 8 || stride / 4 > u64::from(u32::MAX) {
+    if !stride.is_multiple_of(4) || stride < 8 || stride / 4 > u64::from(u32::MAX) {
         let problem = format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
         return Err(GpuError::Buffer(problem));
     }
-    // Stride and count are within 32 bits each: the product fits.
-    let bytes = (vertex_count as u64 - 1) * stride + 8;
+    let bytes = (vertex_count as u64 - 1).saturating_mul(stride).saturating_add(8);
     let window = Window::new(gpu, buffer, offset, bytes)?;
     let (center, scale) = problem.normalization();
     let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
@@ -117,13 +116,14 @@ pub(crate) fn bind_vertices(
 pub(crate) fn bind_objectives(
     gpu: &Gpu,
     triangles: usize,
+    tracked: &[Metric],
     control: &wgpu::Buffer,
     buffer: &wgpu::Buffer,
     offset: u64,
 ) -> Result<wgpu::BindGroup, GpuError> {
     let window = Window::new(gpu, buffer, offset, (SLOTS * size_of::<f32>()) as u64)?;
     let mut ideal_squared = [[0.0; 4]; 2];
-    for &metric in Metric::ALL {
+    for &metric in tracked {
         let slot = metric as usize;
         ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
     }

@@ -174,11 +174,12 @@ mod tests {
         let differences = |&metric| Kernel::Sweep(metric, Derivatives::FiniteDifference);
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
+        kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish]);
         kernels
     }
 
     #[test]
-    fn every_kernel_declares_the_bindings_of_the_one_layout() {
+    fn every_kernel_declares_the_bindings_of_its_interface() {
         for kernel in kernels() {
             let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
             let bound = module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?, v)));
@@ -186,7 +187,7 @@ mod tests {
                 .map(|(at, variable)| (at.group, at.binding as usize, variable.space))
                 .collect();
             spaces.sort_unstable_by_key(|&(group, binding, _)| (group, binding));
-            let wanted = BINDINGS.iter().enumerate().map(|(i, binding)| {
+            let wanted = bindings(kernel.interface()).iter().enumerate().map(|(i, binding)| {
                 let space = match binding {
                     Binding::Uniform { .. } => AddressSpace::Uniform,
                     Binding::ReadOnly => AddressSpace::Storage { access: StorageAccess::LOAD },

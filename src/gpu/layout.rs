@@ -96,6 +96,17 @@ pub(crate) fn unpair([high, low]: [f32; 2]) -> f64 {
     f64::from(high) + f64::from(low)
 }
 
+/// A point as pairs of floats, laid out xy + zw.
+pub(crate) fn split(p: DVec2) -> [f32; 4] {
+    let ([x, x_low], [y, y_low]) = (pair(p.x), pair(p.y));
+    [x, y, x_low, y_low]
+}
+
+/// The point that [`split`] gave or the device moved.
+pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
+    DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
+}
+
 #[cfg(test)]
 mod tests {
     use std::mem::offset_of;
@@ -104,8 +115,8 @@ mod tests {
     use crate::gpu::Kernel;
 
     /// Size, and name and offset of each member but padding, of a struct as naga lays it out.
-    fn reflected(name: &str) -> (usize, Vec<(String, usize)>) {
-        let module = naga::front::wgsl::parse_str(&Kernel::KeepBest.wgsl()).unwrap();
+    fn reflected(kernel: &Kernel, name: &str) -> (usize, Vec<(String, usize)>) {
+        let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
         let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
         let naga::TypeInner::Struct { members, span } = &ty.inner else {
             panic!("{name} is no struct");
@@ -115,43 +126,49 @@ mod tests {
     }
 
     macro_rules! mirrors {
-        ($mirror:ident { $($field:ident),* $(,)? }) => {
+        ($kernel:expr, $mirror:ident { $($field:ident),* $(,)? }) => {
             let offsets = vec![$((stringify!($field).to_owned(), offset_of!($mirror, $field))),*];
-            assert_eq!(reflected(stringify!($mirror)), (size_of::<$mirror>(), offsets));
+            let expected = (size_of::<$mirror>(), offsets);
+            assert_eq!(reflected($kernel, stringify!($mirror)), expected);
         };
     }
 
     #[test]
     fn structs_are_laid_out_as_in_wgsl() {
-        mirrors!(Params {
-            zero,
-            triangles,
-            partials,
-            plain_sweeps,
-            inner,
-            sharpness_first,
-            sharpness_every,
-            sharpness_last,
-            base,
-            window,
-            max_sweeps,
-            has_target,
-            target_sum,
-            ideal_sum,
-            tolerance,
-            mean_area,
-            omega,
-        });
-        mirrors!(Color { first, count });
-        mirrors!(Control { done, evaluated, improved, best_sweep, best_sum, history });
+        let run = &Kernel::KeepBest;
+        mirrors!(
+            run,
+            Params {
+                zero,
+                triangles,
+                partials,
+                inner,
+                base,
+                window,
+                max_sweeps,
+                has_target,
+                target_sum,
+                ideal_sum,
+                tolerance,
+                mean_area,
+            }
+        );
+        mirrors!(run, SweepColor { first, count, omega, sharpness });
+        for kernel in [run, &Kernel::Publish] {
+            mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
+        }
+        mirrors!(
+            &Kernel::Import,
+            Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
+        );
+        mirrors!(&Kernel::Publish, Publish { offset, triangles, ideal_squared });
     }
 
     #[test]
     fn a_uniform_holds_only_what_16_byte_rows_allow() {
         // In a uniform an array's elements must be multiples of 16 bytes apart.
-        assert_eq!(offset_of!(Params, omega) % 16, 0);
-        assert_eq!(size_of::<Params>() % 16, 0);
-        assert!(size_of::<Params>() <= 256, "within the least dynamic offset alignment");
+        assert_eq!(offset_of!(Publish, ideal_squared) % 16, 0);
+        assert!(size_of::<SweepColor>() <= 256, "within the least dynamic offset alignment");
     }
 
     #[test]
@@ -162,15 +179,4 @@ mod tests {
             assert!((unpair([high, low]) - x).abs() <= x.abs() * 2f64.powi(-48), "{x}");
         }
     }
-}
-
-/// A point as pairs of floats, laid out xy + zw.
-pub(crate) fn split(p: DVec2) -> [f32; 4] {
-    let ([x, x_low], [y, y_low]) = (pair(p.x), pair(p.y));
-    [x, y, x_low, y_low]
-}
-
-/// The point that [`split`] gave or the device moved.
-pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
-    DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
 }

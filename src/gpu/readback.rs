@@ -23,6 +23,7 @@ pub(crate) async fn read<T: Pod>(
 ) -> Result<Vec<T>, GpuError> {
     let size = (count * size_of::<T>()) as u64;
     let label = Some("gpu-smooth readback");
+    let (sender, receiver) = oneshot_channel();
     let staging = scoped(&gpu.device, || {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label,
@@ -34,13 +35,12 @@ pub(crate) async fn read<T: Pod>(
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
         gpu.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is only gone if this function has already failed.
+            let _ = sender.send(result);
+        });
         staging
     })?;
-    let (sender, receiver) = oneshot_channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver is only gone if this function has already failed.
-        let _ = sender.send(result);
-    });
     if waiting == Waiting::Block {
         let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
         gpu.check()?;

@@ -1,0 +1,126 @@
+//! Smooths a mesh inside an application that draws it, on the vertex buffer it is drawn from:
+//!
+//! ```text
+//! cargo run --release --example embed -- [MESH] [OUT_DIR]
+//! ```
+//!
+//! Writes before.png and after.png. The sweeps and the drawing of the second are one command buffer, and
+//! no vertex passes through the host in between. `picture.rs` is plain wgpu: what an application has anyway.
+#![allow(clippy::print_stdout)]
+
+mod picture;
+
+use std::path::{Path, PathBuf};
+
+use gpu_smooth::{
+    DeviceMesh, Gpu, Mesh, MeshFile, MeshSize, Metric, Options, Sweeps, VertexBuffer, wgpu,
+};
+use picture::Picture;
+use wgpu::BufferUsages as Usage;
+use wgpu::util::DeviceExt;
+
+pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// What the application keeps of each vertex: x, y, z, and how black the edges are drawn there. The smoother
+/// reads and writes x and y.
+pub(crate) type Vertex = [f32; 4];
+
+fn main() -> Result<()> {
+    let mut args = std::env::args().skip(1).map(PathBuf::from);
+    let mesh = args.next().unwrap_or("meshes/plate.node".into());
+    let out = args.next().unwrap_or(".".into());
+
+    let [before, after] = smooth_and_draw(MeshFile::read(&mesh)?.mesh(), 5)?;
+    for (name, frame) in [("before.png", before), ("after.png", after)] {
+        frame.write(&out.join(name))?;
+        println!("{name}: f_imr {:.4}, {} inverted", frame.f, frame.inverted);
+    }
+    Ok(())
+}
+
+/// A picture of the mesh, and how good the mesh in it is.
+pub(crate) struct Frame {
+    pub(crate) pixels: Vec<[u8; 4]>,
+    pub(crate) f: f32,
+    pub(crate) inverted: f32,
+}
+
+impl Frame {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
+        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, picture::WIDTH, picture::HEIGHT);
+        encoder.set_color(png::ColorType::Rgba);
+        Ok(encoder.write_header()?.write_image_data(self.pixels.as_flattened())?)
+    }
+}
+
+/// Draws the mesh as it is, and again in a frame that smooths it first.
+pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
+    let (device, queue) = open_device(mesh)?;
+
+    // The application's own: a vertex buffer, and a picture drawn from it. STORAGE is what the smoother
+    // needs of the buffer.
+    let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("vertices"),
+        contents: bytemuck::cast_slice(&vertices_of(mesh)),
+        usage: Usage::VERTEX | Usage::STORAGE,
+    });
+    let picture = Picture::new(&device, mesh, &vertices);
+    let objectives = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("objectives"),
+        size: 4 * Sweeps::OBJECTIVE_FLOATS as u64,
+        usage: Usage::STORAGE | Usage::COPY_SRC,
+        mapped_at_creation: false,
+    });
+
+    // The smoother's, made once. Device and queue are handles: a clone names the same device.
+    let gpu = Gpu::new(device.clone(), queue.clone())?;
+    let device_mesh = DeviceMesh::new(&gpu, mesh)?;
+    let mut smoother = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
+    let place = VertexBuffer { buffer: &vertices, offset: 0, stride: size_of::<Vertex>() as u64 };
+
+    let mut frame = |sweeps| -> Result<Frame> {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if sweeps > 0 {
+            // The import takes over whatever the application has moved since the last export. Nothing
+            // has been here, so that it could be left out.
+            device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+            smoother.encode(&mut encoder, sweeps);
+            device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+        }
+        smoother.encode_objective(&gpu, &mut encoder, &objectives, 0)?;
+        picture.draw(&mut encoder, &vertices);
+        queue.submit([encoder.finish()]);
+
+        // Only for the file and the numbers: a window needs neither.
+        let pixels = picture.read(&device, &queue)?;
+        let objectives: Vec<f32> = picture::read(&device, &queue, &objectives)?;
+        Ok(Frame {
+            pixels,
+            f: objectives[Metric::Imr as usize],
+            inverted: objectives[Metric::ALL.len()],
+        })
+    };
+    Ok([frame(0)?, frame(sweeps)?])
+}
+
+/// A device good enough for the smoother as well as for the application.
+fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let smoother_needs = Gpu::required_limits(size, &adapter.limits())?;
+    let application_needs = wgpu::Limits::default();
+    let device = adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("application"),
+        required_features: Gpu::required_features(),
+        required_limits: application_needs.or_better_values_from(&smoother_needs),
+        ..Default::default()
+    });
+    Ok(pollster::block_on(device)?)
+}
+
+fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
+    // Pale edges: where triangles are small, they would be all one sees.
+    mesh.points.iter().map(|&[x, y]| [x as f32, y as f32, 0.0, 0.45]).collect()
+}

@@ -1,0 +1,232 @@
+//! The application: what pointer and keys do, and what a frame does. It draws into any texture, of a
+//! window or not.
+
+use gpu_smooth::wgpu;
+use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Quality, Scheme};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::Result;
+use super::capture;
+use super::drag::{Drag, Holes};
+use super::overlay::{Line, Panel};
+use super::render::Renderer;
+use super::smoothing::Smoothing;
+use super::view::View;
+
+/// How near the pointer has to be to a vertex to take hold of it, in pixels.
+const RADIUS: f64 = 40.0;
+const MOST_SWEEPS: u32 = 64;
+
+/// Opens a device that can smooth the mesh, and draw to the surface if there is one.
+pub(crate) fn open(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+    mesh: &Mesh,
+) -> Result<(wgpu::Adapter, wgpu::Device, wgpu::Queue)> {
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        compatible_surface: surface,
+        ..Default::default()
+    }));
+    let adapter = adapter.map_err(|error| {
+        format!("no GPU adapter: {error}. A software one, such as Mesa's lavapipe, is enough")
+    })?;
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let available = adapter.limits();
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        required_features: Gpu::required_features(),
+        // What the smoother needs, and textures as large as a window may become.
+        required_limits: Gpu::required_limits(size, &available)?.using_resolution(available),
+        ..Default::default()
+    }))?;
+    Ok((adapter, device, queue))
+}
+
+/// Everything but the window.
+pub(crate) struct App {
+    pub(crate) smoothing: Smoothing,
+    renderer: Renderer,
+    panel: Panel,
+    holes: Holes,
+    drag: Option<Drag>,
+    size: [u32; 2],
+    view: View,
+    metric: Metric,
+    alternates: bool,
+    paused: bool,
+    sweeps_per_frame: u32,
+    meter: Meter,
+}
+
+impl App {
+    /// Smooths the mesh on this device and draws it in this format. To be told its size by
+    /// [`resize`](Self::resize).
+    pub(crate) fn new(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        format: wgpu::TextureFormat,
+        mesh: Mesh,
+    ) -> Result<Self> {
+        let handles = (device.clone(), queue.clone());
+        let smoothing = Smoothing::new(Gpu::new(device, queue)?, mesh, Metric::Imr.into())?;
+        let (topology, points) = (&smoothing.topology, &smoothing.points);
+        let panel = Panel::new();
+        let vertices = smoothing.vertices.clone();
+        Ok(Self {
+            renderer: Renderer::new(handles, format, topology, vertices, &panel),
+            holes: Holes::new(topology, points),
+            view: View::new(points, [1, 1], 0),
+            panel,
+            drag: None,
+            size: [1, 1],
+            metric: Metric::Imr,
+            alternates: false,
+            paused: false,
+            sweeps_per_frame: 4,
+            meter: Meter::new(),
+            smoothing,
+        })
+    }
+
+    /// Draws in this size, in pixels, from now on; with `enlargement` pixels for one of the panel.
+    pub(crate) fn resize(&mut self, size: [u32; 2], enlargement: u32) {
+        self.size = size;
+        let panel_height = enlargement * self.panel.size()[1];
+        self.view = View::new(&self.smoothing.mesh.points, size, panel_height);
+        self.renderer.show(self.view, enlargement);
+    }
+
+    pub(crate) fn view(&self) -> View {
+        self.view
+    }
+
+    /// Takes hold of what is nearest to the pointer, given in pixels.
+    pub(crate) fn press(&mut self, pointer: [f64; 2]) -> Result<()> {
+        // What is held has to be where the pointer sees it.
+        self.smoothing.receive()?;
+        let Smoothing { topology, points, .. } = &self.smoothing;
+        let [at, aside] =
+            [pointer, [pointer[0] + RADIUS, pointer[1]]].map(|p| self.view.to_plane(p));
+        self.drag = Drag::grab(topology, &self.holes, points, at, aside[0] - at[0]);
+        self.hold()
+    }
+
+    pub(crate) fn move_to(&mut self, pointer: [f64; 2]) {
+        if let Some(drag) = &mut self.drag {
+            drag.aim(self.view.to_plane(pointer));
+        }
+    }
+
+    pub(crate) fn release(&mut self) -> Result<()> {
+        self.drag = None;
+        self.hold()
+    }
+
+    fn hold(&mut self) -> Result<()> {
+        let held = self.drag.as_ref().map_or(&[][..], Drag::vertices);
+        self.renderer.mark(held);
+        self.smoothing.hold(held)
+    }
+
+    pub(crate) fn key(&mut self, key: char) -> Result<()> {
+        match key.to_ascii_lowercase() {
+            digit @ '1'..='5' => self.metric = Metric::ALL[digit as usize - '1' as usize],
+            'a' => self.alternates = !self.alternates,
+            ' ' => self.paused = !self.paused,
+            '+' | '=' => self.sweeps_per_frame = (self.sweeps_per_frame + 1).min(MOST_SWEEPS),
+            '-' => self.sweeps_per_frame = self.sweeps_per_frame.saturating_sub(1).max(1),
+            'r' => {
+                self.release()?;
+                self.smoothing.receive()?;
+                self.smoothing.reset();
+            }
+            _ => {}
+        }
+        let alternating = Scheme::new([self.metric, Metric::Imr]).filter(|_| self.alternates);
+        let scheme = alternating.unwrap_or_else(|| self.metric.into());
+        if scheme != *self.smoothing.scheme() {
+            self.smoothing.set_scheme(scheme)?;
+        }
+        Ok(())
+    }
+
+    /// Computes and draws a frame: one command buffer.
+    pub(crate) fn frame(&mut self, target: &wgpu::TextureView) -> Result<()> {
+        self.smoothing.receive()?;
+        self.update_panel();
+        if let Some(drag) = &self.drag
+            && let Some(points) = drag.step(&self.smoothing.topology, &self.smoothing.points)
+        {
+            self.smoothing.set_points(points);
+        }
+        let sweeps = if self.paused { 0 } else { self.sweeps_per_frame };
+        let device = self.smoothing.gpu.device();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.smoothing.encode(&mut encoder, sweeps)?;
+        self.renderer.draw(&mut encoder, target);
+        self.smoothing.gpu.queue().submit([encoder.finish()]);
+        self.smoothing.request();
+        self.meter.count(sweeps);
+        Ok(())
+    }
+
+    /// Writes what the last frame showed, its own numbers in the panel.
+    pub(crate) fn capture(&mut self, path: &Path) -> Result<()> {
+        self.smoothing.receive()?;
+        self.update_panel();
+        let gpu = &self.smoothing.gpu;
+        let draw = |encoder: &mut _, target: &_| self.renderer.draw(encoder, target);
+        let handles = (gpu.device(), gpu.queue());
+        capture::capture(handles, self.renderer.format, self.size, draw, path)
+    }
+
+    fn update_panel(&mut self) {
+        let Smoothing { mesh, topology, points, .. } = &self.smoothing;
+        let worst = Quality::of(points, topology).worst_imr;
+        let base = self.smoothing.scheme().base();
+        let (each, [sweeps, frames]) = (self.sweeps_per_frame, self.meter.rates);
+        let state = if self.paused { "paused".into() } else { format!("{each} sweeps a frame") };
+        let line = |label, text: &str| -> Line { (label, text.to_owned()) };
+        let status = vec![
+            ("mesh", format!("{} vertices, {} triangles", mesh.points.len(), mesh.triangles.len())),
+            ("scheme", format!("{}, {state}", self.smoothing.scheme())),
+            ("f", format!("{:.4} by {base}", self.smoothing.objective())),
+            ("worst", format!("{worst:.2} inverse mean ratio")),
+            ("inverted", self.smoothing.inverted().to_string()),
+            ("speed", format!("{sweeps:.0} sweeps/s, {frames:.0} frames/s")),
+        ];
+        let help = vec![
+            line("drag", "a vertex, or the edge of a hole"),
+            line("1 2 3 4 5", "edge, area, rms, imr, ar"),
+            line("A", "alternate with imr"),
+            line("+ -", "sweeps a frame"),
+            line("space", "pause     R  start again     Esc  quit"),
+        ];
+        if self.panel.show([status, help]) {
+            self.renderer.set_panel(&self.panel);
+        }
+    }
+}
+
+/// Sweeps and frames a second, twice a second anew.
+struct Meter {
+    since: Instant,
+    counts: [u32; 2],
+    rates: [f64; 2],
+}
+
+impl Meter {
+    fn new() -> Self {
+        Self { since: Instant::now(), counts: [0; 2], rates: [0.0; 2] }
+    }
+
+    fn count(&mut self, sweeps: u32) {
+        self.counts = [self.counts[0] + sweeps, self.counts[1] + 1];
+        let elapsed = self.since.elapsed();
+        if elapsed >= Duration::from_millis(500) {
+            let rates = self.counts.map(|count| f64::from(count) / elapsed.as_secs_f64());
+            *self = Self { rates, ..Self::new() };
+        }
+    }
+}

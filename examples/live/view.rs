@@ -1,0 +1,52 @@
+//! From the mesh's plane to the window's pixels and back.
+
+/// Pixels around the mesh.
+const MARGIN: f64 = 24.0;
+
+/// Where the mesh is shown: as large as fits below the panel, its aspect ratio kept.
+#[derive(Clone, Copy)]
+pub(crate) struct View {
+    size: [f64; 2],
+    /// Shown at `middle`, in pixels from the top left.
+    center: [f64; 2],
+    middle: [f64; 2],
+    pixels_per_unit: f64,
+}
+
+impl View {
+    pub(crate) fn new(points: &[[f64; 2]], size: [u32; 2], panel_height: u32) -> Self {
+        let [[left, right], [bottom, top]] = [0, 1].map(|x| {
+            let low = points.iter().map(|p| p[x]).fold(f64::INFINITY, f64::min);
+            [low, points.iter().map(|p| p[x]).fold(f64::NEG_INFINITY, f64::max)]
+        });
+        let size = size.map(f64::from);
+        // A window as flat as the panel shows the mesh behind it.
+        let above = Some(f64::from(panel_height)).filter(|&h| h < size[1] / 2.0).unwrap_or(0.0);
+        let room = [size[0], size[1] - above].map(|side| (side - 2.0 * MARGIN).max(1.0));
+        Self {
+            size,
+            center: [(left + right) / 2.0, (bottom + top) / 2.0],
+            middle: [size[0] / 2.0, (size[1] + above) / 2.0],
+            pixels_per_unit: (room[0] / (right - left)).min(room[1] / (top - bottom)),
+        }
+    }
+
+    pub(crate) fn to_pixels(self, point: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [0, 1].map(|i| (point[i] - self.center[i]) * self.pixels_per_unit);
+        [self.middle[0] + x, self.middle[1] - y]
+    }
+
+    pub(crate) fn to_plane(self, pixel: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [0, 1].map(|i| (pixel[i] - self.middle[i]) / self.pixels_per_unit);
+        [self.center[0] + x, self.center[1] - y]
+    }
+
+    /// Scale and offset that lead from the plane to clip space, then the size of a pixel there.
+    pub(crate) fn uniform(self) -> [[f32; 2]; 3] {
+        let pixel = self.size.map(|side| 2.0 / side);
+        let scale = pixel.map(|p| p * self.pixels_per_unit);
+        let origin = self.to_pixels([0.0, 0.0]);
+        let offset = [origin[0] * pixel[0] - 1.0, 1.0 - origin[1] * pixel[1]];
+        [scale, offset, pixel].map(|pair| pair.map(|x| x as f32))
+    }
+}

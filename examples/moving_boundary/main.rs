@@ -1,0 +1,143 @@
+//! A plate whose hole turns, a little with each step of a simulation; a few sweeps a step keep the mesh good:
+//!
+//! ```text
+//! cargo run --release --example moving_boundary -- [VERTICES] [SWEEPS]
+//! ```
+//!
+//! Beside it, the same motion with no sweeps, as if the mesh were left to itself.
+#![allow(clippy::print_stdout)]
+
+#[path = "../../tests/support/mod.rs"]
+pub(crate) mod support;
+
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, wgpu};
+use wgpu::BufferUsages as Usage;
+use wgpu::util::DeviceExt;
+
+pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+const CENTER: [f64; 2] = [1.2, 1.0];
+const RADIUS: f64 = 0.5;
+
+fn main() -> Result<()> {
+    let mut args = std::env::args().skip(1);
+    let vertices = args.next().map_or(Ok(4000), |arg| arg.parse())?;
+    let sweeps = args.next().map_or(Ok(4), |arg| arg.parse())?;
+    let steps = simulate(vertices, sweeps, 100, 0.75)?;
+
+    println!("            with {sweeps} sweeps a step             with none");
+    println!("step  angle  worst IMR  inverted     ms  worst IMR  inverted");
+    for (k, step) in (1..).zip(&steps).filter(|(k, _)| k % 10 == 0) {
+        let Step { angle, took, kept: Quality { worst_imr, inverted, .. }, left } = step;
+        let ms = took.as_secs_f64() * 1e3;
+        print!("{k:>4} {angle:>5.1}°  {worst_imr:>9.2}  {inverted:>8}  {ms:>5.2}");
+        println!("  {:>9.2}  {:>8}", left.worst_imr, left.inverted);
+    }
+
+    let mean = steps.iter().map(|step| step.took).sum::<Duration>() / steps.len() as u32;
+    let worst = steps.iter().map(|step| step.kept.worst_imr).fold(0.0, f64::max);
+    print!(
+        "{vertices} vertices, {:.2} ms a step, worst element {worst:.2}",
+        mean.as_secs_f64() * 1e3
+    );
+    match steps.iter().position(|step| step.left.inverted > 0) {
+        Some(k) => println!("; without sweeps the first triangle inverts in step {}", k + 1),
+        None => println!("; without sweeps none inverts"),
+    }
+    Ok(())
+}
+
+/// The mesh after a step.
+pub(crate) struct Step {
+    /// How far the hole has turned, in degrees.
+    pub(crate) angle: f64,
+    /// From the first call of the step until the device was done.
+    pub(crate) took: Duration,
+    /// With sweeps.
+    pub(crate) kept: Quality,
+    /// With the same motion and no sweeps.
+    pub(crate) left: Quality,
+}
+
+/// Turns the hole of a plate by so many degrees a step.
+pub(crate) fn simulate(
+    vertices: usize,
+    sweeps: u32,
+    steps: u32,
+    degrees: f64,
+) -> Result<Vec<Step>> {
+    let mesh = plate(vertices)?;
+    let topology = Topology::new(&mesh)?;
+    let hole = hole(&mesh);
+
+    // `Gpu::open` makes a device for whoever has none; examples/embed brings its own.
+    let gpu = Gpu::open(None)?;
+    let (device, queue) = (gpu.device(), gpu.queue());
+    let positions: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
+    let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("vertices"),
+        contents: bytemuck::cast_slice(&positions),
+        usage: Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST,
+    });
+    let place = VertexBuffer { buffer: &buffer, offset: 0, stride: size_of::<[f32; 2]>() as u64 };
+    let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
+    let mut smoother = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
+
+    let mut left_alone = mesh.points.clone();
+    let mut log = Vec::new();
+    for k in 1..=steps {
+        let angle = f64::from(k) * degrees;
+        let turned = hole.iter().map(|&v| (v, turned(mesh.points[v as usize], angle / 360.0)));
+
+        let start = Instant::now();
+        for (v, [x, y]) in turned.clone() {
+            let xy = [x as f32, y as f32];
+            queue.write_buffer(&buffer, place.stride * u64::from(v), bytemuck::cast_slice(&xy));
+        }
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        // All other vertices still are where the export left them, and keep their full precision.
+        device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+        // No `restart`: the hole turns by less than an edge. That the scheme goes on over-relaxed is what
+        // carries the motion far into the mesh.
+        smoother.encode(&mut encoder, sweeps);
+        device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+        queue.submit([encoder.finish()]);
+        // Here the simulation would compute on the vertex buffer. This is for the clock only.
+        device.poll(wgpu::PollType::wait_indefinitely())?;
+        let took = start.elapsed();
+
+        turned.for_each(|(v, point)| left_alone[v as usize] = point);
+        log.push(Step {
+            angle,
+            took,
+            kept: Quality::of(&device_mesh.read_points(&gpu, &mesh)?, &topology),
+            left: Quality::of(&left_alone, &topology),
+        });
+    }
+    Ok(log)
+}
+
+/// A plate of 3 by 2 with a round hole.
+fn plate(vertices: usize) -> Result<Mesh> {
+    let [x, y] = CENTER;
+    let outline = format!("loop\n0 0\n3 0\n3 2\n0 2\ncircle {x} {y} {RADIUS} 48\n");
+    Ok(support::triangulate(&support::Outline::parse(&outline)?, vertices)?)
+}
+
+/// The vertices on the edge of the hole.
+fn hole(mesh: &Mesh) -> Vec<u32> {
+    let on_hole = |v: &u32| {
+        let [x, y] = mesh.points[*v as usize];
+        (x - CENTER[0]).hypot(y - CENTER[1]) < RADIUS + 1e-9
+    };
+    (0..mesh.points.len() as u32).filter(on_hole).collect()
+}
+
+fn turned([x, y]: [f64; 2], turns: f64) -> [f64; 2] {
+    let (sin, cos) = (turns * TAU).sin_cos();
+    let (dx, dy) = (x - CENTER[0], y - CENTER[1]);
+    [CENTER[0] + cos * dx - sin * dy, CENTER[1] + sin * dx + cos * dy]
+}

@@ -1,0 +1,201 @@
+//! An application: its device, its buffers, its encoders.
+
+use std::sync::{Arc, LazyLock, Mutex};
+
+use gpu_smooth::{DeviceMesh, Gpu, GpuError, Mesh, MeshSize, SmoothError, VertexBuffer, wgpu};
+use pollster::block_on;
+use wgpu::BufferUsages as Usage;
+
+use crate::support::{perturb_random, triangulate};
+
+/// What no mesh of these tests exceeds.
+const LARGEST: MeshSize = MeshSize { vertices: 10_000, triangles: 20_000 };
+
+/// An application with a device of its own. Panics when it is dropped if its error handler was called.
+pub(crate) struct App {
+    pub(crate) gpu: Gpu,
+    uncaptured: Arc<Mutex<Vec<String>>>,
+}
+
+/// The one all devices are of. wgpu panics where resources of two instances meet.
+pub(crate) fn adapter() -> &'static wgpu::Adapter {
+    static ADAPTER: LazyLock<wgpu::Adapter> = LazyLock::new(|| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+            .expect("these tests need an adapter; a software one such as Mesa's lavapipe is enough")
+    });
+    &ADAPTER
+}
+
+impl App {
+    /// On a device made with exactly what the library says it needs.
+    pub(crate) fn new() -> Self {
+        let limits = Gpu::required_limits(LARGEST, &adapter().limits()).unwrap();
+        Self::with_limits(limits).unwrap()
+    }
+
+    pub(crate) fn with_limits(limits: wgpu::Limits) -> Result<Self, GpuError> {
+        let (device, queue) = block_on(adapter().request_device(&wgpu::DeviceDescriptor {
+            label: Some("application"),
+            required_features: Gpu::required_features(),
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .expect("the adapter gives a device with these limits");
+        let uncaptured = Arc::new(Mutex::new(Vec::new()));
+        let record = Arc::clone(&uncaptured);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            record.lock().unwrap().push(error.to_string());
+        }));
+        let gpu = Gpu::new(device, queue);
+        assert!(uncaptured.lock().unwrap().is_empty(), "{uncaptured:?}");
+        Ok(Self { gpu: gpu?, uncaptured })
+    }
+
+    /// A handle of the same device for the library's blocking calls.
+    pub(crate) fn another_gpu(&self) -> Gpu {
+        Gpu::new(self.gpu.device().clone(), self.gpu.queue().clone()).unwrap()
+    }
+
+    /// What has reached the application's error handler, and is thereby forgiven.
+    pub(crate) fn take_uncaptured(&self) -> Vec<String> {
+        std::mem::take(&mut *self.uncaptured.lock().unwrap())
+    }
+
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        self.gpu.device()
+    }
+
+    pub(crate) fn mesh(&self, mesh: &Mesh) -> DeviceMesh {
+        DeviceMesh::new(&self.gpu, mesh).unwrap()
+    }
+
+    pub(crate) fn buffer(&self, bytes: u64, usage: Usage) -> wgpu::Buffer {
+        self.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("application's"),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// Encodes into one command buffer and submits it.
+    pub(crate) fn submit(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        let mut encoder = self.encoder();
+        encode(&mut encoder);
+        self.gpu.queue().submit([encoder.finish()]);
+    }
+
+    /// The words of a buffer, which needs usage `COPY_SRC`.
+    pub(crate) fn read(&self, buffer: &wgpu::Buffer) -> Vec<u32> {
+        let staging = self.buffer(buffer.size(), Usage::COPY_DST | Usage::MAP_READ);
+        self.submit(|encoder| {
+            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+        });
+        staging.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
+        self.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let view = staging.get_mapped_range(..).unwrap();
+        bytemuck::pod_collect_to_vec(&view[..])
+    }
+
+    /// Positions as the device has them, and no sweep or import on the way.
+    pub(crate) fn points(&self, device_mesh: &DeviceMesh, mesh: &Mesh) -> Vec<[f64; 2]> {
+        device_mesh.read_points(&self.gpu, mesh).unwrap()
+    }
+}
+
+impl Drop for App {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            let uncaptured = self.uncaptured.lock().unwrap();
+            assert!(uncaptured.is_empty(), "reached the application's handler: {uncaptured:?}");
+        }
+    }
+}
+
+/// Every word of a [`Vertices`] buffer that is no coordinate: a NaN that tells where it stands.
+pub(crate) fn filler(word: usize) -> u32 {
+    0x7fc0_0000 | word as u32
+}
+
+/// A vertex buffer of the application's own layout.
+pub(crate) struct Vertices {
+    pub(crate) buffer: wgpu::Buffer,
+    pub(crate) offset: u64,
+    pub(crate) stride: u64,
+}
+
+impl Vertices {
+    /// Filled with [`filler`], but for the coordinates of the vertices that a triangle uses.
+    pub(crate) fn new(app: &App, mesh: &Mesh, offset: u64, stride: u64) -> Self {
+        let bytes = offset + stride * mesh.points.len() as u64;
+        let usage = Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+        let vertices = Self { buffer: app.buffer(bytes, usage), offset, stride };
+        let mut words: Vec<u32> = (0..bytes as usize / 4).map(filler).collect();
+        for &v in mesh.triangles.as_flattened() {
+            let [x, y] = mesh.points[v as usize].map(|x| (x as f32).to_bits());
+            let at = vertices.word(v);
+            (words[at], words[at + 1]) = (x, y);
+        }
+        app.gpu.queue().write_buffer(&vertices.buffer, 0, bytemuck::cast_slice(&words));
+        vertices
+    }
+
+    /// As most applications have it: x, y, z.
+    pub(crate) fn usual(app: &App, mesh: &Mesh) -> Self {
+        Self::new(app, mesh, 0, 12)
+    }
+
+    /// Where the x of a vertex stands, in words.
+    pub(crate) fn word(&self, vertex: u32) -> usize {
+        ((self.offset + u64::from(vertex) * self.stride) / 4) as usize
+    }
+
+    /// Moves a vertex, as an application does.
+    pub(crate) fn put(&self, app: &App, vertex: u32, [x, y]: [f64; 2]) {
+        let xy = [x as f32, y as f32];
+        let at = 4 * self.word(vertex) as u64;
+        app.gpu.queue().write_buffer(&self.buffer, at, bytemuck::cast_slice(&xy));
+    }
+
+    pub(crate) fn place(&self) -> VertexBuffer<'_> {
+        VertexBuffer { buffer: &self.buffer, offset: self.offset, stride: self.stride }
+    }
+}
+
+/// A plate with a round hole.
+pub(crate) fn plate(vertices: usize) -> Mesh {
+    let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 1.2 1 0.5 24\n";
+    triangulate(&crate::support::Outline::parse(text).unwrap(), vertices).unwrap()
+}
+
+/// The same with its interior badly placed.
+pub(crate) fn bad_plate(vertices: usize) -> Mesh {
+    perturb_random(&plate(vertices), 0.8, 7)
+}
+
+/// The vertices that no boundary holds.
+pub(crate) fn interior(mesh: &Mesh) -> Vec<u32> {
+    let held = crate::support::check::held(mesh);
+    (0..mesh.points.len() as u32).filter(|&v| !held[v as usize]).collect()
+}
+
+/// What the device said, wherever in a run it said it.
+pub(crate) fn gpu_error(error: SmoothError) -> GpuError {
+    match error {
+        SmoothError::Gpu(error) => error,
+        other => panic!("no error of the device: {other}"),
+    }
+}
+
+/// An application may prepare meshes on another thread than it draws them on.
+const _: () = {
+    const fn moves_between_threads<T: Send + Sync>() {}
+    moves_between_threads::<Gpu>();
+    moves_between_threads::<DeviceMesh>();
+    moves_between_threads::<gpu_smooth::Sweeps>();
+};

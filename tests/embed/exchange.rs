@@ -1,0 +1,215 @@
+//! Positions to and from a vertex buffer of the application.
+
+use gpu_smooth::{Mesh, Options, Sweeps};
+
+use crate::app::{App, Vertices, bad_plate, filler, interior};
+use crate::support::{boundary, f_imr, transformed};
+
+/// A mesh with vertices that no triangle uses, in front, in the middle and at the end.
+fn with_unused_vertices() -> Mesh {
+    let mut mesh = bad_plate(500);
+    let places = [0, 300, 502];
+    for place in places {
+        mesh.points.insert(place, [-7.0, 11.0]);
+        for v in mesh.triangles.as_flattened_mut() {
+            *v += u32::from(*v as usize >= place);
+        }
+    }
+    mesh
+}
+
+/// Every layout of a vertex buffer, by offset and stride.
+const LAYOUTS: &[[u64; 2]] =
+    &[[0, 8], [4, 8], [0, 12], [268, 12], [12, 20], [1020, 20], [260, 256], [0, 1036]];
+
+#[test]
+fn an_export_writes_x_and_y_of_used_vertices_and_nothing_else() {
+    let mesh = with_unused_vertices();
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    for &[offset, stride] in LAYOUTS {
+        let vertices = Vertices::new(&app, &mesh, offset, stride);
+        let before = app.read(&vertices.buffer);
+        app.submit(|encoder| {
+            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            sweeps.encode(encoder, 2);
+            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+        });
+        let (points, after) = (app.points(&device_mesh, &mesh), app.read(&vertices.buffer));
+        let mut expected: Vec<u32> = (0..after.len()).map(filler).collect();
+        for &v in mesh.triangles.as_flattened() {
+            let at = vertices.word(v);
+            for (word, x) in (at..).zip(points[v as usize]) {
+                let exported = f32::from_bits(after[word]);
+                let off = (f64::from(exported) - x).abs();
+                assert!(off <= x.abs() * 2f64.powi(-24), "{offset} {stride}: {exported} for {x}");
+                expected[word] = after[word];
+            }
+        }
+        assert!(expected == after, "{offset} {stride}: something else was written");
+        let kept = boundary(&mesh);
+        let used = |v: u32| before[vertices.word(v)] != filler(vertices.word(v));
+        let moved = |v: u32| before[vertices.word(v)] != after[vertices.word(v)];
+        for v in (0..mesh.points.len() as u32).filter(|&v| kept[v as usize] || !used(v)) {
+            assert!(!moved(v), "vertex {v} of the boundary or of no triangle");
+        }
+        assert!(interior(&mesh).into_iter().filter(|&v| moved(v)).count() > 200);
+    }
+}
+
+#[test]
+fn an_import_reads_every_layout_alike() {
+    let mesh = with_unused_vertices();
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    for (i, &[offset, stride]) in LAYOUTS.iter().enumerate() {
+        // All vertices elsewhere each time, those of the boundary too.
+        let there = transformed(&mesh, 1.0 + i as f64 / 8.0, [i as f64, -0.5]);
+        let vertices = Vertices::new(&app, &there, offset, stride);
+        app.submit(|encoder| {
+            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+        });
+        let points = app.points(&device_mesh, &mesh);
+        for &v in mesh.triangles.as_flattened() {
+            let given = there.points[v as usize].map(|x| f64::from(x as f32));
+            for (x, found) in given.into_iter().zip(points[v as usize]) {
+                assert!((x - found).abs() <= 1e-12 * 20.0, "{offset} {stride}: {found} for {x}");
+            }
+        }
+        // A vertex of no triangle is where the mesh had it.
+        assert_eq!(points[300], mesh.points[300]);
+    }
+}
+
+#[test]
+fn what_the_application_leaves_alone_keeps_its_full_precision() {
+    // Far from the origin, where the floats of the application's buffer resolve a 30th of an edge.
+    let mesh = transformed(&bad_plate(700), 4.0, [300_000.0, -200_000.0]);
+    let app = App::new();
+    let [alone, exchanged] = [false, true].map(|exchange| {
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+        let vertices = Vertices::usual(&app, &mesh);
+        for _ in 0..20 {
+            app.submit(|encoder| {
+                if exchange {
+                    device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+                }
+                sweeps.encode(encoder, 3);
+                if exchange {
+                    device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+                }
+            });
+        }
+        app.points(&device_mesh, &mesh)
+    });
+    assert_eq!(alone, exchanged);
+
+    // In the floats themselves the mesh is far worse, so that the test would notice.
+    let rounded = alone.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let f = |points: Vec<[f64; 2]>| f_imr(&Mesh { points, ..mesh.clone() });
+    assert!(f(rounded) > f(alone) + 1e-3);
+}
+
+#[test]
+fn a_vertex_the_application_moves_is_followed() {
+    let mesh = bad_plate(700);
+    let on_boundary = boundary(&mesh);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let vertices = Vertices::usual(&app, &mesh);
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let frame = |sweeps: &mut Sweeps, count| {
+        app.submit(|encoder| {
+            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            sweeps.encode(encoder, count);
+            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+        });
+        Mesh { points: app.points(&device_mesh, &mesh), ..mesh.clone() }
+    };
+    let smooth = frame(&mut sweeps, 40);
+
+    // The first corner of the plate, inward, and a vertex somewhere within its star.
+    let corner = mesh.points.iter().position(|&p| p == [0.0, 0.0]).unwrap() as u32;
+    let inner = interior(&mesh)[100];
+    assert!(on_boundary[corner as usize] && !on_boundary[inner as usize]);
+    let neighbor = *mesh.triangles.iter().find(|t| t.contains(&inner)).unwrap();
+    let neighbor = neighbor.into_iter().find(|&v| v != inner).unwrap();
+    let [here, there] = [inner, neighbor].map(|v| smooth.points[v as usize]);
+    let nearby = [0, 1].map(|x| f64::from((0.6 * here[x] + 0.4 * there[x]) as f32));
+    vertices.put(&app, corner, [0.03, 0.02]);
+    vertices.put(&app, inner, nearby);
+
+    let taken = frame(&mut sweeps, 0);
+    for (v, (was, is)) in smooth.points.iter().zip(&taken.points).enumerate() {
+        let expected = match v as u32 {
+            v if v == corner => [0.03, 0.02].map(|x| f64::from(x as f32)),
+            v if v == inner => nearby,
+            _ => *was,
+        };
+        let off = (0..2).map(|x| (expected[x] - is[x]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-12, "vertex {v} is at {is:?} instead of {expected:?}");
+    }
+    assert!(f_imr(&taken) > f_imr(&smooth) + 1e-4);
+
+    // The corner stays where it was put, the other goes back, and the mesh is smooth again around both.
+    let mended = frame(&mut sweeps, 40);
+    assert_eq!(mended.points[corner as usize], taken.points[corner as usize]);
+    assert_ne!(mended.points[inner as usize], taken.points[inner as usize]);
+    assert!(f_imr(&mended) < f_imr(&taken) - 1e-4);
+    let neighbors = mesh.triangles.iter().filter(|t| t.contains(&corner)).flatten();
+    let follows = |&v: &u32| mended.points[v as usize] != smooth.points[v as usize];
+    assert!(neighbors.copied().filter(|&v| !on_boundary[v as usize]).any(|v| follows(&v)));
+}
+
+#[test]
+fn two_vertex_buffers_can_show_one_mesh() {
+    let mesh = bad_plate(500);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let [first, second] = [[0, 8], [16, 24]]
+        .map(|[offset, stride]| (Vertices::new(&app, &mesh, offset, stride), stride));
+    app.submit(|encoder| {
+        sweeps.encode(encoder, 4);
+        for (vertices, _) in [&first, &second] {
+            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+        }
+    });
+    let (a, b) = (app.read(&first.0.buffer), app.read(&second.0.buffer));
+    for v in interior(&mesh) {
+        let (at, other) = (first.0.word(v), second.0.word(v));
+        assert_eq!(a[at..at + 2], b[other..other + 2]);
+    }
+}
+
+#[test]
+fn a_position_that_is_not_finite_is_not_taken() {
+    let mesh = bad_plate(500);
+    let app = App::new();
+    let (v, others) = (interior(&mesh)[100], interior(&mesh));
+    for scheme in ["imr", "rms", "area"] {
+        let device_mesh = app.mesh(&mesh);
+        let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
+        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        for wrong in [[f64::NAN; 2], [1.0, f64::INFINITY], [f64::NEG_INFINITY, 1.0]] {
+            let vertices = Vertices::usual(&app, &mesh);
+            vertices.put(&app, v, wrong);
+            let before = app.points(&device_mesh, &mesh);
+            app.submit(|encoder| {
+                device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            });
+            assert_eq!(app.points(&device_mesh, &mesh)[v as usize], before[v as usize]);
+            app.submit(|encoder| {
+                sweeps.encode(encoder, 10);
+                device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+            });
+            let words = app.read(&vertices.buffer);
+            for &v in &others {
+                let at = vertices.word(v);
+                assert!(words[at..at + 2].iter().all(|&x| f32::from_bits(x).is_finite()));
+            }
+        }
+    }
+}

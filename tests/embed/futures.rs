@@ -1,0 +1,188 @@
+//! Runs that do not block: who polls, who cancels.
+
+use std::future::Future;
+use std::ops::ControlFlow;
+use std::pin::pin;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::task::{Context, Poll, Waker};
+use std::time::{Duration, Instant};
+
+use gpu_smooth::{
+    Backend, Desired, Goal, Metric, Options, Outcome, Progress, Smoother, Stop, wgpu,
+};
+
+use crate::app::{App, bad_plate};
+
+/// Drives a future as an application does that polls its device once a frame, and counts the frames.
+fn drive<F: Future>(device: &wgpu::Device, future: F) -> (F::Output, u32) {
+    let mut future = pin!(future);
+    let mut context = Context::from_waker(Waker::noop());
+    let end = Instant::now() + Duration::from_secs(60);
+    let mut frames = 0;
+    while Instant::now() < end {
+        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
+            return (output, frames);
+        }
+        device.poll(wgpu::PollType::Poll).unwrap();
+        frames += 1;
+    }
+    panic!("the future was not done after {frames} frames");
+}
+
+fn go_on(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Everything but the time it took.
+fn assert_same(expected: &Outcome, found: &Outcome) {
+    assert_eq!(expected.points, found.points);
+    assert_eq!((expected.stop, expected.sweeps), (found.stop, found.sweeps));
+    assert_eq!((expected.best_sweep, &expected.goal), (found.best_sweep, &found.goal));
+    let f = |outcome: &Outcome| -> Vec<_> {
+        outcome.history.iter().map(|o| Metric::ALL.iter().map(|&m| o.of(m)).collect()).collect()
+    };
+    let (a, b): (Vec<Vec<_>>, _) = (f(expected), f(found));
+    assert_eq!(a, b);
+}
+
+fn cases() -> [Options; 3] {
+    let edge = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
+    let goal = Goal { fraction: 0.95, desired: Desired::Auto };
+    [
+        Options { track_all: true, ..Options::default() },
+        Options { max_sweeps: 30, ..edge },
+        Options { goal: Some(goal), ..Options::default() },
+    ]
+}
+
+#[test]
+fn a_run_polled_by_the_application_is_the_blocking_run() {
+    let mesh = bad_plate(600);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let app = App::new();
+    let backend = Backend::Gpu(app.another_gpu());
+    for options in cases() {
+        let expected = smoother.run(&options, &backend, &mut go_on).unwrap();
+        let mut observe = go_on;
+        let future = smoother.run_async(&options, &app.gpu, &mut observe);
+        let (found, frames) = drive(app.device(), future);
+        assert_same(&expected, &found.unwrap());
+        assert!(frames > 0, "the future blocked the thread");
+    }
+}
+
+#[test]
+fn another_thread_may_poll() {
+    let mesh = bad_plate(600);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let app = App::new();
+    let backend = Backend::Gpu(app.another_gpu());
+    let [options, ..] = cases();
+    let expected = smoother.run(&options, &backend, &mut go_on).unwrap();
+    let done = AtomicBool::new(false);
+    let found = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                app.device().poll(wgpu::PollType::Poll).unwrap();
+                std::thread::sleep(Duration::from_micros(100));
+            }
+        });
+        let found = pollster::block_on(smoother.run_async(&options, &app.gpu, &mut go_on));
+        done.store(true, Ordering::Relaxed);
+        found
+    });
+    assert_same(&expected, &found.unwrap());
+}
+
+#[test]
+fn two_runs_at_once_on_one_device_do_as_alone() {
+    let meshes = [bad_plate(600), bad_plate(400)];
+    let [first, second] = meshes.each_ref().map(|mesh| Smoother::new(mesh).unwrap());
+    let [options, other, _] = cases();
+    let app = App::new();
+    let backend = Backend::Gpu(app.another_gpu());
+    let expected = [
+        first.run(&options, &backend, &mut go_on).unwrap(),
+        second.run(&other, &backend, &mut go_on).unwrap(),
+    ];
+    let (mut a, mut b) = (go_on, go_on);
+    let mut futures = (
+        pin!(first.run_async(&options, &app.gpu, &mut a)),
+        pin!(second.run_async(&other, &app.gpu, &mut b)),
+    );
+    let mut found = (None, None);
+    let both = std::future::poll_fn(|context| {
+        if found.0.is_none()
+            && let Poll::Ready(outcome) = futures.0.as_mut().poll(context)
+        {
+            found.0 = Some(outcome.unwrap());
+        }
+        if found.1.is_none()
+            && let Poll::Ready(outcome) = futures.1.as_mut().poll(context)
+        {
+            found.1 = Some(outcome.unwrap());
+        }
+        if found.0.is_some() && found.1.is_some() { Poll::Ready(()) } else { Poll::Pending }
+    });
+    drive(app.device(), both);
+    assert_same(&expected[0], &found.0.unwrap());
+    assert_same(&expected[1], &found.1.unwrap());
+}
+
+#[test]
+fn a_cancelled_run_returns_the_best_state_so_far() {
+    let mesh = bad_plate(600);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let app = App::new();
+    for scheme in ["imr", "edge+imr"] {
+        let options = Options {
+            scheme: scheme.parse().unwrap(),
+            tolerance: 0.0,
+            max_sweeps: 100_000,
+            ..Options::default()
+        };
+        let base = options.scheme.base();
+        let mut heard = Vec::new();
+        let mut observe = |progress: &Progress| {
+            heard.push((progress.sweep, progress.f));
+            if heard.len() < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        let (outcome, _) =
+            drive(app.device(), smoother.run_async(&options, &app.gpu, &mut observe));
+        let outcome = outcome.unwrap();
+        assert_eq!(outcome.stop, Stop::Cancelled);
+        assert_eq!(heard.len(), 2);
+        assert_eq!(outcome.sweeps, heard[1].0);
+        let f: Vec<f64> = outcome.history.iter().map(|o| o.of(base).unwrap()).collect();
+        assert_eq!(heard[1].1, *f.last().unwrap());
+        let least = f.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least < f[0]);
+        let measured = smoother.quality(&outcome.points).f(base);
+        assert!((measured / least - 1.0).abs() < 1e-6, "{measured} {least}");
+    }
+}
+
+#[test]
+fn a_dropped_run_leaves_the_device_usable() {
+    let mesh = bad_plate(600);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let app = App::new();
+    let [options, ..] = cases();
+    let (expected, _) = drive(app.device(), smoother.run_async(&options, &app.gpu, &mut go_on));
+    let expected = expected.unwrap();
+    let endless = Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() };
+    // Dropped before it was polled, at its first wait, and later ones.
+    for polls in [0, 1, 2, 7] {
+        let mut observe = go_on;
+        let mut future = Box::pin(smoother.run_async(&endless, &app.gpu, &mut observe));
+        let mut context = Context::from_waker(Waker::noop());
+        for _ in 0..polls {
+            assert!(future.as_mut().poll(&mut context).is_pending());
+            app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        }
+        drop(future);
+    }
+    app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let (found, _) = drive(app.device(), smoother.run_async(&options, &app.gpu, &mut go_on));
+    assert_same(&expected, &found.unwrap());
+}

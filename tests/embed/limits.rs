@@ -1,0 +1,173 @@
+//! Devices with low limits, and meshes that are too large for them.
+
+use std::ops::ControlFlow;
+
+use gpu_smooth::{
+    Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Options, Smoother, Sweeps, VertexBuffer,
+    wgpu,
+};
+use wgpu::Limits;
+
+use crate::app::{App, Vertices, adapter, bad_plate, gpu_error};
+use crate::support::{f_imr, lattice};
+
+#[track_caller]
+fn assert_limit(error: &GpuError, name: &str, available: u64, text: &str) {
+    match error {
+        GpuError::Limit { limit, available: found, needed, .. } => {
+            assert_eq!((*limit, *found), (name, available));
+            assert!(needed > found);
+        }
+        _ => panic!("{error:?}"),
+    }
+    assert_eq!(error.to_string(), text);
+}
+
+const SIZE: MeshSize = MeshSize { vertices: 1000, triangles: 1900 };
+
+#[test]
+fn required_limits_name_the_limit_that_is_too_low() {
+    let low = Limits { max_storage_buffer_binding_size: 16_000, ..Limits::default() };
+    assert_limit(
+        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        "max_storage_buffer_binding_size",
+        16_000,
+        "the buffer of triangles (1000 vertices) needs 22800, \
+         but the device's max_storage_buffer_binding_size is 16000",
+    );
+    let low = Limits { max_buffer_size: 15_999, ..Limits::default() };
+    assert_limit(
+        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        "max_buffer_size",
+        15_999,
+        "the buffer of vertex positions (1000 vertices) needs 16000, \
+         but the device's max_buffer_size is 15999",
+    );
+    let low = Limits { max_storage_buffers_per_shader_stage: 4, ..Limits::default() };
+    assert_limit(
+        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        "max_storage_buffers_per_shader_stage",
+        4,
+        "the number of storage buffers a kernel reads needs 7, \
+         but the device's max_storage_buffers_per_shader_stage is 4",
+    );
+}
+
+#[test]
+fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
+    let size = MeshSize { vertices: 50_000_000, triangles: 100_000_000 };
+    let most = Limits {
+        max_buffer_size: 1 << 31,
+        max_storage_buffer_binding_size: 1_200_000_000,
+        ..Limits::default()
+    };
+    let limits = Gpu::required_limits(size, &most).unwrap();
+    assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
+    assert_eq!(limits.max_buffer_size, 1_200_000_000);
+    let less = Limits { max_storage_buffer_binding_size: 1_199_999_999, ..most };
+    assert!(Gpu::required_limits(size, &less).is_err());
+}
+
+#[test]
+fn required_limits_and_features_are_what_this_adapter_has() {
+    let adapter = adapter();
+    let limits = Gpu::required_limits(SIZE, &adapter.limits()).unwrap();
+    assert!(limits.check_limits(&adapter.limits()));
+    assert!(adapter.features().contains(Gpu::required_features()));
+    assert!(Gpu::required_features().is_empty());
+}
+
+#[test]
+fn a_device_with_exactly_the_required_limits_smooths() {
+    let mesh = bad_plate(1000);
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let app = App::with_limits(Gpu::required_limits(size, &adapter().limits()).unwrap()).unwrap();
+    let device_mesh = app.mesh(&mesh);
+    let options = Options { track_all: true, ..Options::default() };
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+    let vertices = Vertices::new(&app, &mesh, 0, 8);
+    app.submit(|encoder| {
+        sweeps.encode(encoder, 10);
+        device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+    });
+    let points = app.points(&device_mesh, &mesh);
+    assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
+}
+
+/// A device that binds 32 KiB at once.
+fn small() -> App {
+    let limits = Gpu::required_limits(SIZE, &adapter().limits()).unwrap();
+    App::with_limits(Limits { max_storage_buffer_binding_size: 32 << 10, ..limits }).unwrap()
+}
+
+#[test]
+fn a_mesh_too_large_for_the_device_is_refused() {
+    let app = small();
+    let mesh = lattice(50, 50);
+    let text = "the buffer of vertex positions (2601 vertices) needs 41616, \
+                but the device's max_storage_buffer_binding_size is 32768";
+    let name = "max_storage_buffer_binding_size";
+    let error = DeviceMesh::new(&app.gpu, &mesh).err().unwrap();
+    assert_limit(&gpu_error(error), name, 32 << 10, text);
+    let backend = Backend::Gpu(app.another_gpu());
+    let smoother = Smoother::new(&mesh).unwrap();
+    let run = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()));
+    assert_limit(&gpu_error(run.unwrap_err()), name, 32 << 10, text);
+
+    // A smaller one goes well afterward.
+    let mesh = bad_plate(600);
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    app.submit(|encoder| sweeps.encode(encoder, 5));
+    let points = app.points(&device_mesh, &mesh);
+    assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
+}
+
+#[test]
+fn a_vertex_buffer_too_large_to_bind_is_refused() {
+    let app = small();
+    let mesh = bad_plate(600);
+    let device_mesh = app.mesh(&mesh);
+    let bytes = 64 * mesh.points.len() as u64;
+    let buffer = app.buffer(bytes, wgpu::BufferUsages::STORAGE);
+    let place = VertexBuffer { buffer: &buffer, offset: 0, stride: 64 };
+    let error = device_mesh.encode_import(&app.gpu, &mut app.encoder(), &place).unwrap_err();
+    let needed = bytes - 56;
+    assert_limit(
+        &error,
+        "max_storage_buffer_binding_size",
+        32 << 10,
+        &format!(
+            "the application's buffer needs {needed}, \
+             but the device's max_storage_buffer_binding_size is 32768"
+        ),
+    );
+}
+
+#[test]
+fn a_device_that_binds_too_few_buffers_is_refused() {
+    let error = App::with_limits(Limits::downlevel_defaults()).err().unwrap();
+    assert_limit(
+        &error,
+        "max_storage_buffers_per_shader_stage",
+        4,
+        "the number of storage buffers a kernel reads needs 7, \
+         but the device's max_storage_buffers_per_shader_stage is 4",
+    );
+}
+
+#[test]
+fn a_device_with_small_workgroups_is_refused() {
+    let limits = Gpu::required_limits(SIZE, &adapter().limits()).unwrap();
+    let limits = Limits {
+        max_compute_invocations_per_workgroup: 128,
+        max_compute_workgroup_size_x: 128,
+        ..limits
+    };
+    let result = App::with_limits(limits).and_then(|app| {
+        let device_mesh = app.mesh(&bad_plate(300));
+        Sweeps::new(&app.gpu, &device_mesh, &Options::default()).map_err(gpu_error).map(drop)
+    });
+    let text = result.unwrap_err().to_string();
+    assert!(text.contains("128") && text.contains("256"), "{text}");
+}

@@ -1,0 +1,146 @@
+//! A device that is lost in the middle.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::sync::mpsc;
+use std::task::{Context, Poll, Waker};
+use std::time::Duration;
+
+use gpu_smooth::{Backend, DeviceMesh, GpuError, Mesh, Options, Progress, Smoother, Sweeps, wgpu};
+
+use crate::app::{App, Vertices, bad_plate, gpu_error};
+use crate::support::f_imr;
+
+/// Fails instead of hanging.
+fn within_a_minute<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    let (sender, receiver) = mpsc::channel();
+    let worker = std::thread::spawn(move || sender.send(work()));
+    match receiver.recv_timeout(Duration::from_secs(60)) {
+        Err(mpsc::RecvTimeoutError::Timeout) => panic!("it hangs"),
+        result => {
+            let _ = worker.join().expect("it panicked");
+            result.unwrap()
+        }
+    }
+}
+
+#[track_caller]
+fn assert_lost(error: &GpuError) {
+    assert!(matches!(error, GpuError::Lost(_)), "{error:?}");
+    assert!(error.to_string().starts_with("the device was lost: "), "{error}");
+}
+
+fn endless() -> Options {
+    Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() }
+}
+
+#[test]
+fn a_run_says_that_the_device_was_lost() {
+    within_a_minute(|| {
+        let mesh = bad_plate(500);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let app = App::new();
+        let backend = Backend::Gpu(app.another_gpu());
+        let calls = Cell::new(0);
+        let mut observe = |_: &Progress| {
+            calls.set(calls.get() + 1);
+            if calls.get() == 2 {
+                app.device().destroy();
+            }
+            ControlFlow::Continue(())
+        };
+        let error = smoother.run(&endless(), &backend, &mut observe).unwrap_err();
+        assert_lost(&gpu_error(error));
+        assert_eq!(calls.get(), 2);
+        // And every later one.
+        let error = smoother.run(&endless(), &backend, &mut observe).unwrap_err();
+        assert_lost(&gpu_error(error));
+    });
+}
+
+#[test]
+fn a_future_completes_when_the_device_is_lost() {
+    within_a_minute(|| {
+        let mesh = bad_plate(500);
+        let smoother = Smoother::new(&mesh).unwrap();
+        // Lost while the future waits, or between two of its polls.
+        for waited in [0, 1, 5] {
+            let app = App::new();
+            let options = endless();
+            let mut observe = |_: &Progress| ControlFlow::Continue(());
+            let mut future = Box::pin(smoother.run_async(&options, &app.gpu, &mut observe));
+            let mut context = Context::from_waker(Waker::noop());
+            let mut polls = 0;
+            let error = loop {
+                if polls == waited {
+                    app.device().destroy();
+                }
+                if let Poll::Ready(outcome) = future.as_mut().poll(&mut context) {
+                    break outcome.unwrap_err();
+                }
+                // On a lost device it may fail: that is the application's to see.
+                let _ = app.device().poll(wgpu::PollType::Poll);
+                polls += 1;
+            };
+            assert!(polls >= waited);
+            assert_lost(&gpu_error(error));
+        }
+    });
+}
+
+#[test]
+fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
+    within_a_minute(|| {
+        let mesh = bad_plate(500);
+        let app = App::new();
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+        let vertices = Vertices::usual(&app, &mesh);
+        let usage = wgpu::BufferUsages::STORAGE;
+        let published = app.buffer(4 * Sweeps::OBJECTIVE_FLOATS as u64, usage);
+        app.submit(|encoder| sweeps.encode(encoder, 2));
+        app.device().destroy();
+        app.submit(|encoder| {
+            // Most of wgpu looks as if it still worked; these may notice or not.
+            let _ = device_mesh.encode_import(&app.gpu, encoder, &vertices.place());
+            sweeps.encode(encoder, 2);
+            let _ = sweeps.encode_objective(&app.gpu, encoder, &published, 0);
+            let _ = device_mesh.encode_export(&app.gpu, encoder, &vertices.place());
+        });
+        let _ = device_mesh.set_fixed(&app.gpu, &vec![false; mesh.points.len()]);
+        assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+        match DeviceMesh::new(&app.gpu, &mesh) {
+            Err(error) => assert_lost(&gpu_error(error)),
+            Ok(device_mesh) => {
+                assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+            }
+        }
+    });
+}
+
+#[test]
+fn a_new_device_goes_on_from_the_last_positions() {
+    within_a_minute(|| {
+        let mut mesh = bad_plate(500);
+        let options = Options::default();
+        let start = f_imr(&mesh);
+        {
+            let app = App::new();
+            let device_mesh = app.mesh(&mesh);
+            let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+            app.submit(|encoder| sweeps.encode(encoder, 3));
+            mesh.points = app.points(&device_mesh, &mesh);
+            app.submit(|encoder| sweeps.encode(encoder, 3));
+            app.device().destroy();
+            assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+        }
+        let saved = f_imr(&mesh);
+        assert!(saved < start);
+        let app = App::new();
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        app.submit(|encoder| sweeps.encode(encoder, 20));
+        let points = app.points(&device_mesh, &mesh);
+        assert!(f_imr(&Mesh { points, ..mesh.clone() }) < saved);
+    });
+}

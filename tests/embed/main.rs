@@ -1,0 +1,18 @@
+//! The library inside an application: on its device, in its encoders, on its vertex buffers.
+//!
+//! Every test makes a device as an application would, and fails if an error that is the library's own to
+//! handle reaches the application's handler; see [`app::App`].
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod app;
+mod exchange;
+mod fixed;
+mod futures;
+mod inverted;
+mod limits;
+mod lost;
+mod objective;
+mod refusals;
+mod sweeps;

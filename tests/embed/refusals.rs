@@ -1,0 +1,205 @@
+//! What the library refuses, and in what words. Whatever wgpu itself refuses on the way must not reach the
+//! application's error handler; [`App`] looks at that when it is dropped.
+
+use gpu_smooth::{
+    DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
+};
+use wgpu::BufferUsages as Usage;
+
+use crate::app::{App, Vertices, bad_plate};
+use crate::support::lattice;
+
+/// What both import and export say to a place for the vertices of a lattice of 36.
+#[track_caller]
+fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text: &str) {
+    let app = App::new();
+    let device_mesh = app.mesh(&lattice(5, 5));
+    let buffer = app.buffer(bytes, usage);
+    let place = VertexBuffer { buffer: &buffer, offset, stride };
+    let mut encoder = app.encoder();
+    for result in [
+        device_mesh.encode_import(&app.gpu, &mut encoder, &place),
+        device_mesh.encode_export(&app.gpu, &mut encoder, &place),
+    ] {
+        let error = result.unwrap_err();
+        assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+        let whole = format!("the application's buffer cannot be used: {text}");
+        assert_eq!(error.to_string(), whole);
+    }
+    // The encoder is as good as before.
+    app.gpu.queue().submit([encoder.finish()]);
+}
+
+#[test]
+fn a_buffer_without_storage_is_refused() {
+    let text = "it was made for BufferUsages(COPY_DST | VERTEX), and needs STORAGE as well";
+    assert_place_refused(1000, Usage::VERTEX | Usage::COPY_DST, 0, 8, text);
+}
+
+#[test]
+fn a_buffer_too_small_is_refused() {
+    // 35 strides and one x and y.
+    assert_place_refused(
+        12 * 35 + 4,
+        Usage::STORAGE,
+        0,
+        12,
+        "it has 424 bytes, and 428 from byte 0 are needed",
+    );
+    let text = "it has 432 bytes, and 428 from byte 8 are needed";
+    assert_place_refused(432, Usage::STORAGE, 8, 12, text);
+    let text = "it has 432 bytes, and 428 from byte 18446744073709551612 are needed";
+    assert_place_refused(432, Usage::STORAGE, u64::MAX - 3, 12, text);
+}
+
+#[test]
+fn a_buffer_just_large_enough_is_not() {
+    let app = App::new();
+    let device_mesh = app.mesh(&lattice(5, 5));
+    let buffer = app.buffer(8 + 12 * 35 + 8, Usage::STORAGE);
+    let place = VertexBuffer { buffer: &buffer, offset: 8, stride: 12 };
+    app.submit(|encoder| device_mesh.encode_export(&app.gpu, encoder, &place).unwrap());
+}
+
+#[test]
+fn a_misaligned_offset_is_refused() {
+    for offset in [1, 2, 6, 255] {
+        let text = format!("the offset is {offset} bytes, not a multiple of 4");
+        assert_place_refused(10_000, Usage::STORAGE, offset, 12, &text);
+    }
+}
+
+#[test]
+fn a_stride_that_fits_no_vertex_is_refused() {
+    for stride in [0, 4, 6, 10, 13, 1 << 34, u64::MAX - 3] {
+        let text = format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
+        assert_place_refused(10_000, Usage::STORAGE, 0, stride, &text);
+    }
+}
+
+/// What a place for objectives is refused with.
+#[track_caller]
+fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
+    let app = App::new();
+    let device_mesh = app.mesh(&lattice(5, 5));
+    let sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let buffer = app.buffer(bytes, usage);
+    let error = sweeps.encode_objective(&app.gpu, &mut app.encoder(), &buffer, offset).unwrap_err();
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+    assert!(error.to_string().ends_with(text), "{error}");
+}
+
+#[test]
+fn a_place_for_objectives_is_held_to_the_same() {
+    let storage = Usage::STORAGE;
+    assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
+    assert_objective_refused(20, storage, 0, "it has 20 bytes, and 24 from byte 0 are needed");
+    assert_objective_refused(64, storage, 44, "it has 64 bytes, and 24 from byte 44 are needed");
+    assert_objective_refused(64, storage, 2, "the offset is 2 bytes, not a multiple of 4");
+}
+
+#[test]
+fn a_destroyed_buffer_is_refused() {
+    let app = App::new();
+    let mesh = lattice(5, 5);
+    let device_mesh = app.mesh(&mesh);
+    let vertices = Vertices::usual(&app, &mesh);
+    vertices.buffer.destroy();
+    let error =
+        device_mesh.encode_import(&app.gpu, &mut app.encoder(), &vertices.place()).unwrap_err();
+    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(error.to_string().contains("destroyed"), "{error}");
+}
+
+#[test]
+fn what_belongs_to_another_device_is_refused() {
+    let (app, other) = (App::new(), App::new());
+    let mesh = bad_plate(300);
+    let (own, foreign) = (app.mesh(&mesh), other.mesh(&mesh));
+    let vertices = Vertices::usual(&other, &mesh);
+    let refused = |error: &GpuError| matches!(error, GpuError::Refused(_));
+    let mut encoder = app.encoder();
+    // A vertex buffer, a mesh under import and under a scheme, each with the wrong device.
+    let error = own.encode_import(&app.gpu, &mut encoder, &vertices.place()).unwrap_err();
+    assert!(refused(&error), "{error:?}");
+    let error = foreign.encode_export(&app.gpu, &mut encoder, &vertices.place()).unwrap_err();
+    assert!(refused(&error), "{error:?}");
+    let error = foreign.set_fixed(&app.gpu, &vec![false; mesh.points.len()]).unwrap_err();
+    assert!(refused(&error), "{error:?}");
+    let error = foreign.read_points(&app.gpu, &mesh).unwrap_err();
+    assert!(refused(&error), "{error:?}");
+    match Sweeps::new(&app.gpu, &foreign, &Options::default()) {
+        Err(SmoothError::Gpu(GpuError::Refused(_))) => {}
+        Err(error) => panic!("{error:?}"),
+        Ok(_) => panic!("accepted"),
+    }
+    app.gpu.queue().submit([encoder.finish()]);
+}
+
+fn mesh_error(mesh: &Mesh) -> MeshError {
+    match DeviceMesh::new(&App::new().gpu, mesh) {
+        Err(SmoothError::Mesh(error)) => error,
+        Err(error) => panic!("{error}"),
+        Ok(_) => panic!("accepted"),
+    }
+}
+
+#[test]
+fn an_empty_mesh_is_refused() {
+    assert_eq!(mesh_error(&Mesh::default()).to_string(), "the mesh has no triangles");
+    let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let error = mesh_error(&Mesh { points, ..Mesh::default() });
+    assert_eq!(error.to_string(), "the mesh has no triangles");
+}
+
+#[test]
+fn a_mesh_with_an_inverted_triangle_is_refused() {
+    let mut mesh = lattice(5, 5);
+    // A vertex of the middle, across its star.
+    mesh.points[14][0] += 1.5;
+    let error = mesh_error(&mesh);
+    let MeshError::Infeasible { count, flat: false, .. } = error else { panic!("{error}") };
+    assert!(count > 0);
+    let text = format!("{count} triangles are inverted or flat, the first is triangle ");
+    assert!(error.to_string().starts_with(&text), "{error}");
+}
+
+#[test]
+fn a_mesh_with_nothing_to_move_is_refused() {
+    let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let error = mesh_error(&Mesh { points, triangles: vec![[0, 1, 2]], fixed: vec![] });
+    assert_eq!(error.to_string(), "none of the 3 vertices is free to move");
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let app = App::new();
+    let device_mesh = app.mesh(&lattice(5, 5));
+    let ok = Options::default;
+    for (options, text) in [
+        (
+            Options { omega: Some(2.0), ..ok() },
+            "omega is 2: over-relaxation must be above 0 and below 2",
+        ),
+        (
+            Options { omega: Some(f64::NAN), ..ok() },
+            "omega is NaN: over-relaxation must be above 0 and below 2",
+        ),
+        (Options { inner: 0, ..ok() }, "inner is 0: a visit takes at least one Newton step"),
+        (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
+    ] {
+        let error = Sweeps::new(&app.gpu, &device_mesh, &options).err().unwrap();
+        assert!(matches!(error, SmoothError::Option { .. }), "{error:?}");
+        assert_eq!(error.to_string(), text);
+    }
+}
+
+#[test]
+fn errors_of_the_application_itself_still_reach_its_handler() {
+    let app = App::new();
+    // The library's error scopes must not outlive its calls.
+    let _ = app.mesh(&lattice(5, 5));
+    let too_large = app.device().limits().max_buffer_size + 4;
+    let _ = app.buffer(too_large, Usage::STORAGE);
+    assert_eq!(app.take_uncaptured().len(), 1);
+}

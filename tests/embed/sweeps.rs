@@ -1,0 +1,159 @@
+//! Encoded sweeps are those of a run, however they are split and interleaved.
+
+use std::ops::ControlFlow;
+
+use gpu_smooth::{
+    Backend, Derivatives, Mesh, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
+};
+
+use crate::app::{App, bad_plate};
+use crate::support::{lattice, perturb_random};
+
+fn options(scheme: &str) -> Options {
+    Options { scheme: scheme.parse().unwrap(), ..Options::default() }
+}
+
+/// The best that a run of `sweeps` sweeps makes of a mesh, and the sweep that did.
+fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
+    let app = App::new();
+    let backend = Backend::Gpu(app.another_gpu());
+    let options = Options { max_sweeps: sweeps, tolerance: 0.0, ..options.clone() };
+    let outcome = Smoother::new(mesh)
+        .unwrap()
+        .run(&options, &backend, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_eq!((outcome.sweeps, outcome.returned), (sweeps, 0));
+    (outcome.points, outcome.best_sweep)
+}
+
+/// Bit by bit where a vertex has moved, and to the device's 48 bits where it has not.
+fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]]) {
+    let mut moved = 0;
+    for (v, (e, f)) in expected.iter().zip(found).enumerate() {
+        if *e == mesh.points[v] {
+            assert!((0..2).all(|x| (e[x] - f[x]).abs() < 1e-12), "{name}: vertex {v}: {e:?} {f:?}");
+        } else {
+            assert_eq!(e, f, "{name}: vertex {v}");
+            moved += 1;
+        }
+    }
+    assert!(moved > 100, "{name}: only {moved} vertices moved");
+}
+
+#[test]
+fn encoded_sweeps_are_those_of_a_run() {
+    let mesh = bad_plate(800);
+    let cases = [
+        ("over-relaxed after four", options("imr"), 13),
+        ("over-relaxed after six", Options { plain_sweeps: 6, ..options("imr") }, 9),
+        ("as published", Options::paper("imr".parse().unwrap()), 6),
+        ("alternating", options("edge+imr"), 7),
+        (
+            "alternating by three",
+            Options { omega: Some(1.3), plain_sweeps: 2, ..options("imr+rms+area") },
+            8,
+        ),
+        ("two steps a visit", Options { inner: 2, ..options("imr") }, 6),
+        ("sharpened", Options { sharpness: Sharpness::CONTINUED, ..options("edge") }, 12),
+        (
+            "by differences",
+            Options { derivatives: Derivatives::FiniteDifference, ..options("rms") },
+            6,
+        ),
+        ("all tracked", Options { track_all: true, ..options("area") }, 6),
+    ];
+    for (name, options, sweeps) in cases {
+        let (expected, sweeps) = run(&mesh, &options, sweeps);
+        assert!(sweeps > 4, "{name}: best after {sweeps}");
+
+        let app = App::new();
+        let device_mesh = app.mesh(&mesh);
+        let mut encoded = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        // Three calls in one command buffer, one of them for nothing, and the rest in others.
+        app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode(encoder, n)));
+        app.submit(|encoder| encoded.encode(encoder, 1));
+        app.submit(|encoder| encoded.encode(encoder, sweeps - 4));
+        let found = app.points(&device_mesh, &mesh);
+        assert_same(name, &mesh, &expected, &found);
+    }
+}
+
+#[test]
+fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
+    let (plate, other) = (bad_plate(700), perturb_random(&lattice(20, 17), 0.7, 3));
+    let (imr, edge) = (options("imr"), options("edge+imr"));
+    let (first_expected, _) = run(&plate, &imr, 9);
+    let (second_expected, best) = run(&other, &edge, 6);
+    assert_eq!(best, 6);
+
+    let app = App::new();
+    let meshes = [app.mesh(&plate), app.mesh(&other)];
+    let mut first = Sweeps::new(&app.gpu, &meshes[0], &imr).unwrap();
+    let mut second = Sweeps::new(&app.gpu, &meshes[1], &edge).unwrap();
+    app.submit(|encoder| {
+        for _ in 0..3 {
+            first.encode(encoder, 3);
+            second.encode(encoder, 2);
+        }
+    });
+    assert_same("first", &plate, &first_expected, &app.points(&meshes[0], &plate));
+    assert_same("second", &other, &second_expected, &app.points(&meshes[1], &other));
+}
+
+#[test]
+fn two_schemes_take_turns_on_one_mesh() {
+    let mesh = bad_plate(700);
+    let app = App::new();
+    // One submission for everything, and one for each call.
+    let [together, apart] = [true, false].map(|together| {
+        let device_mesh = app.mesh(&mesh);
+        let bind = |scheme| Sweeps::new(&app.gpu, &device_mesh, &options(scheme)).unwrap();
+        let (mut imr, mut edge) = (bind("imr"), bind("edge"));
+        let mut turn = |encoder: &mut CommandEncoder| {
+            imr.encode(encoder, 2);
+            edge.encode(encoder, 1);
+        };
+        if together {
+            app.submit(|encoder| (0..4).for_each(|_| turn(encoder)));
+        } else {
+            (0..4).for_each(|_| app.submit(&mut turn));
+        }
+        app.points(&device_mesh, &mesh)
+    });
+    assert_same("in turn", &mesh, &apart, &together);
+    assert_ne!(together, run(&mesh, &options("imr"), 12).0);
+}
+
+#[test]
+fn a_restarted_scheme_starts_with_plain_sweeps_again() {
+    let mesh = bad_plate(700);
+    let app = App::new();
+    let options = options("imr+rms");
+    let options = Options { omega: Some(1.6), ..options };
+    // Seven sweeps, and seven more: after a restart, by a scheme bound anew, and going on.
+    let [restarted, anew, on] = [0, 1, 2].map(|case| {
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        app.submit(|encoder| sweeps.encode(encoder, 7));
+        match case {
+            0 => sweeps.restart(),
+            1 => sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap(),
+            _ => {}
+        }
+        app.submit(|encoder| sweeps.encode(encoder, 7));
+        app.points(&device_mesh, &mesh)
+    });
+    assert_same("restarted", &mesh, &anew, &restarted);
+    assert_ne!(anew, on);
+}
+
+#[test]
+fn sweeps_outlive_the_mesh_they_are_bound_to() {
+    let mesh = bad_plate(700);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    drop(device_mesh);
+    app.submit(|encoder| sweeps.encode(encoder, 3));
+    app.device().poll(gpu_smooth::wgpu::PollType::wait_indefinitely()).unwrap();
+}

@@ -1,0 +1,78 @@
+//! The examples do what they are examples of.
+
+#[allow(dead_code)]
+#[path = "../examples/embed/main.rs"]
+mod embed;
+
+#[allow(dead_code)]
+#[path = "../examples/moving_boundary/main.rs"]
+mod moving_boundary;
+
+use std::path::Path;
+
+use gpu_smooth::MeshFile;
+use moving_boundary::support;
+
+/// How bright a pixel is to the eye, from 0 to 255.
+fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {
+    0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue)
+}
+
+#[test]
+fn embed_draws_a_better_mesh_within_the_same_boundary() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.node");
+    let file = MeshFile::read(&path).unwrap();
+    let [before, after] = embed::smooth_and_draw(file.mesh(), 5).unwrap();
+
+    let f = support::f_imr(file.mesh());
+    assert!((f64::from(before.f) / f - 1.0).abs() < 1e-5, "{} for {f}", before.f);
+    assert!(after.f < 1.2 && before.inverted == 0.0 && after.inverted == 0.0, "{}", after.f);
+
+    // What is outside of the plate and in its holes stays white.
+    let is_white = |&&pixel: &&[u8; 4]| pixel == [255; 4];
+    let white = before.pixels.iter().filter(is_white).count();
+    let pairs = || before.pixels.iter().zip(&after.pixels);
+    let switched = pairs().filter(|(a, b)| is_white(a) != is_white(b)).count();
+    assert!(white > 100_000, "only {white} pixels show no mesh");
+    assert!(switched < 50, "{switched} pixels of the background changed");
+
+    // Within, the colors of good triangles are bright, and those of bad ones dark.
+    let inside: Vec<_> =
+        pairs().filter(|(a, b)| !is_white(a) && !is_white(b)).map(|(a, b)| [*a, *b]).collect();
+    let mean = |which: usize| {
+        inside.iter().map(|pair| luminance(pair[which])).sum::<f64>() / inside.len() as f64
+    };
+    let dark = |which: usize| inside.iter().filter(|pair| luminance(pair[which]) < 60.0).count();
+    assert!(mean(1) > mean(0) + 30.0, "{} after {}", mean(1), mean(0));
+    assert!(dark(1) * 5 < dark(0), "{} dark pixels after {}", dark(1), dark(0));
+    let changed = pairs().filter(|(a, b)| a != b).count();
+    assert!(changed > inside.len() / 2);
+}
+
+#[test]
+fn embed_writes_what_it_drew() {
+    let mesh = support::lattice(4, 3);
+    let [frame, _] = embed::smooth_and_draw(&mesh, 1).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("mesh.png");
+    frame.write(&path).unwrap();
+    let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.width, info.height), (960, 640));
+    assert!(bytes == frame.pixels.as_flattened());
+}
+
+#[test]
+fn sweeps_keep_a_mesh_good_whose_boundary_moves() {
+    let steps = moving_boundary::simulate(800, 4, 20, 3.0).unwrap();
+    assert_eq!(steps.len(), 20);
+    assert!(steps.iter().all(|step| step.kept.inverted == 0));
+    for step in &steps[5..] {
+        let (kept, left) = (step.kept.worst_imr, step.left.worst_imr);
+        assert!(kept < left, "{} degrees: {kept} with sweeps, {left} without", step.angle);
+    }
+    let last = steps.last().unwrap();
+    assert!(last.kept.worst_imr < 6.0 && last.left.inverted > 10);
+}

@@ -1,0 +1,86 @@
+//! The derivatives of the CPU engine against central differences of the value.
+
+use crate::support::SplitMix64;
+use crate::triangles::*;
+use gpu_smooth::{Corner, Dual, Metric};
+
+fn central(metric: Metric, t: &Corner<f64>, sharpness: u32, h: f64) -> Dual {
+    let value = |i: i32, j: i32| {
+        metric.model(&displaced(t, [f64::from(i) * h, f64::from(j) * h]), sharpness)
+    };
+    let here = value(0, 0);
+    let (east, west, north, south) = (value(1, 0), value(-1, 0), value(0, 1), value(0, -1));
+    let mixed = value(1, 1) - value(1, -1) - value(-1, 1) + value(-1, -1);
+    let xx = (east - 2.0 * here + west) / (h * h);
+    let yy = (north - 2.0 * here + south) / (h * h);
+    Dual {
+        value: here,
+        gradient: [(east - west) / (2.0 * h), (north - south) / (2.0 * h)],
+        hessian: [xx, mixed / (4.0 * h * h), yy],
+    }
+}
+
+/// Mean difference of gradient and Hessian, in units of q² over the height, between what `derived` makes
+/// of the library's derivatives and central differences of this width relative to the height.
+fn error(metric: Metric, sharpness: u32, width: f64, derived: impl Fn(Dual) -> Dual) -> [f64; 2] {
+    let mut rng = SplitMix64::new(11);
+    let mut sums = [0.0; 2];
+    let count = 200;
+    for _ in 0..count {
+        let t = random(&mut rng, 5.0);
+        let unit = height(&t);
+        let differences = central(metric, &t, sharpness, width * unit);
+        let exact = derived(metric.derivatives(&t, sharpness));
+        let scale = metric.excess(&t).abs() + 1.0;
+        let far = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).sum::<f64>();
+        sums[0] += far(&exact.gradient, &differences.gradient) * unit / scale;
+        sums[1] += far(&exact.hessian, &differences.hessian) * unit * unit / scale;
+    }
+    sums.map(|sum| sum / f64::from(count))
+}
+
+/// How fast gradient and Hessian errors fall as the width is halved: 2 for right derivatives.
+fn orders(metric: Metric, sharpness: u32, derived: impl Fn(Dual) -> Dual) -> [f64; 2] {
+    // Narrow against the sharpest bend of the p-norm, wide against rounding.
+    let width = 0.05 / 2f64.powi(sharpness as i32);
+    let wide = error(metric, sharpness, width, &derived);
+    let narrow = error(metric, sharpness, width / 2.0, &derived);
+    [0, 1].map(|i| (wide[i] / narrow[i]).log2())
+}
+
+#[test]
+fn central_differences_converge_to_the_derivatives_in_second_order() {
+    for &metric in Metric::ALL.iter().filter(|metric| !metric.properties().quadratic) {
+        let all = if metric == Metric::Edge { vec![1, 2, 4, 6, 9] } else { vec![0] };
+        for sharpness in all {
+            for order in orders(metric, sharpness, |exact| exact) {
+                assert!((order - 2.0).abs() < 0.05, "{metric}, sharpness {sharpness}: {order}");
+            }
+        }
+    }
+}
+
+#[test]
+fn central_differences_of_a_quadratic_are_its_derivatives() {
+    for &metric in Metric::ALL.iter().filter(|metric| metric.properties().quadratic) {
+        // No third derivative: whatever the width, only rounding is left.
+        let [gradient, hessian] = error(metric, 0, 0.3, |exact| exact);
+        assert!(gradient < 1e-13 && hessian < 1e-12, "{metric}: {gradient:e} {hessian:e}");
+    }
+}
+
+#[test]
+fn a_derivative_wrong_by_a_percent_has_no_order() {
+    let wrong_gradient = |d: Dual| Dual { gradient: d.gradient.map(|g| 1.01 * g), ..d };
+    let wrong_hessian = |d: Dual| Dual { hessian: d.hessian.map(|h| 1.01 * h), ..d };
+    for &metric in Metric::ALL {
+        if metric.properties().quadratic {
+            assert!(error(metric, 0, 0.3, wrong_gradient)[0] > 1e-3, "{metric}");
+            assert!(error(metric, 0, 0.3, wrong_hessian)[1] > 1e-3, "{metric}");
+        } else {
+            let sharpness = if metric == Metric::Edge { 4 } else { 0 };
+            assert!(orders(metric, sharpness, wrong_gradient)[0] < 1.5, "{metric}");
+            assert!(orders(metric, sharpness, wrong_hessian)[1] < 1.5, "{metric}");
+        }
+    }
+}

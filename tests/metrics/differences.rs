@@ -1,0 +1,99 @@
+//! Finite differences as an engine takes them: a little off, and good enough to smooth with.
+
+use crate::support;
+use gpu_smooth::{
+    Backend, Coloring, CpuEngine, Derivatives, Engine, Gpu, Mesh, Metric, Options, Plan, Problem,
+    Sharpness, Smoother, StopRule, Topology,
+};
+use std::ops::ControlFlow;
+
+fn plate() -> Mesh {
+    let outline = support::Outline::parse(include_str!("../../meshes/plate.outline")).unwrap();
+    support::perturb_random(&support::triangulate(&outline, 300).unwrap(), 0.7, 5)
+}
+
+#[test]
+fn a_sweep_by_differences_is_a_little_off() {
+    let mesh = plate();
+    let topology = Topology::new(&mesh).unwrap();
+    let problem = Problem::new(&mesh, &topology, &Coloring::new(&topology));
+    for &metric in Metric::ALL {
+        let swept = |derivatives| {
+            let plan = Plan {
+                scheme: metric.into(),
+                omega: [1.0; Metric::ALL.len()],
+                plain_sweeps: 0,
+                inner: 1,
+                derivatives,
+                sharpness: Sharpness::FIXED,
+                stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
+                track_all: false,
+            };
+            let mut engine = CpuEngine::new(&problem, problem.positions().to_vec(), plan);
+            engine.advance(1).unwrap();
+            engine.best_positions().unwrap()
+        };
+        let exact = swept(Derivatives::Analytic);
+        let near = swept(Derivatives::FiniteDifference);
+        let (mut moved, mut off) = (0.0, 0.0);
+        for ((was, a), b) in problem.positions().iter().zip(&exact).zip(&near) {
+            moved += a.distance(*was);
+            off += a.distance(*b);
+        }
+        assert!(off > 0.0, "{metric}: not by differences");
+        // Forward differences of 1 % of a height are wrong by a few such widths, and by more where the
+        // p-norm of EDGE bends: it takes the 16th power.
+        let bound = if metric == Metric::Edge { 0.25 } else { 0.05 };
+        assert!(off < bound * moved, "{metric}: {}", off / moved);
+    }
+}
+
+#[test]
+fn runs_by_differences_end_near_the_optimum_on_both_engines() {
+    let mesh = plate();
+    let smoother = Smoother::new(&mesh).unwrap();
+    let backends = [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())];
+    for &metric in Metric::ALL {
+        let f = |derivatives, backend| {
+            let options = Options { scheme: metric.into(), derivatives, ..Options::default() };
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            let outcome = smoother.run(&options, backend, go_on).unwrap();
+            smoother.quality(&outcome.points).f(metric)
+        };
+        let exact = f(Derivatives::Analytic, &backends[0]);
+        let gone = smoother.quality(&mesh.points).f(metric) - exact;
+        for backend in &backends {
+            let near = f(Derivatives::FiniteDifference, backend);
+            // The minimum is missed by half a width of the differences. That counts twice for the smooth
+            // metrics, once where EDGE has a kink; AREA has 0 for its ideal, so only the way gone is a measure.
+            let (missed, bound) = match metric {
+                Metric::Edge => (near / exact - 1.0, 5e-3),
+                Metric::Area => ((near - exact) / gone, 2e-2),
+                _ => (near / exact - 1.0, 1e-3),
+            };
+            assert!((0.0..bound).contains(&missed), "{metric}: {near} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_best_state_is_returned_though_differences_may_raise_f() {
+    let mesh = plate();
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options {
+        scheme: Metric::Rms.into(),
+        derivatives: Derivatives::FiniteDifference,
+        ..Options::default()
+    };
+    for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())] {
+        let outcome = smoother.run(&options, &backend, &mut |_| ControlFlow::Continue(())).unwrap();
+        let history: Vec<f64> =
+            outcome.history.iter().map(|f| f.of(Metric::Rms).unwrap()).collect();
+        let best = history.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(history.last() > Some(&(best * (1.0 + 1e-6))), "the last is not the best");
+        let f = smoother.quality(&outcome.points).f(Metric::Rms);
+        // What single precision makes of the history.
+        assert!((f / best - 1.0).abs() < 2e-7, "{f} returned, {best} seen");
+        assert_eq!(history[outcome.best_sweep as usize], best);
+    }
+}

@@ -1,0 +1,215 @@
+//! What the row of each metric says of it.
+
+use crate::support::SplitMix64;
+use crate::triangles::*;
+use gpu_smooth::{Corner, Metric};
+
+const COUNT: usize = 500;
+const WORST: f64 = 50.0;
+
+/// Rounding in a shape of this ratio: a few operations, of which the area cancels.
+fn rounding(t: &Corner<f64>) -> f64 {
+    16.0 * f64::EPSILON * (1.0 + imr(t))
+}
+
+fn all_random(mut check: impl FnMut(Metric, &Corner<f64>)) {
+    for (seed, &metric) in Metric::ALL.iter().enumerate() {
+        let mut rng = SplitMix64::new(seed as u64);
+        (0..COUNT).for_each(|_| check(metric, &random(&mut rng, WORST)));
+    }
+}
+
+fn close(a: f64, b: f64, bound: f64) -> bool {
+    (a - b).abs() <= bound * a.abs().max(b.abs()).max(1.0)
+}
+
+/// Area from the lengths alone, by Kahan's form of Heron's formula, which does not cancel.
+fn heron(t: &Corner<f64>) -> f64 {
+    let mut l = lengths(t);
+    l.sort_unstable_by(f64::total_cmp);
+    let [c, b, a] = l;
+    ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).sqrt() / 4.0
+}
+
+#[test]
+fn the_equilateral_triangle_of_mean_area_is_ideal() {
+    for &metric in Metric::ALL {
+        let mut t = rotated(&equilateral(), 0.3);
+        for _ in 0..3 {
+            let excess = metric.excess(&t);
+            assert!(excess.abs() < 4e-15, "{metric}: {excess:e}");
+            assert!(close(metric.quality(&t), metric.properties().ideal, 1e-7), "{metric}");
+            t = next_corner(&t);
+        }
+    }
+}
+
+#[test]
+fn no_triangle_of_mean_area_is_better_than_ideal() {
+    all_random(|metric, t| {
+        let t = Corner { mean_area: 0.5 * t.doubled_area(), ..*t };
+        let least = metric.properties().ideal;
+        assert!(metric.quality(&t) >= least - rounding(&t), "{metric}: {t:?}");
+        if metric != Metric::Area && imr(&t) > 1.01 {
+            assert!(metric.quality(&t) > least + 1e-3, "{metric}: {t:?}");
+        }
+    });
+}
+
+#[test]
+fn quality_is_that_of_the_formula_in_lengths_and_area() {
+    all_random(|metric, t| {
+        let [l12, l13, l23] = lengths(t);
+        let area = heron(t);
+        let (most, least) = (l12.max(l13).max(l23), l12.min(l13).min(l23));
+        let squares = l12 * l12 + l13 * l13 + l23 * l23;
+        let wanted = match metric {
+            Metric::Edge => most / least,
+            Metric::Area => (area - t.mean_area).abs() / t.mean_area,
+            Metric::Rms => (squares / 3.0).sqrt() / (4.0 * t.mean_area / 3f64.sqrt()).sqrt(),
+            Metric::Imr => squares / (4.0 * 3f64.sqrt() * area),
+            Metric::Ar => 3f64.sqrt() * squares / (12.0 * area),
+        };
+        let got = metric.quality(t);
+        // Heron's area is as good as the lengths allow: their rounding times the shape.
+        assert!(close(got, wanted, 4.0 * rounding(t)), "{metric}: {got} for {wanted}, {t:?}");
+    });
+}
+
+#[test]
+fn excess_is_the_square_of_quality_less_that_of_the_ideal() {
+    all_random(|metric, t| {
+        let (whole, q) = (metric.excess(t) + metric.ideal_squared(), metric.quality(t));
+        assert!(close(whole, q * q, 4.0 * f64::EPSILON), "{metric}: {whole} for {}", q * q);
+    });
+}
+
+#[test]
+fn excess_keeps_its_digits_near_the_ideal() {
+    // A vertex moved by s changes q² - 1 by the order of s², which q² itself could not hold.
+    for metric in [Metric::Imr, Metric::Ar] {
+        let moved = displaced(&equilateral(), [3e-7, 2e-7]);
+        let by_imr = Metric::Imr.excess(&moved);
+        assert!((1e-14..1e-12).contains(&by_imr), "{by_imr:e}");
+        // AR forms q first: its own rounding is all it may add.
+        assert!((metric.excess(&moved) - by_imr).abs() < 2e-15, "{metric}");
+    }
+}
+
+#[test]
+fn every_corner_and_every_rotation_see_the_same() {
+    all_random(|metric, t| {
+        let q = metric.quality(t);
+        let second = next_corner(t);
+        for same in [second, next_corner(&second), rotated(t, 1.0), rotated(t, -2.5)] {
+            assert!(close(metric.quality(&same), q, 2.0 * rounding(t)), "{metric}: {t:?}");
+        }
+    });
+}
+
+#[test]
+fn size_matters_as_the_row_says() {
+    all_random(|metric, t| {
+        let q = metric.quality(t);
+        for factor in [1e-6, 0.5, 3.0, 1e6] {
+            let larger = scaled(t, factor);
+            let alike = close(metric.quality(&larger), q, rounding(t));
+            assert_eq!(alike, metric.properties().scale_invariant, "{metric} times {factor}");
+            // Whatever the unit of length, if the mean area is in it too.
+            let same = Corner { mean_area: t.mean_area * factor * factor, ..larger };
+            assert!(close(metric.quality(&same), q, rounding(t)), "{metric} in units of {factor}");
+        }
+    });
+}
+
+#[test]
+fn a_barrier_grows_without_bound_and_the_others_do_not() {
+    for &metric in Metric::ALL {
+        let flat = |height: f64| corner([[0.5, height], [0.0, 0.0], [1.0, 0.0]], 0.4);
+        let quality = |height: f64| metric.quality(&flat(height));
+        if metric.properties().barrier {
+            assert!(quality(1e-6) > 1e5 && quality(1e-9) > 900.0 * quality(1e-6), "{metric}");
+            for height in [0.0, -1e-3, -1.0] {
+                assert_eq!(quality(height), f64::INFINITY, "{metric} at {height}");
+            }
+        } else {
+            assert!(quality(0.0) < 3.0 && close(quality(1e-9), quality(0.0), 1e-8), "{metric}");
+        }
+        // Where there is neither barrier nor guard, nothing would keep triangles from turning over.
+        let properties = metric.properties();
+        assert!(properties.barrier || properties.shape_guard.is_finite(), "{metric}");
+    }
+}
+
+#[test]
+fn a_quadratic_metric_has_one_hessian_wherever_the_vertex_is() {
+    let mut rng = SplitMix64::new(7);
+    for &metric in Metric::ALL {
+        let mut differ = 0;
+        for _ in 0..COUNT {
+            let t = random(&mut rng, 5.0);
+            let moved = displaced(&t, [0.2 * height(&t), 0.1 * height(&t)]);
+            let [here, there] = [&t, &moved].map(|t| metric.derivatives(t, 4).hessian);
+            let scale = here.iter().fold(0f64, |m, x| m.max(x.abs()));
+            let same = here.iter().zip(there).all(|(x, y)| (x - y).abs() < 1e-12 * scale);
+            differ += usize::from(!same);
+        }
+        let expected = if metric.properties().quadratic { 0 } else { COUNT };
+        assert_eq!(differ, expected, "{metric}");
+    }
+}
+
+#[test]
+fn imr_and_ar_are_the_same_number() {
+    let mut rng = SplitMix64::new(3);
+    for i in 0..COUNT {
+        let ratio = 10f64.powf(rng.range(0.5, 4.0));
+        let t =
+            if i % 2 == 0 { random(&mut rng, WORST) } else { thin(&mut rng, ratio, i % 4 == 1) };
+        let [imr, ar] = [Metric::Imr, Metric::Ar].map(|metric| metric.quality(&t));
+        assert!(close(imr, ar, rounding(&t)), "{imr} {ar}");
+        let [di, da] = [Metric::Imr, Metric::Ar].map(|metric| metric.derivatives(&t, 4));
+        let scale = di.hessian.iter().fold(0f64, |m, x| m.max(x.abs()));
+        for (x, y) in di.hessian.into_iter().zip(da.hessian) {
+            // Two derivatives more, each with the same cancellation.
+            assert!((x - y).abs() <= 8.0 * rounding(&t) * scale, "{x} {y} of {scale}");
+        }
+    }
+}
+
+#[test]
+fn the_p_norm_of_edge_is_exact_at_equilateral_and_comes_up_from_below() {
+    assert!((0..=10).all(|sharpness| Metric::Edge.model(&equilateral(), sharpness).abs() < 1e-14));
+    let mut rng = SplitMix64::new(5);
+    for i in 0..COUNT {
+        let mut t = random(&mut rng, WORST);
+        if i % 3 == 0 {
+            // Isosceles, with the two equal edges the longest or the shortest.
+            let apex = [0.5, rng.range(0.1, 2.0)];
+            t = corner([[0.0, 0.0], [1.0, 0.0], apex], 0.4);
+        }
+        let exact = Metric::Edge.excess(&t) + 1.0;
+        let mut before = 0.0;
+        for sharpness in 0..=10 {
+            let norm = Metric::Edge.model(&t, sharpness) + 1.0;
+            let k = 2f64.powi(sharpness as i32);
+            // A mean of three numbers is at least a third of the largest, which is one, in both factors.
+            let least = exact * 9f64.powf(-1.0 / k);
+            let slack = 1e-13 * exact;
+            assert!(norm <= exact + slack && norm >= least - slack, "k = {k}: {norm} for {exact}");
+            assert!(norm >= before - slack, "k = {k}: {norm} after {before}");
+            before = norm;
+        }
+        assert!(before > 0.997 * exact, "{before} for {exact}");
+    }
+}
+
+#[test]
+fn the_model_is_the_metric_itself_but_for_edge() {
+    all_random(|metric, t| {
+        let (model, excess) = (metric.model(t, 4), metric.excess(t));
+        let derived = metric.derivatives(t, 4).value;
+        assert_eq!(model == excess, metric != Metric::Edge, "{metric}");
+        assert!(close(derived, model, 64.0 * f64::EPSILON), "{metric}: {derived} for {model}");
+    });
+}

@@ -1,0 +1,83 @@
+//! Triangles to try the metrics on.
+
+use crate::support::SplitMix64;
+use gpu_smooth::Corner;
+
+pub(crate) type Vec2 = [f64; 2];
+
+pub(crate) fn sub(u: Vec2, v: Vec2) -> Vec2 {
+    [u[0] - v[0], u[1] - v[1]]
+}
+
+pub(crate) fn length(u: Vec2) -> f64 {
+    u[0].hypot(u[1])
+}
+
+/// A triangle as seen from its first vertex, of a mesh with this mean area.
+pub(crate) fn corner([p, q, r]: [Vec2; 3], mean_area: f64) -> Corner<f64> {
+    Corner { a: sub(q, p), b: sub(r, p), mean_area }
+}
+
+/// The same triangle with its vertex moved.
+pub(crate) fn displaced(t: &Corner<f64>, d: Vec2) -> Corner<f64> {
+    Corner { a: sub(t.a, d), b: sub(t.b, d), ..*t }
+}
+
+/// The same triangle seen from its next vertex.
+pub(crate) fn next_corner(t: &Corner<f64>) -> Corner<f64> {
+    Corner { a: sub(t.b, t.a), b: [-t.a[0], -t.a[1]], ..*t }
+}
+
+pub(crate) fn scaled(t: &Corner<f64>, factor: f64) -> Corner<f64> {
+    Corner { a: t.a.map(|x| x * factor), b: t.b.map(|x| x * factor), ..*t }
+}
+
+pub(crate) fn rotated(t: &Corner<f64>, angle: f64) -> Corner<f64> {
+    let (sin, cos) = angle.sin_cos();
+    let turn = |[x, y]: Vec2| [cos * x - sin * y, sin * x + cos * y];
+    Corner { a: turn(t.a), b: turn(t.b), ..*t }
+}
+
+pub(crate) fn lengths(t: &Corner<f64>) -> [f64; 3] {
+    [length(t.a), length(t.b), length(sub(t.b, t.a))]
+}
+
+/// The height over the edge that does not move with the vertex.
+pub(crate) fn height(t: &Corner<f64>) -> f64 {
+    t.doubled_area() / length(sub(t.b, t.a))
+}
+
+/// The inverse mean ratio by its plainest formula.
+pub(crate) fn imr(t: &Corner<f64>) -> f64 {
+    let squares: f64 = lengths(t).iter().map(|l| l * l).sum();
+    squares / (2.0 * 3f64.sqrt() * t.doubled_area())
+}
+
+/// Equilateral, of unit mean area, and of that area too.
+pub(crate) fn equilateral() -> Corner<f64> {
+    let edge = (4.0 / 3f64.sqrt()).sqrt();
+    corner([[0.0, 0.0], [edge, 0.0], [0.5 * edge, 3f64.sqrt() / 2.0 * edge]], 1.0)
+}
+
+/// Of any shape no worse than `worst`, at any angle, with edges near one.
+pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
+    loop {
+        let vertex = [0; 3].map(|_| [0; 2].map(|_| rng.range(-1.0, 1.0)));
+        let t = corner(vertex, rng.range(0.2, 1.0));
+        if t.doubled_area() > 0.0 && imr(&t) <= worst {
+            return t;
+        }
+    }
+}
+
+/// A triangle with an inverse mean ratio near `ratio`: a flat one with three long edges (`needle` 0)
+/// or one with a short edge (`needle` 1), seen from any vertex.
+pub(crate) fn thin(rng: &mut SplitMix64, ratio: f64, needle: bool) -> Corner<f64> {
+    let thickness = 1.0 / ratio;
+    let tip = if needle { [0.3 * thickness, thickness] } else { [rng.range(0.2, 0.8), thickness] };
+    let mut t = corner([[0.0, 0.0], [1.0, 0.0], tip], rng.range(0.2, 1.0));
+    for _ in 0..rng.below(3) {
+        t = next_corner(&t);
+    }
+    rotated(&t, rng.range(0.0, 7.0))
+}

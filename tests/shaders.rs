@@ -1,0 +1,177 @@
+//! Every kernel, whatever the adapter: its WGSL is core WebGPU, within the limits browsers promise.
+
+use gpu_smooth::gpu::Kernel;
+use gpu_smooth::{Derivatives, Metric};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{AddressSpace, Block, Module, ShaderStage, Statement};
+
+/// The least `max_compute_invocations_per_workgroup` of WebGPU.
+const MOST_INVOCATIONS: u32 = 256;
+/// The least `max_storage_buffers_per_shader_stage` of WebGPU.
+const MOST_STORAGE_BUFFERS: usize = 8;
+/// The least `max_compute_workgroup_storage_size` of WebGPU.
+const MOST_WORKGROUP_BYTES: u32 = 16384;
+
+fn kernels() -> Vec<Kernel> {
+    let mut kernels = vec![Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish];
+    for &metric in Metric::ALL {
+        for derivatives in [Derivatives::Analytic, Derivatives::FiniteDifference] {
+            kernels.push(Kernel::Sweep(metric, derivatives));
+        }
+    }
+    for metrics in Metric::ALL.chunks(1).chain([Metric::ALL]) {
+        kernels.push(Kernel::Objective(metrics.to_vec()));
+        kernels.push(Kernel::Finish(metrics.to_vec()));
+    }
+    kernels
+}
+
+fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
+    let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| e.emit_to_string(wgsl))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(&module).map_err(|e| e.emit_to_string(wgsl))?;
+    Ok((module, info))
+}
+
+fn modules() -> impl Iterator<Item = (Kernel, Module)> {
+    kernels().into_iter().map(|kernel| {
+        let (module, _) =
+            validated(&kernel.wgsl()).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
+        (kernel, module)
+    })
+}
+
+#[test]
+fn every_kernel_is_core_webgpu() {
+    assert_eq!(modules().count(), 1 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1));
+}
+
+#[test]
+fn validation_refuses_what_core_webgpu_has_not() {
+    let bare = "@compute @workgroup_size(1) fn f() { let x = 1.0; }";
+    validated(bare).unwrap();
+    validated(&bare.replace("1.0", "f64(1.0)")).unwrap_err();
+    validated(&bare.replace("1.0", "undeclared")).unwrap_err();
+}
+
+#[test]
+fn every_kernel_has_one_entry_point_of_its_name() {
+    for (kernel, module) in modules() {
+        let [entry] = &module.entry_points[..] else {
+            panic!("{} has {} entry points", kernel.label(), module.entry_points.len());
+        };
+        assert_eq!(
+            (entry.name.as_str(), entry.stage),
+            (kernel.entry_point(), ShaderStage::Compute)
+        );
+    }
+}
+
+#[test]
+fn workgroups_are_64_wide_but_for_finish_and_within_the_limit() {
+    for (kernel, module) in modules() {
+        let size = module.entry_points[0].workgroup_size;
+        let width = if matches!(kernel, Kernel::Finish(_)) { 256 } else { 64 };
+        assert_eq!(size, [width, 1, 1], "{}", kernel.label());
+        assert!(size.iter().product::<u32>() <= MOST_INVOCATIONS);
+    }
+}
+
+#[test]
+fn storage_buffers_and_workgroup_memory_are_within_the_limits() {
+    for (kernel, module) in modules() {
+        let is_storage = |space| matches!(space, AddressSpace::Storage { .. });
+        let spaces = module.global_variables.iter().map(|(_, variable)| variable.space);
+        let storage = spaces.filter(|&space| is_storage(space)).count();
+        assert!(storage <= MOST_STORAGE_BUFFERS, "{} has {storage}", kernel.label());
+
+        let shared =
+            module.global_variables.iter().filter(|(_, v)| v.space == AddressSpace::WorkGroup);
+        let bytes: u32 = shared.map(|(_, v)| module.types[v.ty].inner.size(module.to_ctx())).sum();
+        assert!(bytes <= MOST_WORKGROUP_BYTES, "{} has {bytes} bytes", kernel.label());
+    }
+}
+
+/// What matters to a barrier, in program order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Event {
+    Barrier { in_branch: bool },
+    Exit,
+}
+
+fn events(module: &Module, block: &Block, in_branch: bool, found: &mut Vec<Event>) {
+    for statement in block {
+        match statement {
+            Statement::ControlBarrier(_) | Statement::WorkGroupUniformLoad { .. } => {
+                found.push(Event::Barrier { in_branch });
+            }
+            Statement::Return { .. } | Statement::Kill => found.push(Event::Exit),
+            Statement::Block(inner) => events(module, inner, in_branch, found),
+            Statement::If { accept, reject, .. } => {
+                events(module, accept, true, found);
+                events(module, reject, true, found);
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter().for_each(|case| events(module, &case.body, true, found));
+            }
+            Statement::Loop { body, continuing, .. } => {
+                events(module, body, in_branch, found);
+                events(module, continuing, in_branch, found);
+            }
+            Statement::Call { function, .. } => {
+                // A function that returns does not leave the kernel.
+                let mut inner = Vec::new();
+                events(module, &module.functions[*function].body, in_branch, &mut inner);
+                found.extend(inner.into_iter().filter(|&event| event != Event::Exit));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Number of barriers, or what is wrong: browsers refuse a barrier that not all invocations meet, naga
+/// does not. Stricter than they are, as it does not look at what branches depend on.
+fn barriers(module: &Module) -> Result<usize, &'static str> {
+    let mut found = Vec::new();
+    events(module, &module.entry_points[0].function.body, false, &mut found);
+    if found.contains(&Event::Barrier { in_branch: true }) {
+        return Err("a barrier in a branch");
+    }
+    let is_barrier = |event: &Event| matches!(event, Event::Barrier { .. });
+    let Some(last) = found.iter().rposition(is_barrier) else { return Ok(0) };
+    if found[..last].contains(&Event::Exit) {
+        return Err("a return before a barrier");
+    }
+    Ok(found.iter().filter(|event| is_barrier(event)).count())
+}
+
+#[test]
+fn no_invocation_leaves_before_a_barrier() {
+    for (kernel, module) in modules() {
+        let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
+        assert_eq!(count > 0, matches!(kernel, Kernel::Finish(_)), "{}", kernel.label());
+    }
+}
+
+#[test]
+fn a_barrier_not_met_by_all_is_seen() {
+    let check = |body: &str| {
+        let text = format!(
+            "fn meet() {{ workgroupBarrier(); return; }}
+            @compute @workgroup_size(64)
+            fn f(@builtin(local_invocation_index) i: u32) {{ {body} }}"
+        );
+        barriers(&validated(&text).unwrap().0)
+    };
+    assert_eq!(check("for (var k = 0u; k < 4u; k++) { meet(); } if i > 0u { return; }"), Ok(1));
+    assert_eq!(
+        check("if i > 9u { return; } workgroupBarrier();"),
+        Err("a return before a barrier")
+    );
+    assert_eq!(check("if i > 9u { return; } meet();"), Err("a return before a barrier"));
+    assert_eq!(check("if i > 9u { workgroupBarrier(); }"), Err("a barrier in a branch"));
+    assert_eq!(
+        check("switch i { case 1u: { meet(); } default: {} }"),
+        Err("a barrier in a branch")
+    );
+}

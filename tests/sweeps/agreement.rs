@@ -1,0 +1,132 @@
+//! The same sweeps on both engines, and the same sweeps however they are asked for.
+
+use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
+use gpu_smooth::{Metric, Plan, Problem, Sharpness, Stop, StopRule};
+
+/// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU in units of how
+/// far it went.
+struct OneSweep {
+    f: [f64; 2],
+    moved_apart: f64,
+}
+
+fn one_sweep(problem: &Problem, plans: [Plan; 2]) -> OneSweep {
+    let base = plans[0].scheme.base();
+    let mut f = [0.0; 2];
+    let mut positions = Vec::new();
+    for (i, (backend, plan)) in backends().iter().zip(plans).enumerate() {
+        let mut engine = engine(backend, problem, plan);
+        f[i] = engine.advance(1).unwrap()[1].of(base).unwrap();
+        positions.push(engine.best_positions().unwrap());
+    }
+    let moves = problem.positions().iter().zip(&positions[0]).zip(&positions[1]);
+    let apart = moves.map(|((was, cpu), gpu)| {
+        // Mean triangles have edges near 1.5: a thousandth of that is where moves begin to count.
+        cpu.distance(*gpu) / was.distance(*cpu).max(1e-3)
+    });
+    OneSweep { f, moved_apart: apart.fold(0.0, f64::max) }
+}
+
+fn mild() -> Problem {
+    problem(&support::perturb_random(&plate(2000), 0.5, 3))
+}
+
+#[test]
+fn one_sweep_is_the_same_on_both_engines() {
+    let problem = mild();
+    for &metric in Metric::ALL {
+        for plain_sweeps in [0, 4] {
+            let plan = Plan { plain_sweeps, ..plan(metric.into(), 1) };
+            let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan.clone(), plan]);
+            // Single precision leaves a step right to 1e-6 of its length, times what bad shapes and the
+            // p-norm of EDGE make of that; f is a mean in which most of it cancels.
+            assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
+            assert!(moved_apart < 1e-3, "{metric}: {moved_apart:e}");
+        }
+    }
+}
+
+#[test]
+fn every_sweep_of_a_run_is_the_same_on_both_engines() {
+    let problem = mild();
+    let sharpness = Sharpness { first: 1, every: 3, last: 4 };
+    let own = |name: &str| Plan { sharpness, plain_sweeps: 3, ..plan(scheme(name), 12) };
+    let twice = Plan { inner: 2, ..own("imr") };
+    for plan in [own("imr"), own("rms"), own("edge"), own("edge+imr+imr"), twice] {
+        let [cpu, gpu] = backends().each_ref().map(|backend| {
+            let log = engine(backend, &problem, plan.clone()).advance(12).unwrap();
+            log.iter().map(|o| o.of(plan.scheme.base()).unwrap()).collect::<Vec<_>>()
+        });
+        assert_eq!((cpu.len(), gpu.len()), (13, 13));
+        for (sweep, (cpu, gpu)) in cpu.iter().zip(gpu).enumerate() {
+            // One sweep is the same to 1e-7 of f; a wrong metric, relaxation or exponent is off by 1e-4.
+            let scheme = &plan.scheme;
+            assert!((gpu / cpu - 1.0).abs() < 1e-5, "{scheme}, sweep {sweep}: {gpu} for {cpu}");
+        }
+    }
+}
+
+#[test]
+fn a_slightly_different_sweep_is_told_apart() {
+    let problem = mild();
+    for &metric in Metric::ALL {
+        let plan = Plan { plain_sweeps: 0, omega: [1.0; 5], ..plan(metric.into(), 1) };
+        let longer = Plan { omega: [1.05; 5], ..plan.clone() };
+        let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan, longer]);
+        assert!((gpu / cpu - 1.0).abs() > 1e-5 && moved_apart > 1e-2, "{metric}: {moved_apart:e}");
+    }
+}
+
+#[test]
+fn runs_are_identical_whatever_the_batch() {
+    let problem = problem(perturbed());
+    for name_of_scheme in ["imr", "edge", "edge+imr+imr", "area+imr"] {
+        for backend in backends() {
+            let stop = StopRule { target: None, tolerance: 1e-4, max_sweeps: 90 };
+            let plan = Plan { stop, ..plan(scheme(name_of_scheme), 0) };
+            let mut runs = Vec::new();
+            // The last is the same again.
+            for batch in [1, 3, 50, 300, 50] {
+                let mut engine = engine(backend, &problem, plan.clone());
+                let mut log = Vec::new();
+                while engine.stop().is_none() {
+                    let more = engine.advance(batch).unwrap();
+                    assert!(!more.is_empty(), "a run that goes on must get somewhere");
+                    log.extend(more);
+                }
+                assert!(engine.advance(5).unwrap().is_empty(), "nothing happens after the end");
+                let f: Vec<u64> =
+                    log.iter().map(|o| o.of(plan.scheme.base()).unwrap().to_bits()).collect();
+                let bits: Vec<_> = engine
+                    .best_positions()
+                    .unwrap()
+                    .iter()
+                    .map(|p| p.to_array().map(f64::to_bits))
+                    .collect();
+                runs.push((engine.stop(), f, bits));
+            }
+            let sweeps = runs[0].1.len() - 1;
+            assert!(sweeps > 16 && sweeps <= 90, "{name_of_scheme}: {sweeps} sweeps");
+            let same = runs.iter().all(|run| *run == runs[0]);
+            assert!(same, "{name_of_scheme} on the {}", name(backend));
+        }
+    }
+}
+
+#[test]
+fn a_target_ends_a_run_at_the_first_sweep_below_it() {
+    let problem = problem(perturbed());
+    for backend in backends() {
+        let mut whole = engine(backend, &problem, plan(scheme("imr"), 20));
+        let f: Vec<f64> =
+            whole.advance(20).unwrap().iter().map(|o| o.of(Metric::Imr).unwrap()).collect();
+        assert_eq!(whole.stop(), Some(Stop::MaxSweeps));
+        for sweep in [1, 2, 7, 13] {
+            let target = Some(0.5 * (f[sweep] + f[sweep - 1]));
+            let stop = StopRule { target, tolerance: 0.0, max_sweeps: 20 };
+            let mut engine = engine(backend, &problem, Plan { stop, ..plan(scheme("imr"), 0) });
+            assert_eq!(engine.advance(20).unwrap().len() - 1, sweep, "on the {}", name(backend));
+            assert_eq!(engine.stop(), Some(Stop::Reached));
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Goals: the paper's test of convergence, on all its schemes.
+
+use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
+use gpu_smooth::{Backend, Desired, Goal, Metric, Options, Sharpness, Smoother, Stop};
+use std::sync::OnceLock;
+
+/// The optimum of a metric on the perturbed plate, or nearly: found by over-relaxed sweeps on the CPU.
+fn desired(metric: Metric) -> f64 {
+    static FOUND: OnceLock<Vec<(Metric, f64)>> = OnceLock::new();
+    let found = FOUND.get_or_init(|| {
+        let smoother = Smoother::new(perturbed()).unwrap();
+        let find = |metric: Metric| {
+            let sharpness = Sharpness::CONTINUED;
+            let options =
+                Options { scheme: metric.into(), sharpness, max_sweeps: 500, ..Options::default() };
+            let f = history(&run(&smoother, &options, &backends()[0]), metric);
+            (metric, f.into_iter().fold(f64::INFINITY, f64::min))
+        };
+        [Metric::Edge, Metric::Area, Metric::Rms].map(find).to_vec()
+    });
+    found.iter().find(|(m, _)| *m == metric).unwrap().1
+}
+
+#[test]
+fn both_engines_reach_goals_at_the_same_sweep() {
+    let smoother = Smoother::new(perturbed()).unwrap();
+    for name_of_scheme in SCHEMES {
+        for fraction in [0.95, 0.99] {
+            let scheme = scheme(name_of_scheme);
+            let base = scheme.base();
+            let goal = Some(Goal { fraction, desired: Desired::Value(desired(base)) });
+            let options = Options { goal, max_sweeps: 300, ..Options::paper(scheme) };
+            let [cpu, gpu] = backends().each_ref().map(|backend| run(&smoother, &options, backend));
+            let [f_cpu, f_gpu] =
+                [&cpu, &gpu].map(|o| history(o, base).into_iter().fold(f64::INFINITY, f64::min));
+            let label = format!("{name_of_scheme} to {fraction}");
+            assert_eq!((cpu.stop, cpu.sweeps), (gpu.stop, gpu.sweeps), "{label}");
+            assert_eq!(cpu.best_sweep, gpu.best_sweep, "{label}");
+            // From slivers EDGE takes some steps or leaves them by the last digits of a comparison.
+            let bound = if base == Metric::Edge { 1e-4 } else { 1e-6 };
+            assert!((f_gpu / f_cpu - 1.0).abs() < bound, "{label}: {f_gpu} for {f_cpu}");
+        }
+    }
+}
+
+#[test]
+fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    for (name_of_scheme, beyond) in [("area+imr", 0.0), ("edge+imr", 0.02), ("imr", 0.02)] {
+        for backend in backends() {
+            let scheme = scheme(name_of_scheme);
+            let base = scheme.base();
+            let optimum = if base == Metric::Imr { 1.0 } else { desired(base) };
+            let goal = Some(Goal { fraction: 1.0, desired: Desired::Value(optimum - beyond) });
+            let options = Options { goal, max_sweeps: 400, ..Options::paper(scheme) };
+            let outcome = run(&smoother, &options, backend);
+            let label = format!("{name_of_scheme} on the {}", name(backend));
+            assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");
+            let history = history(&outcome, base);
+            let best = history.iter().copied().fold(f64::INFINITY, f64::min);
+            assert_eq!(history[outcome.best_sweep as usize], best, "{label}");
+            let f = smoother.quality(&outcome.points).f(base);
+            // The device sums what single precision makes of each triangle.
+            let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };
+            let rounding = digits * (best - base.ideal_squared());
+            assert!((f - best).abs() <= rounding + 1e-14, "{label}: {f} returned, {best} seen");
+            if name_of_scheme == "area+imr" {
+                let last = history[outcome.sweeps as usize];
+                assert!(last > 1.001 * best, "the best is not the last: {last} after {best}");
+            }
+            let goal = outcome.goal.unwrap();
+            let gone = (history[0] - best) / (history[0] - goal.desired);
+            assert!((goal.best_fraction - gone).abs() < 1e-6 && gone < 1.0, "{label}: {gone}");
+        }
+    }
+}

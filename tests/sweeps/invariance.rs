@@ -1,0 +1,123 @@
+//! What must not matter: place, unit, windings, numbering, and how small the smallest triangle is.
+
+use crate::support::{self, transformed};
+use crate::{backends, history, name, perturbed, plate, run};
+use gpu_smooth::{Mesh, Metric, Options, Smoother};
+
+fn mild() -> Mesh {
+    support::perturb_random(&plate(800), 0.6, 4)
+}
+
+fn thirty_sweeps(metric: Metric) -> Options {
+    Options { scheme: metric.into(), tolerance: 0.0, max_sweeps: 30, ..Options::default() }
+}
+
+/// How much may differ: the largest distance of a vertex in units of a typical edge, and f.
+struct Bounds {
+    distance: f64,
+    f: f64,
+}
+
+/// Rounding in double precision; EDGE and AREA amplify it a hundred times over thirty sweeps.
+const CPU: Bounds = Bounds { distance: 1e-11, f: 1e-12 };
+/// The same in single precision.
+const GPU: Bounds = Bounds { distance: 2e-4, f: 2e-6 };
+
+/// Checks that smoothing the scaled and shifted mesh `there` is smoothing `here`, scaled and shifted.
+fn check(here: &Mesh, there: &Mesh, scale: f64, shift: [f64; 2], bounds: [Bounds; 2]) {
+    let edge = (support::area(there) / there.triangles.len() as f64).sqrt() * 1.5;
+    let (a, b) = (Smoother::new(here).unwrap(), Smoother::new(there).unwrap());
+    for &metric in Metric::ALL {
+        for (backend, bounds) in backends().iter().zip(&bounds) {
+            let options = thirty_sweeps(metric);
+            let (a, b) = (run(&a, &options, backend), run(&b, &options, backend));
+            let image = Mesh { points: a.points.clone(), ..Mesh::default() };
+            let image = transformed(&image, scale, shift);
+            let distances = image.points.iter().zip(&b.points);
+            let distances =
+                distances.map(|(&p, &q)| support::check::squared_distance(p, q).sqrt() / edge);
+            let distance = distances.fold(0.0, f64::max);
+            let f = (history(&b, metric)[30] / history(&a, metric)[30] - 1.0).abs();
+            let label = format!("{metric} times {scale} by {shift:?} on the {}", name(backend));
+            assert!(distance < bounds.distance, "{label}: {distance:e}");
+            assert!(f < bounds.f, "{label}: {f:e}");
+        }
+    }
+}
+
+#[test]
+fn the_unit_does_not_matter() {
+    let mesh = mild();
+    for scale in [1e-3, 1e6] {
+        check(&mesh, &transformed(&mesh, scale, [0.0; 2]), scale, [0.0; 2], [CPU, GPU]);
+    }
+}
+
+#[test]
+fn the_place_does_not_matter() {
+    let mesh = mild();
+    for (scale, shift) in [(1.0, [5e5, 4e6]), (1e-3, [-3.0, 7.0])] {
+        // Far off the input itself is rounded, by 1e-8 of an edge at most.
+        let rounded = Bounds { distance: 2e-5, f: 1e-7 };
+        check(&mesh, &transformed(&mesh, scale, shift), scale, shift, [rounded, GPU]);
+    }
+}
+
+#[test]
+fn windings_do_not_matter() {
+    let mesh = mild();
+    let mut clockwise = mesh.clone();
+    clockwise.triangles.iter_mut().for_each(|t| t.swap(0, 2));
+    check(&mesh, &clockwise, 1.0, [0.0; 2], [CPU, GPU]);
+    check(&mesh, &support::shuffled_windings(&mesh, 6), 1.0, [0.0; 2], [CPU, GPU]);
+}
+
+#[test]
+fn a_mesh_a_little_different_is_told_apart() {
+    let mesh = mild();
+    let other = transformed(&mesh, 1.0 + 1e-3, [0.0; 2]);
+    let told = std::panic::catch_unwind(|| check(&mesh, &other, 1.0, [0.0; 2], [CPU, GPU]));
+    assert!(told.is_err());
+}
+
+#[test]
+fn numbering_does_not_matter_to_the_optimum() {
+    let mesh = perturbed();
+    let (other, new_index) = support::renumbered(mesh, 8);
+    for metric in [Metric::Rms, Metric::Imr] {
+        let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
+        for backend in backends() {
+            let (a, b) = (Smoother::new(mesh).unwrap(), Smoother::new(&other).unwrap());
+            let (a, b) = (run(&a, &options, backend), run(&b, &options, backend));
+            let [fa, fb] = [&a, &b].map(|o| *history(o, metric).last().unwrap());
+            // Each is within 1.5e-8 of the optimum by its own estimate; single precision adds 5e-8.
+            assert!((fb / fa - 1.0).abs() < 1e-7, "{metric} on the {}: {fa} {fb}", name(backend));
+            let far = a.points.iter().zip(&new_index).map(|(&p, &new)| {
+                support::check::squared_distance(p, b.points[new as usize]).sqrt()
+            });
+            // f is flat at its minimum: the square root of that, over an edge of 0.06.
+            let far = far.fold(0.0, f64::max);
+            assert!(far < 2e-4, "{metric} on the {}: {far:e}", name(backend));
+        }
+    }
+}
+
+#[test]
+fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
+    let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.8, 9);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for &metric in Metric::ALL {
+        let options = Options { scheme: metric.into(), max_sweeps: 400, ..Options::default() };
+        let [cpu, gpu] = backends().each_ref().map(|backend| {
+            let outcome = run(&smoother, &options, backend);
+            let after = crate::with_points(&mesh, &outcome.points);
+            assert!(support::is_valid(&after) && support::is_ccw(&after), "{metric}");
+            assert_eq!(outcome.returned, 0, "{metric} left this to the certificate");
+            *history(&outcome, metric).last().unwrap()
+        });
+        // AREA sees next to nothing of the small triangles, only its guard does: where they end is chance.
+        if metric != Metric::Area {
+            assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Whole sweeps and runs of both engines: where they end, what they must not depend on, and what they
+//! must never do.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod agreement;
+mod coloring;
+mod global;
+mod goals;
+mod invariance;
+mod optimum;
+mod requests;
+mod safety;
+mod tolerance;
+
+use gpu_smooth::gpu::GpuEngine;
+use gpu_smooth::{
+    Backend, Coloring, CpuEngine, Derivatives, Engine, Gpu, Mesh, Metric, Options, Outcome, Plan,
+    Problem, Scheme, Sharpness, Smoother, StopRule, Topology,
+};
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+
+/// The schemes of the paper.
+const SCHEMES: [&str; 8] = [
+    "edge+imr",
+    "area+imr",
+    "rms+imr",
+    "edge+ar",
+    "area+ar",
+    "rms+ar",
+    "edge+imr+imr",
+    "edge+imr+imr+imr",
+];
+
+fn scheme(name: &str) -> Scheme {
+    name.parse().unwrap()
+}
+
+/// Every metric alone and the schemes of the paper.
+fn all_schemes() -> Vec<Scheme> {
+    let alone = Metric::ALL.iter().map(|&metric| metric.into());
+    alone.chain(SCHEMES.map(scheme)).collect()
+}
+
+/// The CPU and the GPU. Without an adapter these tests fail: they have nothing to say about the GPU.
+fn backends() -> &'static [Backend; 2] {
+    static BACKENDS: OnceLock<[Backend; 2]> = OnceLock::new();
+    BACKENDS.get_or_init(|| {
+        let gpu = Gpu::open(None).expect("these tests need a wgpu adapter, be it a software one");
+        [Backend::Cpu, Backend::Gpu(gpu)]
+    })
+}
+
+fn name(backend: &Backend) -> &'static str {
+    match backend {
+        Backend::Cpu => "CPU",
+        Backend::Gpu(_) => "GPU",
+    }
+}
+
+fn plate(vertices: usize) -> Mesh {
+    let outline = support::Outline::parse(include_str!("../../meshes/plate.outline")).unwrap();
+    support::triangulate(&outline, vertices).unwrap()
+}
+
+/// Two thousand vertices, a few of their triangles nearly flat.
+fn perturbed() -> &'static Mesh {
+    static MESH: OnceLock<Mesh> = OnceLock::new();
+    MESH.get_or_init(|| support::perturb_random(&plate(2000), 1.0, 1))
+}
+
+/// The same, displaced by long waves: what takes a local method the most sweeps.
+fn distorted() -> &'static Mesh {
+    static MESH: OnceLock<Mesh> = OnceLock::new();
+    MESH.get_or_init(|| support::distort_smooth(&plate(2000), 0.9))
+}
+
+fn run(smoother: &Smoother, options: &Options, backend: &Backend) -> Outcome {
+    smoother.run(options, backend, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+fn with_points(mesh: &Mesh, points: &[[f64; 2]]) -> Mesh {
+    Mesh { points: points.to_vec(), ..mesh.clone() }
+}
+
+/// The base objective before the first sweep and after each.
+fn history(outcome: &Outcome, metric: Metric) -> Vec<f64> {
+    outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
+}
+
+fn problem(mesh: &Mesh) -> Problem {
+    let topology = Topology::new(mesh).unwrap();
+    Problem::new(mesh, &topology, &Coloring::new(&topology))
+}
+
+/// A run of `sweeps` that nothing ends before.
+fn plan(scheme: Scheme, sweeps: u32) -> Plan {
+    Plan {
+        scheme,
+        omega: Metric::ALL
+            .iter()
+            .map(|m| m.properties().omega)
+            .collect::<Vec<_>>()
+            .try_into()
+            .unwrap(),
+        plain_sweeps: 4,
+        inner: 1,
+        derivatives: Derivatives::Analytic,
+        sharpness: Sharpness::FIXED,
+        stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
+        track_all: false,
+    }
+}
+
+fn engine<'a>(backend: &'a Backend, problem: &'a Problem, plan: Plan) -> Box<dyn Engine + 'a> {
+    let start = problem.positions();
+    match backend {
+        Backend::Cpu => Box::new(CpuEngine::new(problem, start.to_vec(), plan)),
+        Backend::Gpu(gpu) => Box::new(GpuEngine::new(gpu, problem, start, plan).unwrap()),
+    }
+}

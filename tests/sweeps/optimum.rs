@@ -1,0 +1,77 @@
+//! Where runs end: at optima known beforehand or found by other means.
+
+use crate::support;
+use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
+use gpu_smooth::{Metric, Options, Sharpness, Smoother};
+
+#[test]
+fn a_perturbed_lattice_becomes_equilateral_again() {
+    let lattice = support::lattice(20, 18);
+    let mesh = support::perturb_random(&lattice, 1.0, 2);
+    assert!(support::f_imr(&mesh) > 2.0);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for &metric in Metric::ALL {
+        for backend in backends() {
+            let options = Options { scheme: metric.into(), tolerance: 1e-9, ..Options::default() };
+            let outcome = run(&smoother, &options, backend);
+            let f = support::f_imr(&with_points(&mesh, &outcome.points));
+            assert!(f - 1.0 < 1e-6, "{metric} on the {}: {:e}", name(backend), f - 1.0);
+        }
+    }
+}
+
+#[test]
+fn rms_ends_at_the_solution_of_its_linear_system() {
+    for mesh in [perturbed(), distorted()] {
+        let optimum = global::rms_optimum(mesh);
+        assert!(support::is_ccw(&optimum), "no guard has a say");
+        let best = global::f_rms(&optimum);
+        let smoother = Smoother::new(mesh).unwrap();
+        for backend in backends() {
+            let options = Options { scheme: Metric::Rms.into(), ..Options::default() };
+            let outcome = run(&smoother, &options, backend);
+            let f = global::f_rms(&with_points(mesh, &outcome.points));
+            assert!(f >= best * (1.0 - 1e-12), "the optimum is one");
+            assert!(f / best - 1.0 < 1e-6, "on the {}: {:e}", name(backend), f / best - 1.0);
+        }
+    }
+}
+
+#[test]
+fn imr_ends_at_the_optimum_of_a_global_method() {
+    let (best, _) = global::imr_optimum(&global::rms_optimum(perturbed()));
+    for mesh in [perturbed(), distorted()] {
+        let smoother = Smoother::new(mesh).unwrap();
+        for backend in backends() {
+            let outcome = run(&smoother, &Options::default(), backend);
+            let after = with_points(mesh, &outcome.points);
+            let f = support::f_imr(&after);
+            assert!(f / best - 1.0 < 1e-6, "on the {}: {:e}", name(backend), f / best - 1.0);
+        }
+        // Descent from where the run ended finds no more either.
+        let outcome = run(&smoother, &Options::default(), &backends()[1]);
+        let (further, _) = global::imr_optimum(&with_points(mesh, &outcome.points));
+        assert!((further / best - 1.0).abs() < 1e-9, "{further} {best}");
+    }
+}
+
+#[test]
+fn edge_ends_within_a_percent_of_the_best_known() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    let edge = |sharpness| Options { scheme: Metric::Edge.into(), sharpness, ..Options::default() };
+    let imr = run(&smoother, &Options::default(), &backends()[0]);
+    let from_imr = with_points(mesh, &imr.points);
+    let after_imr = Smoother::new(&from_imr).unwrap();
+    let f = |outcome: &gpu_smooth::Outcome| {
+        history(outcome, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min)
+    };
+    // The best of some hundreds of sweeps; thousands more gain another 3e-5.
+    let continued = Options { max_sweeps: 700, ..edge(Sharpness::CONTINUED) };
+    let best = [&smoother, &after_imr].map(|s| f(&run(s, &continued, &backends()[0])));
+    let best = best[0].min(best[1]);
+    for backend in backends() {
+        let fixed = f(&run(&smoother, &edge(Sharpness::FIXED), backend));
+        assert!(fixed / best - 1.0 < 1e-2, "{fixed} for {best} on the {}", name(backend));
+    }
+}

@@ -1,0 +1,130 @@
+//! What a caller may ask for, and what it is told when that makes no sense.
+
+use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
+use gpu_smooth::{
+    Backend, Desired, Goal, Gpu, GpuError, Metric, Options, Phase, Scheme, Sharpness, SmoothError,
+    Smoother, Stop,
+};
+use std::ops::ControlFlow;
+
+#[test]
+fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    for backend in backends() {
+        for name in ["imr", "edge+imr"] {
+            let options = Options { scheme: scheme(name), tolerance: 0.0, ..Options::default() };
+            let base = options.scheme.base();
+            let mut seen = Vec::new();
+            let mut observe = |progress: &gpu_smooth::Progress| {
+                assert_eq!(progress.phase, Phase::Smoothing);
+                seen.push((progress.sweep, progress.f));
+                if seen.len() == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let outcome = smoother.run(&options, backend, &mut observe).unwrap();
+            assert_eq!(outcome.stop, Stop::Cancelled);
+            let [(first, _), (last, f)] = seen[..] else { panic!("asked {} times", seen.len()) };
+            assert!(first < last && last == outcome.sweeps && last < options.max_sweeps);
+            let history = history(&outcome, base);
+            assert_eq!(history.len() as u32, outcome.sweeps + 1);
+            assert_eq!(history.last(), Some(&f));
+            let best = history.iter().copied().fold(f64::INFINITY, f64::min);
+            let after = with_points(mesh, &outcome.points);
+            assert!((smoother.quality(&after.points).f(base) / best - 1.0).abs() < 1e-9);
+            assert!(support::is_ccw(&after));
+        }
+    }
+}
+
+#[test]
+fn options_out_of_range_are_named() {
+    let mesh = plate(300);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let default = Options::default;
+    let goal = |fraction, desired| Some(Goal { fraction, desired: Desired::Value(desired) });
+    let sharpness = |first, last| Sharpness { first, every: 1, last };
+    let long = Scheme::new(vec![Metric::Imr; 61]).unwrap();
+    let wrong = [
+        ("tolerance", Options { tolerance: -1e-9, ..default() }),
+        ("tolerance", Options { tolerance: f64::NAN, ..default() }),
+        ("tolerance", Options { tolerance: f64::INFINITY, ..default() }),
+        ("omega", Options { omega: Some(0.0), ..default() }),
+        ("omega", Options { omega: Some(2.0), ..default() }),
+        ("omega", Options { omega: Some(f64::NAN), ..default() }),
+        ("inner", Options { inner: 0, ..default() }),
+        ("sharpness", Options { sharpness: sharpness(11, 4), ..default() }),
+        ("sharpness", Options { sharpness: sharpness(1, 11), ..default() }),
+        ("scheme length", Options { scheme: long, ..default() }),
+        ("fraction", Options { goal: goal(0.0, 1.0), ..default() }),
+        ("fraction", Options { goal: goal(1.5, 1.0), ..default() }),
+        ("fraction", Options { goal: goal(f64::NAN, 1.0), ..default() }),
+        ("desired", Options { goal: goal(0.95, f64::NAN), ..default() }),
+    ];
+    for (named, options) in wrong {
+        for backend in backends() {
+            let error = smoother.run(&options, backend, &mut |_| ControlFlow::Continue(()));
+            match error {
+                Err(SmoothError::Option { option, .. }) => assert_eq!(option, named),
+                other => panic!("{named}: {:?}", other.map(|outcome| outcome.stop)),
+            }
+        }
+    }
+    // The ends of the ranges are in them.
+    let edge = Options {
+        omega: Some(1.99),
+        sharpness: sharpness(0, 10),
+        scheme: Scheme::new(vec![Metric::Edge; 60]).unwrap(),
+        goal: goal(1.0, 0.0),
+        max_sweeps: 3,
+        ..default()
+    };
+    assert_eq!(run(&smoother, &edge, &backends()[0]).stop, Stop::MaxSweeps);
+}
+
+#[test]
+fn no_sweep_at_all_leaves_the_mesh_as_it_is() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 1);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for backend in backends() {
+        for name in ["imr", "edge+imr"] {
+            let options = Options { scheme: scheme(name), max_sweeps: 0, ..Options::default() };
+            let outcome = run(&smoother, &options, backend);
+            assert_eq!((outcome.stop, outcome.sweeps, outcome.best_sweep), (Stop::MaxSweeps, 0, 0));
+            assert_eq!(outcome.points, mesh.points);
+            let f = smoother.quality(&mesh.points).f(options.scheme.base());
+            assert!((history(&outcome, options.scheme.base())[0] / f - 1.0).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn every_metric_is_tracked_on_request() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    let options =
+        Options { scheme: scheme("rms+imr"), track_all: true, max_sweeps: 6, ..Options::default() };
+    let outcomes = backends().each_ref().map(|backend| run(&smoother, &options, backend));
+    for sweep in 0..=6 {
+        for &metric in Metric::ALL {
+            let [cpu, gpu] = outcomes.each_ref().map(|o| o.history[sweep].of(metric).unwrap());
+            // What single precision makes of triangles a thousand times longer than high.
+            assert!((gpu / cpu - 1.0).abs() < 1e-4, "{metric}, sweep {sweep}: {gpu} for {cpu}");
+        }
+    }
+    let alone = run(&smoother, &Options { track_all: false, ..options }, &backends()[1]);
+    assert_eq!(alone.points, outcomes[1].points, "looking changes nothing");
+    assert_eq!(alone.history[3].of(Metric::Imr), None);
+}
+
+#[test]
+fn an_adapter_of_no_such_name_is_told_with_those_there_are() {
+    let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
+    let there = &gpu.adapter().name;
+    let error = Gpu::open(Some("no such adapter")).err().expect("there is none of that name");
+    assert!(matches!(error, GpuError::NoAdapter { .. }));
+    let text = error.to_string();
+    assert!(text.contains("'no such adapter'") && text.contains(there.as_str()), "{text}");
+    // Part of a name will do, in any case.
+    let part = there[..there.len() / 2].to_uppercase();
+    assert!(Gpu::open(Some(&part)).is_ok(), "{part}");
+}

@@ -1,0 +1,52 @@
+//! A tolerance speaks of the distance to the limit, not of the last change.
+
+use crate::{backends, distorted, global, history, name, perturbed, run, support};
+use gpu_smooth::{Metric, Options, Smoother, Stop};
+
+/// The estimate is one from the last sweeps: it may be this much too small.
+const TRUST: f64 = 1.5;
+
+fn check(smoother: &Smoother, options: &Options, limit: f64) {
+    for tolerance in [1e-4, 1e-6] {
+        for backend in backends() {
+            let options = Options { tolerance, ..options.clone() };
+            let outcome = run(smoother, &options, backend);
+            let label = format!("{} to {tolerance:e} on the {}", options.scheme, name(backend));
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            let f = *history(&outcome, options.scheme.base()).last().unwrap();
+            let left = (f - limit) / limit;
+            assert!(left <= TRUST * tolerance, "{label}: {left:e} left");
+            // Nor is it kept by sweeping ten times as long as needed.
+            assert!(left >= tolerance / 20.0, "{label}: {left:e} left");
+        }
+    }
+}
+
+#[test]
+fn what_is_left_is_within_the_tolerance() {
+    let rms = global::rms_optimum(perturbed());
+    let (imr, _) = global::imr_optimum(&rms);
+    assert!(imr < support::f_imr(&rms));
+    for mesh in [perturbed(), distorted()] {
+        let smoother = Smoother::new(mesh).unwrap();
+        for (metric, limit) in [(Metric::Imr, imr), (Metric::Rms, global::f_rms(&rms))] {
+            for omega in [None, Some(1.0)] {
+                check(
+                    &smoother,
+                    &Options { scheme: metric.into(), omega, ..Options::default() },
+                    limit,
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_left_of_edge_is_within_the_tolerance() {
+    // To the limit of its own sweeps: where the p-norm leads, not the best there is.
+    let smoother = Smoother::new(perturbed()).unwrap();
+    let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
+    let long = run(&smoother, &Options { tolerance: 1e-11, ..options.clone() }, &backends()[0]);
+    let limit = history(&long, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min);
+    check(&smoother, &options, limit);
+}
