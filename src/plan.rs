@@ -187,6 +187,9 @@ pub(crate) mod line_search {
     pub(crate) const SHORTEN_INFEASIBLE: f64 = 0.25;
     /// Shortening after a trial that does not decrease the objective enough.
     pub(crate) const SHORTEN: f64 = 0.5;
+    /// Share of the shape guard kept in reserve, so that a triangle let through in single precision is
+    /// within the guard in exact arithmetic as well.
+    pub(crate) const GUARD_RESERVE: f64 = 1e-3;
     /// Step of forward differences, relative to the vertex's least height over a ring edge. Large
     /// enough for the second differences to survive single precision.
     pub(crate) const DIFFERENCE: f64 = 1e-2;

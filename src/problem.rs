@@ -175,9 +175,10 @@ fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
 /// The vertices in use, in the order [`Problem`] promises.
 fn order(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Vec<u32> {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for &point in &mesh.points {
-        low = low.min(point.into());
-        high = high.max(point.into());
+    for &v in topology.triangles().as_flattened() {
+        let point = DVec2::from(mesh.points[v as usize]);
+        low = low.min(point);
+        high = high.max(point);
     }
     let cells = f64::from(u32::MAX) / (high - low).max_element();
     let mut keyed: Vec<(u32, u64, u32)> = (0..mesh.points.len() as u32)

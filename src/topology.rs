@@ -129,10 +129,6 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     if let Some(vertex) = points.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
         return Err(MeshError::NotFinite { vertex: vertex as u32 });
     }
-    let largest = points.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if !(1e-100..=1e100).contains(&largest) {
-        return Err(MeshError::OutOfRange { size: largest });
-    }
     for (t, corners) in triangles.iter().enumerate() {
         for (i, &vertex) in corners.iter().enumerate() {
             if vertex as usize >= points.len() {
@@ -143,6 +139,12 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
                 return Err(MeshError::RepeatedVertex { triangle: t, vertex });
             }
         }
+    }
+    // Vertices in no triangle may be anywhere.
+    let used = triangles.as_flattened().iter().flat_map(|&v| points[v as usize]);
+    let largest = used.fold(0.0, |most: f64, x| most.max(x.abs()));
+    if !(1e-100..=1e100).contains(&largest) {
+        return Err(MeshError::OutOfRange { size: largest });
     }
     if let Some(&vertex) = fixed.iter().find(|&&v| v as usize >= points.len()) {
         let vertices = points.len();

@@ -43,7 +43,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 1 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1));
+    assert_eq!(modules().count(), 4 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1));
 }
 
 #[test]
@@ -68,10 +68,15 @@ fn every_kernel_has_one_entry_point_of_its_name() {
 }
 
 #[test]
-fn workgroups_are_64_wide_but_for_finish_and_within_the_limit() {
+fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
     for (kernel, module) in modules() {
         let size = module.entry_points[0].workgroup_size;
-        let width = if matches!(kernel, Kernel::Finish(_)) { 256 } else { 64 };
+        let width = match kernel {
+            Kernel::Finish(_) => 256,
+            // One for each metric, and one for the inverted.
+            Kernel::Publish => Metric::ALL.len() as u32 + 1,
+            _ => 64,
+        };
         assert_eq!(size, [width, 1, 1], "{}", kernel.label());
         assert!(size.iter().product::<u32>() <= MOST_INVOCATIONS);
     }

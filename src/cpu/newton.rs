@@ -56,7 +56,7 @@ impl Patch<'_> {
     fn newton_step(&self, metric: Metric, at: DVec2, step: &Step) -> Option<DVec2> {
         let properties = metric.properties();
         let mut sum = Dual::default();
-        let mut limit = properties.shape_guard;
+        let mut limit = properties.shape_guard * (1.0 - line_search::GUARD_RESERVE);
         let difference = match step.derivatives {
             Derivatives::Analytic => 0.0,
             Derivatives::FiniteDifference => line_search::DIFFERENCE * self.least_height(at),

@@ -16,6 +16,8 @@ const OBJECTIVE: &str = include_str!("../../shaders/objective.wgsl");
 const FINISH: &str = include_str!("../../shaders/finish.wgsl");
 const KEEP_BEST: &str = include_str!("../../shaders/keep_best.wgsl");
 const EXCHANGE: &str = include_str!("../../shaders/exchange.wgsl");
+const IMPORT: &str = include_str!("../../shaders/import.wgsl");
+const EXPORT: &str = include_str!("../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../shaders/publish.wgsl");
 
 /// A compute kernel: one WGSL module in core WebGPU, with the bindings of its [`Interface`].
@@ -89,7 +91,7 @@ impl Kernel {
             Interface::Run => {
                 [COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
             }
-            Interface::Exchange => source.push_str(PAIRS),
+            Interface::Exchange => [PAIRS, EXCHANGE].iter().for_each(|part| source.push_str(part)),
             Interface::Publish => source.push_str(CONTROL),
         }
         match self {
@@ -108,7 +110,8 @@ impl Kernel {
                 source.push_str(FINISH);
             }
             Kernel::KeepBest => source.push_str(KEEP_BEST),
-            Kernel::Import | Kernel::Export => source.push_str(EXCHANGE),
+            Kernel::Import => source.push_str(IMPORT),
+            Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
         }
         source
@@ -151,7 +154,7 @@ fn constants() -> String {
 fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
     let properties = metric.properties();
     let name = metric.name();
-    let guard = properties.shape_guard;
+    let guard = properties.shape_guard * (1.0 - line_search::GUARD_RESERVE);
     let mut text = properties.wgsl.to_owned();
     let _ = write!(
         text,

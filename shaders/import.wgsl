@@ -1,0 +1,33 @@
+// Takes the positions of an application's vertex buffer.
+
+fn imported(x: f32, center: vec2<f32>) -> vec2<f32> {
+    return pair_add(vec2(x, 0.0), -center) * exchange.scale;
+}
+
+// By its bits: compilers may take it that there are no other numbers.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn import_positions(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let vertex = invocation(id, groups);
+    if vertex >= exchange.vertices {
+        return;
+    }
+    let at = exchange.offset + numbers[vertex] * exchange.stride;
+    let given = vec2(vertex_buffer[at], vertex_buffer[at + 1u]);
+    // A vertex the application has not moved keeps the bits that its floats do not hold.
+    if all(given == exported(positions[vertex])) {
+        return;
+    }
+    let x = imported(given.x, vec2(exchange.center.x, exchange.center.z));
+    let y = imported(given.y, vec2(exchange.center.y, exchange.center.w));
+    // One vertex that is nowhere would take its neighbors along, and these theirs.
+    if is_finite(x.x) && is_finite(y.x) {
+        positions[vertex] = vec4(x.x, y.x, x.y, y.y);
+    }
+}
