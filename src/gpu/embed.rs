@@ -78,12 +78,10 @@ impl DeviceMesh {
             return Err(GpuError::Buffer(problem));
         }
         let mut starts = self.problem.ring_start().to_vec();
-        for (start, &vertex) in starts.iter_mut().zip(self.problem.vertices()) {
-            // The last entry is the end of the last ring, no vertex.
+        // One start a free vertex; the entry after them is the end of the last ring.
+        let free = self.problem.free_count();
+        for (start, &vertex) in starts[..free].iter_mut().zip(self.problem.vertices()) {
             *start |= if fixed[vertex as usize] { HELD } else { 0 };
-        }
-        if let (Some(last), Some(&end)) = (starts.last_mut(), self.problem.ring_start().last()) {
-            *last = end;
         }
         scoped(&gpu.device, || {
             gpu.queue.write_buffer(&self.buffers.ring_start, 0, bytemuck::cast_slice(&starts));
