@@ -1,41 +1,6 @@
 // One sweep over the free vertices of a color: local feasible Newton (Park & Shontz, Section 2.1),
 // the same steps as src/cpu/newton.rs.
 
-// A patch, its edges in units near their own length so that nothing overflows or vanishes.
-struct Patch {
-    start: u32,
-    end: u32,
-    at: vec4<f32>,
-    unit: f32,
-    mean_area: f32,
-}
-
-fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
-    return edge(p.at, positions[ring[i]]) * p.unit;
-}
-
-// A power of two that brings the length of an edge near one.
-fn unit_of(e: vec2<f32>) -> f32 {
-    let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
-    return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
-}
-
-fn inverse_mean_ratio(t: Corner) -> f32 {
-    return 0.28867513459 * squared_length_sum(t) / doubled_area(t);
-}
-
-// The least distance of the vertex from the line through a ring edge.
-fn least_height(p: Patch) -> f32 {
-    var least = 3.0e38;
-    var a = ring_edge(p, p.end - 1u);
-    for (var i = p.start; i < p.end; i++) {
-        let b = ring_edge(p, i);
-        least = min(least, cross2(a, b) / length(b - a));
-        a = b;
-    }
-    return least;
-}
-
 // Sum of the metric's model over the patch with the vertex moved by d; x is the sum, y is 0 if a
 // triangle is inverted or breaks the shape guard.
 fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
@@ -134,18 +99,11 @@ fn sweep(
         return;
     }
     let vertex = color.first + index;
-    let start = ring_start[vertex];
-    if (start & HELD) != 0u {
+    if (ring_start[vertex] & HELD) != 0u {
         return;
     }
     sharpness = color.sharpness;
-
-    var p: Patch;
-    p.start = start;
-    p.end = ring_start[vertex + 1u] & ~HELD;
-    p.at = positions[vertex];
-    p.unit = unit_of(edge(p.at, positions[ring[p.start]]));
-    p.mean_area = params.mean_area * p.unit * p.unit;
+    var p = patch_of(vertex);
     var moved = false;
     for (var i = 0u; i < params.inner; i++) {
         let d = newton_step(p, color.omega);
@@ -158,11 +116,4 @@ fn sweep(
     if moved {
         positions[vertex] = p.at;
     }
-}
-
-// The position moved by d, with its low part kept below half a unit of its high part.
-fn advanced(at: vec4<f32>, d: vec2<f32>) -> vec4<f32> {
-    let x = pair_add(at.xz, vec2(d.x, 0.0));
-    let y = pair_add(at.yw, vec2(d.y, 0.0));
-    return vec4(x.x, y.x, x.y, y.y);
 }

@@ -67,8 +67,19 @@ pub struct Properties {
     pub shape_guard: f64,
     /// The over-relaxation that suits it.
     pub omega: f64,
+    /// The graph Laplacian that stands in for the objective's Hessian in a coarse correction, if one does.
+    pub stiffness: Option<Stiffness>,
     /// The WGSL file's text.
     pub wgsl: &'static str,
+}
+
+/// The weight of an edge in the graph Laplacian that comes near the Hessian of Σ q² on a good mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// This over the mean doubled area of the triangles around.
+    BySize(f64),
+    /// This over the mean doubled area of all triangles.
+    Uniform(f64),
 }
 
 /// Generates the enum, the table and the formulas from one row per metric.
@@ -126,6 +137,8 @@ macro_rules! metrics {
     };
 }
 
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
 metrics! {
     /// Edge ratio Lmax/Lmin.
     Edge = "edge" {
@@ -140,6 +153,7 @@ metrics! {
             eigenvalue_floor: 0.1,
             shape_guard: 30.0,
             omega: 1.5,
+            stiffness: None,
         }
         excess(t) {
             let [mut least, mut most, other] = t.squared_lengths();
@@ -185,6 +199,7 @@ metrics! {
             eigenvalue_floor: 1e-3,
             shape_guard: 30.0,
             omega: 1.9,
+            stiffness: None,
         }
         excess(t) {
             let q = t.doubled_area() / T::from(2.0 * t.mean_area) - T::from(1.0);
@@ -206,6 +221,7 @@ metrics! {
             eigenvalue_floor: 1e-3,
             shape_guard: 1e3,
             omega: 1.9,
+            stiffness: Some(Stiffness::Uniform(2.0 / SQRT_3)),
         }
         excess(t) {
             t.squared_length_sum() / T::from(12.0 * t.mean_area / 3f64.sqrt()) - T::from(1.0)
@@ -226,6 +242,7 @@ metrics! {
             eigenvalue_floor: 1e-3,
             shape_guard: f64::INFINITY,
             omega: 1.9,
+            stiffness: Some(Stiffness::BySize(4.0 / SQRT_3)),
         }
         excess(t) {
             // T = A W⁻¹ = [a, (2b - a)/√3]. |T|² - 2 det T is a sum of squares, so q - 1 has no
@@ -254,6 +271,7 @@ metrics! {
             eigenvalue_floor: 1e-3,
             shape_guard: f64::INFINITY,
             omega: 1.9,
+            stiffness: Some(Stiffness::BySize(4.0 / SQRT_3)),
         }
         excess(t) {
             let q = t.squared_length_sum() * T::from(3f64.sqrt() / 6.0) / t.doubled_area();

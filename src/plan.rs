@@ -121,7 +121,7 @@ impl StopRule {
             let remaining =
                 |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
             // Twice the estimate, as slow modes outlast those that a window sees.
-            if 2.0 * remaining(window).max(remaining(window / 2)) <= self.tolerance * f {
+            if 2.0 * remaining(window).max(remaining(window.div_ceil(2))) <= self.tolerance * f {
                 return Some(Stop::Converged);
             }
         }

@@ -5,14 +5,15 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::cpu::{CpuEngine, mean_excess};
+use crate::cpu::{CpuEngine, CpuFine, mean_excess};
 use crate::engine::{Engine, Objectives};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
+use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
+use crate::multilevel::MultilevelEngine;
 use crate::options::{Desired, Goal, Options};
-use crate::plan::{Plan, Sharpness, Stop};
+use crate::plan::{Sharpness, Stop};
 use crate::prepare::prepare;
 use crate::problem::Problem;
 use crate::quality::Quality;
@@ -69,6 +70,8 @@ pub struct Outcome {
     pub stop: Stop,
     /// Sweeps done.
     pub sweeps: u32,
+    /// Corrections from coarser levels taken after sweeps; see [`Method::Multilevel`](crate::Method).
+    pub corrections: u32,
     /// The sweep after which the returned state was had; 0 is the mesh as it was.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
@@ -184,9 +187,8 @@ impl<'a> Smoother<'a> {
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
         let run = Run { smoother: self, place, phase: Phase::Smoothing };
-        let plan = options.plan(target);
-        let monotone = plan.is_monotone();
-        let end = run.sweep(plan, self.problem.positions(), observe).await?;
+        let monotone = options.plan(target).is_monotone();
+        let end = run.sweep(options, target, self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
             end.history.len() - 1
@@ -207,6 +209,7 @@ impl<'a> Smoother<'a> {
             points,
             stop: end.stop,
             sweeps: end.history.len() as u32 - 1,
+            corrections: end.corrections,
             best_sweep: best_sweep as u32,
             history: end.history,
             goal,
@@ -245,13 +248,13 @@ impl<'a> Smoother<'a> {
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !matches!(base, Metric::Imr | Metric::Ar) {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
-            let after_imr = run.sweep(imr.plan(None), start, observe).await?;
+            let after_imr = run.sweep(&imr, None, start, observe).await?;
             starts.push((format!("imr, then {base}"), after_imr.positions));
         }
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let end = run.sweep(full(base).plan(None), &start, observe).await?;
+            let end = run.sweep(&full(base), None, &start, observe).await?;
             let f = self.objective(base, &end.positions);
             let sweeps = end.history.len() - 1;
             describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
@@ -273,6 +276,8 @@ enum Place<'g> {
 enum AnyEngine<'e> {
     Cpu(Box<CpuEngine<'e>>),
     Gpu(Box<GpuEngine<'e>>),
+    CpuMultilevel(Box<MultilevelEngine<'e, CpuFine<'e>>>),
+    GpuMultilevel(Box<MultilevelEngine<'e, GpuFine<'e>>>),
 }
 
 impl AnyEngine<'_> {
@@ -280,6 +285,8 @@ impl AnyEngine<'_> {
         match self {
             AnyEngine::Cpu(engine) => engine.advance(sweeps),
             AnyEngine::Gpu(engine) => GpuEngine::advance(engine, sweeps).await,
+            AnyEngine::CpuMultilevel(engine) => engine.advance(sweeps).await,
+            AnyEngine::GpuMultilevel(engine) => engine.advance(sweeps).await,
         }
     }
 
@@ -287,6 +294,8 @@ impl AnyEngine<'_> {
         match self {
             AnyEngine::Cpu(engine) => engine.stop(),
             AnyEngine::Gpu(engine) => engine.stop(),
+            AnyEngine::CpuMultilevel(engine) => engine.stop(),
+            AnyEngine::GpuMultilevel(engine) => engine.stop(),
         }
     }
 
@@ -294,6 +303,16 @@ impl AnyEngine<'_> {
         match self {
             AnyEngine::Cpu(engine) => engine.best_positions(),
             AnyEngine::Gpu(engine) => GpuEngine::best_positions(engine).await,
+            AnyEngine::CpuMultilevel(engine) => engine.best_positions().await,
+            AnyEngine::GpuMultilevel(engine) => engine.best_positions().await,
+        }
+    }
+
+    fn corrections(&self) -> u32 {
+        match self {
+            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => 0,
+            AnyEngine::CpuMultilevel(engine) => engine.corrections(),
+            AnyEngine::GpuMultilevel(engine) => engine.corrections(),
         }
     }
 }
@@ -308,25 +327,20 @@ struct Run<'s, 'a> {
 struct End {
     history: Vec<Objectives>,
     positions: Vec<DVec2>,
+    corrections: u32,
     stop: Stop,
 }
 
 impl Run<'_, '_> {
     async fn sweep(
         &self,
-        plan: Plan,
+        options: &Options,
+        target: Option<f64>,
         from: &[DVec2],
         observe: &mut Observer<'_>,
     ) -> Result<End, SmoothError> {
-        let base = plan.scheme.base();
-        let problem = &self.smoother.problem;
-        let mut engine = match self.place {
-            Place::Cpu => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, from.to_vec(), plan))),
-            Place::Gpu(gpu, waiting) => {
-                let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
-                AnyEngine::Gpu(Box::new(engine))
-            }
-        };
+        let base = options.scheme.base();
+        let mut engine = self.engine(options, target, from)?;
         let mut history = Vec::new();
         let mut batch = 4;
         let stop = loop {
@@ -346,7 +360,34 @@ impl Run<'_, '_> {
                 break Stop::Cancelled;
             }
         };
-        Ok(End { history, positions: engine.best_positions().await?, stop })
+        let corrections = engine.corrections();
+        Ok(End { history, positions: engine.best_positions().await?, corrections, stop })
+    }
+
+    fn engine<'e>(
+        &'e self,
+        options: &Options,
+        target: Option<f64>,
+        from: &'e [DVec2],
+    ) -> Result<AnyEngine<'e>, GpuError> {
+        let problem = &self.smoother.problem;
+        let plan = options.plan(target);
+        let multilevel = options.is_multilevel();
+        Ok(match self.place {
+            Place::Cpu if multilevel => {
+                let fine = CpuFine::new(problem, from.to_vec(), &plan);
+                AnyEngine::CpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
+            }
+            Place::Cpu => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, from.to_vec(), plan))),
+            Place::Gpu(gpu, waiting) if multilevel => {
+                let fine = GpuFine::new(gpu, problem, from, &plan, waiting)?;
+                AnyEngine::GpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
+            }
+            Place::Gpu(gpu, waiting) => {
+                let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
+                AnyEngine::Gpu(Box::new(engine))
+            }
+        })
     }
 }
 

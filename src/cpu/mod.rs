@@ -2,7 +2,9 @@
 //!
 //! Same colors, same steps and same stopping as the GPU engine, on all cores.
 
+mod fine;
 mod newton;
+mod vcycle;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -12,6 +14,7 @@ use crate::gpu::GpuError;
 use crate::metric::{Corner, Metric, specialize};
 use crate::plan::{Plan, Stop, StopRule};
 use crate::problem::Problem;
+pub(crate) use fine::CpuFine;
 use newton::{Patch, Step};
 
 /// A run on the CPU.
@@ -49,15 +52,7 @@ impl<'a> CpuEngine<'a> {
             sharpness: self.plan.sharpness.of(sweep),
             derivatives: self.plan.derivatives,
         };
-        let mut moved = Vec::new();
-        for color in self.problem.colors() {
-            let color = color.start as usize..color.end as usize;
-            // Vertices of one color read each other's neighbors only, never each other.
-            specialize!(metric, METRIC => {
-                visit_all(METRIC, self.problem, &self.positions, color.clone(), &step, &mut moved);
-            });
-            self.positions[color].copy_from_slice(&moved);
-        }
+        sweep_once(metric, self.problem, &mut self.positions, &step);
     }
 
     fn evaluate(&mut self) -> Objectives {
@@ -103,6 +98,19 @@ impl Engine for CpuEngine<'_> {
 
     fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
         Ok(self.best_positions.as_ref().unwrap_or(&self.positions).clone())
+    }
+}
+
+/// One visit of every free vertex, color by color.
+fn sweep_once(metric: Metric, problem: &Problem, positions: &mut [DVec2], step: &Step) {
+    let mut moved = Vec::new();
+    for color in problem.colors() {
+        let color = color.start as usize..color.end as usize;
+        // Vertices of one color read each other's neighbors only, never each other.
+        specialize!(metric, METRIC => {
+            visit_all(METRIC, problem, positions, color.clone(), step, &mut moved);
+        });
+        positions[color].copy_from_slice(&moved);
     }
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct Step {
 impl Patch<'_> {
     /// The patch's triangles, seen from the vertex at `at`.
     #[inline(always)]
-    fn corners(&self, at: DVec2) -> impl Iterator<Item = Corner<f64>> + '_ {
+    pub(crate) fn corners(&self, at: DVec2) -> impl Iterator<Item = Corner<f64>> + '_ {
         let edge = move |v: u32| (self.positions[v as usize] - at).to_array();
         let next = self.ring.iter().skip(1).chain(self.ring.first());
         self.ring.iter().zip(next).map(move |(&a, &b)| Corner {
@@ -56,7 +56,7 @@ impl Patch<'_> {
     fn newton_step(&self, metric: Metric, at: DVec2, step: &Step) -> Option<DVec2> {
         let properties = metric.properties();
         let mut sum = Dual::default();
-        let mut limit = properties.shape_guard * (1.0 - line_search::GUARD_RESERVE);
+        let mut limit = shape_guard(metric);
         let difference = match step.derivatives {
             Derivatives::Analytic => 0.0,
             Derivatives::FiniteDifference => line_search::DIFFERENCE * self.least_height(at),
@@ -121,9 +121,15 @@ impl Patch<'_> {
     }
 }
 
+/// The shape guard as it is applied, less its reserve.
+#[inline(always)]
+pub(crate) fn shape_guard(metric: Metric) -> f64 {
+    metric.properties().shape_guard * (1.0 - line_search::GUARD_RESERVE)
+}
+
 /// The inverse mean ratio, for the shape guard.
 #[inline(always)]
-fn inverse_mean_ratio(corner: &Corner<f64>) -> f64 {
+pub(crate) fn inverse_mean_ratio(corner: &Corner<f64>) -> f64 {
     Metric::Ar.quality(corner)
 }
 

@@ -44,19 +44,27 @@ impl MeshSize {
     /// Fails if a buffer does not fit the limits: checked before anything is allocated, as a limit met
     /// halfway helps nobody.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
-        for (what, needed) in self.buffers() {
-            for (limit, available) in [
-                ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
-                ("max_buffer_size", limits.max_buffer_size),
-            ] {
-                if needed > available {
-                    let what = format!("{what} ({} vertices)", self.vertices);
-                    return Err(GpuError::Limit { what, needed, limit, available });
-                }
-            }
-        }
-        Ok(())
+        self.buffers().into_iter().try_for_each(|(what, needed)| {
+            check_binding(limits, || format!("{what} ({} vertices)", self.vertices), needed)
+        })
     }
+}
+
+/// Fails if a buffer of `needed` bytes cannot be made or bound.
+pub(crate) fn check_binding(
+    limits: &wgpu::Limits,
+    what: impl Fn() -> String,
+    needed: u64,
+) -> Result<(), GpuError> {
+    for (limit, available) in [
+        ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+        ("max_buffer_size", limits.max_buffer_size),
+    ] {
+        if needed > available {
+            return Err(GpuError::Limit { what: what(), needed, limit, available });
+        }
+    }
+    Ok(())
 }
 
 impl MeshBuffers {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::buffers::MeshBuffers;
 use super::device::{Gpu, GpuError, scoped};
-use super::layout::{Control, HISTORY, join, split, unpair};
+use super::layout::{Control, HISTORY, SLOTS, join, split, unpair};
 use super::readback::{self, Waiting};
 use super::run::Run;
 use crate::engine::Objectives;
@@ -80,15 +80,9 @@ impl<'a> GpuEngine<'a> {
         let control: Vec<Control> =
             readback::read(self.gpu, &self.run.control, 1, self.waiting).await?;
         let Some(control) = control.first() else { return Ok(()) };
-        let triangles = self.problem.triangles().len() as f64;
         for evaluation in self.evaluated..control.evaluated {
             let sums = control.history[(evaluation % HISTORY) as usize];
-            let mut values = Objectives::untracked();
-            for metric in self.run.plan.tracked() {
-                let excess = unpair(sums[metric as usize]) / triangles;
-                values.set(metric, metric.ideal_squared() + excess);
-            }
-            log.push(values);
+            log.push(objectives_of(&self.run.plan, &sums, self.problem));
         }
         self.evaluated = control.evaluated;
         self.stop = Stop::from_code(control.done);
@@ -115,18 +109,42 @@ impl<'a> GpuEngine<'a> {
             true => &self.mesh.positions,
             false => &self.run.best,
         };
-        // Fixed vertices have not moved, and a free one that has not keeps all its bits, which the
-        // device's pairs of floats do not hold.
-        let free = self.problem.free_count();
-        let moved: Vec<[f32; 4]> = readback::read(self.gpu, buffer, free, self.waiting).await?;
-        let mut positions = self.start.to_vec();
-        for (position, now) in positions.iter_mut().zip(moved) {
-            if now != split(*position) {
-                *position = join(now);
-            }
-        }
-        Ok(positions)
+        moved_positions(self.gpu, buffer, self.problem, self.start, self.waiting).await
     }
+}
+
+/// The positions that started at `start` as the device has them in `buffer`. Fixed vertices have not moved,
+/// and a free one that has not keeps all its bits, which the device's pairs of floats do not hold.
+pub(super) async fn moved_positions(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    problem: &Problem,
+    start: &[DVec2],
+    waiting: Waiting,
+) -> Result<Vec<DVec2>, GpuError> {
+    let free = problem.free_count();
+    let moved: Vec<[f32; 4]> = readback::read(gpu, buffer, free, waiting).await?;
+    let mut positions = start.to_vec();
+    for (position, now) in positions.iter_mut().zip(moved) {
+        if now != split(*position) {
+            *position = join(now);
+        }
+    }
+    Ok(positions)
+}
+
+/// The objectives from the sums of one evaluation.
+pub(super) fn objectives_of(
+    plan: &Plan,
+    sums: &[[f32; 2]; SLOTS],
+    problem: &Problem,
+) -> Objectives {
+    let mut values = Objectives::untracked();
+    for metric in plan.tracked() {
+        let excess = unpair(sums[metric as usize]) / problem.triangles().len() as f64;
+        values.set(metric, metric.ideal_squared() + excess);
+    }
+    values
 }
 
 impl crate::engine::Engine for GpuEngine<'_> {

@@ -24,6 +24,17 @@ fn bindings(interface: Interface) -> &'static [Binding] {
         ],
         Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
         Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
+        Interface::Levels => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadWrite,
+            ReadOnly,
+            ReadOnly,
+            ReadOnly,
+            ReadOnly,
+            ReadOnly,
+            ReadWrite,
+        ],
     }
 }
 
@@ -55,6 +66,7 @@ pub(crate) struct Pipelines {
     run: Layout,
     exchange: Layout,
     publish: Layout,
+    levels: Layout,
     made: Mutex<HashMap<Kernel, wgpu::ComputePipeline>>,
 }
 
@@ -97,6 +109,7 @@ impl Pipelines {
             run: layout(Interface::Run),
             exchange: layout(Interface::Exchange),
             publish: layout(Interface::Publish),
+            levels: layout(Interface::Levels),
             made: Mutex::default(),
         }
     }
@@ -106,6 +119,7 @@ impl Pipelines {
             Interface::Run => &self.run,
             Interface::Exchange => &self.exchange,
             Interface::Publish => &self.publish,
+            Interface::Levels => &self.levels,
         }
     }
 
@@ -175,6 +189,9 @@ mod tests {
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish]);
+        kernels.extend(Metric::ALL.iter().flat_map(|&m| [Kernel::Gradient(m), Kernel::Along(m)]));
+        kernels.extend([Kernel::HandDown, Kernel::HandUp, Kernel::Apply, Kernel::Chebyshev]);
+        kernels.extend([Kernel::Direct, Kernel::Total, Kernel::Take]);
         kernels
     }
 

@@ -48,6 +48,24 @@ pub(crate) struct SweepColor {
     pub(crate) sharpness: u32,
 }
 
+/// `LevelOp` in shaders/levels/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LevelOp {
+    pub(crate) rows: u32,
+    pub(crate) free: u32,
+    pub(crate) starts: u32,
+    pub(crate) columns: u32,
+    pub(crate) entries: u32,
+    pub(crate) diagonal: u32,
+    pub(crate) x: u32,
+    pub(crate) right: u32,
+    pub(crate) step: u32,
+    pub(crate) out: u32,
+    pub(crate) a: f32,
+    pub(crate) b: f32,
+}
+
 /// `Control` in shaders/control.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -154,6 +172,10 @@ mod tests {
             }
         );
         mirrors!(run, SweepColor { first, count, omega, sharpness });
+        mirrors!(
+            &Kernel::Apply,
+            LevelOp { rows, free, starts, columns, entries, diagonal, x, right, step, out, a, b }
+        );
         for kernel in [run, &Kernel::Publish] {
             mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
         }

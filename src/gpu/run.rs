@@ -9,6 +9,7 @@ use super::device::{Gpu, GpuError, scoped};
 use super::layout::{Control, Params, SweepColor, WORKGROUP, pair};
 use super::shaders::{Interface, Kernel};
 use crate::metric::Metric;
+use crate::multilevel::OMEGAS;
 use crate::plan::{Plan, Sharpness, StopRule};
 use crate::problem::Problem;
 
@@ -20,6 +21,7 @@ pub(crate) struct Run {
     pub(crate) plan: Plan,
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
+    pub(crate) params: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     sweeps: Vec<(Metric, wgpu::ComputePipeline)>,
     objective: wgpu::ComputePipeline,
@@ -42,7 +44,9 @@ impl Steps {
         let Sharpness { first, last, .. } = plan.sharpness;
         let mut known = Vec::new();
         for &metric in plan.scheme.metrics() {
-            for omega in [1.0, plan.omega[metric as usize] as f32] {
+            let corrected = OMEGAS.map(|omega| omega as f32);
+            let own = plan.omega[metric as usize] as f32;
+            for omega in [1.0, own].into_iter().chain(corrected) {
                 for sharpness in first..=last.max(first) {
                     if !known.contains(&(omega, sharpness)) {
                         known.push((omega, sharpness));
@@ -96,8 +100,7 @@ impl Run {
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
 
-        // Few enough invocations to end the sum in one workgroup, enough to fill a large GPU.
-        let objective_groups = (problem.triangles().len() as u32).div_ceil(2048).clamp(1, 1024);
+        let objective_groups = objective_groups(problem);
         let partials = objective_groups * WORKGROUP;
         let partial_bytes =
             (plan.tracked().len() as u64 + 1) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
@@ -106,7 +109,7 @@ impl Run {
         let params = params(problem, &plan, partials);
         let uniforms = steps.uniforms(problem.colors());
 
-        let (control, best, bind_group) = scoped(&gpu.device, || {
+        let (control, best, params, bind_group) = scoped(&gpu.device, || {
             let params = filled(gpu, "params", &[params], Usage::UNIFORM);
             let steps = filled(gpu, "sweep colors", &uniforms, Usage::UNIFORM);
             let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
@@ -136,13 +139,14 @@ impl Run {
                 best.as_entire_binding(),
             ];
             let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Run, &resources);
-            (control, best, bind_group)
+            (control, best, params, bind_group)
         })?;
         let colors = problem.colors().to_vec();
         Ok(Self {
             plan,
             control,
             best,
+            params,
             bind_group,
             sweeps,
             objective,
@@ -156,9 +160,18 @@ impl Run {
 
     /// One sweep over all colors; sweeps count from 1.
     pub(crate) fn encode_sweep(&self, pass: &mut wgpu::ComputePass<'_>, sweep: u32) {
-        let metric = self.plan.scheme.metric(sweep);
-        let pipeline = self.sweeps.iter().find(|&&(known, _)| known == metric);
         let step = Steps::of(&self.plan, sweep);
+        self.encode_step(pass, self.plan.scheme.metric(sweep), step);
+    }
+
+    /// One sweep with the base metric, over-relaxed as a multilevel run wants it.
+    pub(crate) fn encode_relaxed_sweep(&self, pass: &mut wgpu::ComputePass<'_>, omega: f64) {
+        let step = (omega as f32, self.plan.sharpness.last);
+        self.encode_step(pass, self.plan.scheme.base(), step);
+    }
+
+    fn encode_step(&self, pass: &mut wgpu::ComputePass<'_>, metric: Metric, step: (f32, u32)) {
+        let pipeline = self.sweeps.iter().find(|&&(known, _)| known == metric);
         let step = self.steps.known.iter().position(|&known| known == step);
         // Both were made for every sweep of the plan.
         let (Some((_, pipeline)), Some(step)) = (pipeline, step) else { return };
@@ -182,6 +195,12 @@ impl Run {
             dispatch(pass, self.colors.last().map_or(0, |range| range.end));
         }
     }
+}
+
+/// Workgroups of a sum over the triangles: few enough invocations to end it in one workgroup, enough to
+/// fill a large GPU.
+pub(crate) fn objective_groups(problem: &Problem) -> u32 {
+    (problem.triangles().len() as u32).div_ceil(2048).clamp(1, 1024)
 }
 
 fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {

@@ -4,12 +4,15 @@ use std::fmt::Write;
 
 use super::layout::{FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP};
 use crate::metric::Metric;
+use crate::multilevel::{NONE, SMOOTHING};
 use crate::plan::{Derivatives, NOISE, Stop, line_search};
 
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 const PAIRS: &str = include_str!("../../shaders/pairs.wgsl");
+const PARAMS: &str = include_str!("../../shaders/params.wgsl");
 const CONTROL: &str = include_str!("../../shaders/control.wgsl");
 const PATCH: &str = include_str!("../../shaders/patch.wgsl");
+const ONE_RING: &str = include_str!("../../shaders/one_ring.wgsl");
 const NEWTON: &str = include_str!("../../shaders/newton.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../shaders/finite_difference.wgsl");
 const OBJECTIVE: &str = include_str!("../../shaders/objective.wgsl");
@@ -19,6 +22,18 @@ const EXCHANGE: &str = include_str!("../../shaders/exchange.wgsl");
 const IMPORT: &str = include_str!("../../shaders/import.wgsl");
 const EXPORT: &str = include_str!("../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../shaders/publish.wgsl");
+
+const LEVELS: &str = include_str!("../../shaders/levels/common.wgsl");
+const LAPLACIAN: &str = include_str!("../../shaders/levels/laplacian.wgsl");
+const GRADIENT: &str = include_str!("../../shaders/levels/gradient.wgsl");
+const HAND_DOWN: &str = include_str!("../../shaders/levels/hand_down.wgsl");
+const HAND_UP: &str = include_str!("../../shaders/levels/hand_up.wgsl");
+const APPLY: &str = include_str!("../../shaders/levels/apply.wgsl");
+const CHEBYSHEV: &str = include_str!("../../shaders/levels/chebyshev.wgsl");
+const DIRECT: &str = include_str!("../../shaders/levels/direct.wgsl");
+const ALONG: &str = include_str!("../../shaders/levels/along.wgsl");
+const TOTAL: &str = include_str!("../../shaders/levels/total.wgsl");
+const TAKE: &str = include_str!("../../shaders/levels/take.wgsl");
 
 /// A compute kernel: one WGSL module in core WebGPU, with the bindings of its [`Interface`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -37,6 +52,24 @@ pub enum Kernel {
     Export,
     /// Writes objectives to an application's buffer.
     Publish,
+    /// The gradient of Σ q² at the free vertices.
+    Gradient(Metric),
+    /// From the free vertices to the aggregates of the first coarse level.
+    HandDown,
+    /// And back.
+    HandUp,
+    /// A matrix times a vector, plus a vector.
+    Apply,
+    /// A smoothing step on a coarse level.
+    Chebyshev,
+    /// The solution on the coarsest level.
+    Direct,
+    /// Partial sums of the objective along a correction.
+    Along(Metric),
+    /// Completes these sums.
+    Total,
+    /// Moves the vertices along a correction.
+    Take,
 }
 
 /// What a kernel binds as group 0.
@@ -48,6 +81,8 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
+    /// A mesh and the levels below it: `shaders/levels/common.wgsl`.
+    Levels,
 }
 
 impl Kernel {
@@ -61,6 +96,15 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
+            Kernel::Gradient(_) => "gradient",
+            Kernel::HandDown => "hand_down",
+            Kernel::HandUp => "hand_up",
+            Kernel::Apply => "apply",
+            Kernel::Chebyshev => "chebyshev",
+            Kernel::Direct => "direct",
+            Kernel::Along(_) => "along",
+            Kernel::Total => "total",
+            Kernel::Take => "take",
         }
     }
 
@@ -69,7 +113,10 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
-            _ => Interface::Run,
+            Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
+                Interface::Run
+            }
+            _ => Interface::Levels,
         }
     }
 
@@ -89,14 +136,18 @@ impl Kernel {
         let mut source = constants();
         match self.interface() {
             Interface::Run => {
-                [COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
+                [PARAMS, COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
             }
             Interface::Exchange => [PAIRS, EXCHANGE].iter().for_each(|part| source.push_str(part)),
             Interface::Publish => source.push_str(CONTROL),
+            Interface::Levels => {
+                [PARAMS, LEVELS, PAIRS, PATCH].iter().for_each(|part| source.push_str(part))
+            }
         }
         match self {
             Kernel::Sweep(metric, derivatives) => {
                 source.push_str(PATCH);
+                source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, *derivatives));
                 source.push_str(NEWTON);
             }
@@ -113,6 +164,20 @@ impl Kernel {
             Kernel::Import => source.push_str(IMPORT),
             Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
+            Kernel::Gradient(metric) | Kernel::Along(metric) => {
+                source.push_str(ONE_RING);
+                source.push_str(&active_metric(*metric, Derivatives::Analytic));
+                source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
+            }
+            Kernel::HandDown => {
+                [LAPLACIAN, HAND_DOWN].iter().for_each(|part| source.push_str(part))
+            }
+            Kernel::HandUp => [LAPLACIAN, HAND_UP].iter().for_each(|part| source.push_str(part)),
+            Kernel::Apply => source.push_str(APPLY),
+            Kernel::Chebyshev => source.push_str(CHEBYSHEV),
+            Kernel::Direct => source.push_str(DIRECT),
+            Kernel::Total => source.push_str(TOTAL),
+            Kernel::Take => source.push_str(TAKE),
         }
         source
     }
@@ -128,6 +193,7 @@ fn constants() -> String {
         ("SLOTS", SLOTS as u32),
         ("INVERTED", INVERTED),
         ("HELD", HELD),
+        ("NONE", NONE),
         ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
         ("TRIALS", line_search::TRIALS),
     ] {
@@ -144,6 +210,7 @@ fn constants() -> String {
         ("DIFFERENCE", line_search::DIFFERENCE),
         ("SLACK", line_search::SLACK),
         ("NOISE", NOISE),
+        ("SMOOTHING", SMOOTHING.into()),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
     }
@@ -166,6 +233,7 @@ const QUADRATIC: bool = {quadratic};
 const GUARDED: bool = {guarded};
 const SHAPE_GUARD: f32 = {guard:?}f;
 fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
+fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
 ",
         index = metric as u32,
         floor = properties.eigenvalue_floor,

@@ -34,7 +34,7 @@ fn max_sweeps_ends_a_run() {
     let folder = small();
     let (report, out) = run(&folder, "--max-sweeps 7");
     assert_eq!((sweeps(&report), &report["stop"]), (7, &"max-sweeps".into()));
-    assert_holds(&out, &["stopped after 7 sweeps, the most allowed", "(--max-sweeps)"]);
+    assert_holds(&out, &["stopped after 7 sweeps (", ", the most allowed", "(--max-sweeps)"]);
     let (report, out) = run(&folder, "--max-sweeps 1");
     assert_eq!(sweeps(&report), 1);
     assert_holds(&out, &["stopped after 1 sweep, the most"]);
@@ -45,7 +45,7 @@ fn a_loose_tolerance_ends_a_run_earlier_and_zero_never() {
     let folder = small();
     let (loose, _) = run(&folder, "--tolerance 1e-2");
     let (tight, out) = run(&folder, "--tolerance 1e-8");
-    assert_holds(&out, &[&format!("\nconverged after {} sweeps\n", sweeps(&tight))]);
+    assert_holds(&out, &[&format!("\nconverged after {} sweeps (", sweeps(&tight))]);
     assert!(sweeps(&loose) < sweeps(&tight) && f(&loose, "imr") >= f(&tight, "imr"));
     let (zero, _) = run(&folder, "--tolerance 0 --max-sweeps 400");
     assert_eq!((sweeps(&zero), &zero["stop"]), (400, &"max-sweeps".into()));
@@ -105,9 +105,30 @@ fn the_paper_method_is_omega_one() {
     let bytes = folder.text("out.node");
     let (plain, _) = run(&folder, "--omega 1");
     assert_eq!((&paper["history"], bytes), (&plain["history"], folder.text("out.node")));
-    let (relaxed, _) = run(&folder, "");
-    assert_eq!(relaxed["history"], run(&folder, "--method relaxed").0["history"]);
+    let (relaxed, _) = run(&folder, "--method relaxed");
+    assert_eq!(relaxed["corrections"], 0);
+    assert_eq!(relaxed["history"], run(&folder, "--omega 1.9").0["history"]);
     assert_ne!(relaxed["history"], run(&folder, "--method relaxed --omega 1.5").0["history"]);
+}
+
+#[test]
+fn corrections_from_coarser_levels_are_the_default_of_one_metric() {
+    let folder = small();
+    for scheme in ["imr", "ar", "rms"] {
+        let (auto, _) = run(&folder, &format!("--scheme {scheme}"));
+        let (asked, _) = run(&folder, &format!("--scheme {scheme} --method multilevel"));
+        assert_eq!(auto["history"], asked["history"]);
+        assert!(auto["corrections"].as_u64().unwrap() > 0);
+        let (relaxed, _) = run(&folder, &format!("--scheme {scheme} --method relaxed"));
+        assert!(auto["sweeps"].as_u64() < relaxed["sweeps"].as_u64());
+    }
+    for scheme in ["edge", "area", "edge+imr"] {
+        assert_eq!(run(&folder, &format!("--scheme {scheme}")).0["corrections"], 0);
+        let line = format!("in out --engine cpu --scheme {scheme} --method multilevel");
+        folder.line(&line).refused(&["method", "multilevel", "correction"]);
+    }
+    let text = folder.line("in out --engine cpu").clean().out;
+    assert_holds(&text, &["converged after ", " corrected from coarser levels)"]);
 }
 
 #[test]

@@ -31,6 +31,7 @@ fn report_holds_the_documented_keys() {
                 "mesh",
                 "scheme",
                 "sweeps",
+                "corrections",
                 "best_sweep",
                 "stop",
                 "returned",

@@ -3,14 +3,15 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, Derivatives, Mesh, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
+    Backend, Derivatives, Mesh, Method, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
 };
 
 use crate::app::{App, bad_plate};
 use crate::support::{lattice, perturb_random};
 
 fn options(scheme: &str) -> Options {
-    Options { scheme: scheme.parse().unwrap(), ..Options::default() }
+    let method = Method::Sweeps;
+    Options { scheme: scheme.parse().unwrap(), method, ..Options::default() }
 }
 
 /// The best that a run of `sweeps` sweeps makes of a mesh, and the sweep that did.

@@ -9,6 +9,7 @@ mod coloring;
 mod global;
 mod goals;
 mod invariance;
+mod multilevel;
 mod optimum;
 mod requests;
 mod safety;

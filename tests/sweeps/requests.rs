@@ -30,7 +30,8 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
             assert_eq!(history.last(), Some(&f));
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
             let after = with_points(mesh, &outcome.points);
-            assert!((smoother.quality(&after.points).f(base) / best - 1.0).abs() < 1e-9);
+            // Along a correction the device evaluates f in single precision.
+            assert!((smoother.quality(&after.points).f(base) / best - 1.0).abs() < 1e-8);
             assert!(support::is_ccw(&after));
         }
     }

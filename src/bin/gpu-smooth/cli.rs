@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use gpu_smooth::{Derivatives, Desired, Goal, Options, Scheme, Sharpness};
+use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness};
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is IN but for the coordinates of vertices that moved.
@@ -89,9 +89,10 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
-    /// Over-relaxed steps, or the paper's plain ones (the same as --omega 1)
-    #[arg(long, value_enum, default_value = "relaxed", help_heading = "Method")]
-    pub(crate) method: Method,
+    /// Sweeps corrected from coarser levels of the mesh (imr, ar and rms), over-relaxed sweeps, or the paper's
+    /// plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
+    #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
+    pub(crate) method: MethodChoice,
     /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
     /// metrics alternate]
     #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega, allow_negative_numbers = true)]
@@ -129,7 +130,9 @@ pub(crate) enum EngineChoice {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Method {
+pub(crate) enum MethodChoice {
+    Auto,
+    Multilevel,
     Relaxed,
     Paper,
 }
@@ -178,8 +181,10 @@ fn one_mesh_only(error: clap::Error) -> clap::Error {
 impl SmoothArgs {
     /// An option given along with another that settles the same.
     fn contradiction(&self) -> Option<(&str, &str)> {
-        if self.method == Method::Paper && self.omega.is_some() {
+        if self.method == MethodChoice::Paper && self.omega.is_some() {
             Some(("--method paper", "--omega"))
+        } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
+            Some(("--method multilevel", "--omega"))
         } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
             Some(("--engine cpu", "--adapter"))
         } else {
@@ -198,9 +203,14 @@ impl SmoothArgs {
                 fraction: self.fraction.unwrap_or(0.95),
                 desired: self.desired.unwrap_or(Desired::Auto),
             }),
+            method: match self.method {
+                MethodChoice::Auto => Method::Auto,
+                MethodChoice::Multilevel => Method::Multilevel,
+                MethodChoice::Relaxed | MethodChoice::Paper => Method::Sweeps,
+            },
             omega: match self.method {
-                Method::Paper => Some(1.0),
-                Method::Relaxed => self.omega,
+                MethodChoice::Paper => Some(1.0),
+                _ => self.omega,
             },
             inner: self.inner,
             derivatives: match self.derivatives {

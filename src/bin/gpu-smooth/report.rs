@@ -13,6 +13,8 @@ pub(crate) struct Report {
     pub(crate) mesh: MeshReport,
     pub(crate) scheme: String,
     pub(crate) sweeps: u32,
+    /// Corrections from coarser levels, each after a sweep.
+    pub(crate) corrections: u32,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
     /// reached, converged, stalled or max-sweeps.
@@ -164,6 +166,10 @@ impl Report {
         let sweeps = match self.sweeps {
             1 => "1 sweep".to_owned(),
             n => format!("{n} sweeps"),
+        };
+        let sweeps = match self.corrections {
+            0 => sweeps,
+            n => format!("{sweeps} ({n} corrected from coarser levels)"),
         };
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {

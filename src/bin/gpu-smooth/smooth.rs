@@ -63,6 +63,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             mesh: mesh_report(&file, mesh, &smoother),
             scheme: args.scheme.to_string(),
             sweeps: outcome.sweeps,
+            corrections: outcome.corrections,
             best_sweep: outcome.best_sweep,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),

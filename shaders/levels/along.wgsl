@@ -1,0 +1,57 @@
+// The objective here and at a times the correction x, the number of triangles that are broken there,
+// and the slope, from the gradient in right: each invocation leaves four partial sums as pairs of floats, which
+// total.wgsl adds up.
+
+fn moved(v: u32) -> vec2<f32> {
+    if v >= op.free {
+        return vec2(0.0);
+    }
+    return op.a * vectors[op.x + v];
+}
+
+// Whether a triangle is inverted or flat, or breaks the shape guard and is worse than it was.
+fn is_broken(here: Corner, there: Corner) -> bool {
+    if !(doubled_area(there) > 0.0) {
+        return true;
+    }
+    if !GUARDED {
+        return false;
+    }
+    return inverse_mean_ratio(there) > max(SHAPE_GUARD, inverse_mean_ratio(here));
+}
+
+fn added(sum: vec2<f32>, value: f32) -> vec2<f32> {
+    let s = two_sum(sum.x, value);
+    return vec2(s.x, sum.y + s.y);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn along(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let stride = groups.x * WORKGROUP;
+    var sums: array<vec2<f32>, 4>;
+    for (var t = id.x; t < params.triangles; t += stride) {
+        let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+        let p = positions[corners.x];
+        let a = edge(p, positions[corners.y]);
+        let b = edge(p, positions[corners.z]);
+        let d = moved(corners.x);
+        let here = Corner(a, b, params.mean_area);
+        let there =
+            Corner(a + (moved(corners.y) - d), b + (moved(corners.z) - d), params.mean_area);
+        sums[0] = added(sums[0], metric_excess(here));
+        if is_broken(here, there) {
+            sums[2].x += 1.0;
+        } else {
+            sums[1] = added(sums[1], metric_excess(there));
+        }
+    }
+    for (var v = id.x; v < op.free; v += stride) {
+        sums[3] = added(sums[3], dot(vectors[op.right + v], vectors[op.x + v]));
+    }
+    for (var i = 0u; i < 4u; i++) {
+        vectors[op.out + i * stride + id.x] = sums[i];
+    }
+}

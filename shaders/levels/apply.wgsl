@@ -1,0 +1,17 @@
+// out = a right + b M x, for a residual, and on the way down and up.
+
+@compute @workgroup_size(WORKGROUP)
+fn apply(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let row = invocation(id, groups);
+    if row >= op.rows {
+        return;
+    }
+    var sum = op.b * row_times_x(row);
+    if op.right != NONE {
+        sum += op.a * vectors[op.right + row];
+    }
+    vectors[op.out + row] = sum;
+}

@@ -1,0 +1,25 @@
+// A step of Chebyshev's iteration on a level: step = a step + b D⁻¹ (right - A x), out = x + step.
+
+@compute @workgroup_size(WORKGROUP)
+fn chebyshev(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let row = invocation(id, groups);
+    if row >= op.rows {
+        return;
+    }
+    var residual = vectors[op.right + row];
+    if op.x != NONE {
+        residual -= row_times_x(row);
+    }
+    var step = op.b * values[op.diagonal + row] * residual;
+    if op.a != 0.0 {
+        step += op.a * vectors[op.step + row];
+    }
+    vectors[op.step + row] = step;
+    if op.x != NONE {
+        step += vectors[op.x + row];
+    }
+    vectors[op.out + row] = step;
+}

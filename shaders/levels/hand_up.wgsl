@@ -1,0 +1,30 @@
+// What the aggregates' solution x is at each free vertex: the aggregate's value, smoothed once.
+
+fn value_at(v: u32) -> vec2<f32> {
+    let aggregate = structure[op.starts + v];
+    if aggregate == NONE {
+        return vec2(0.0);
+    }
+    return vectors[op.x + aggregate];
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn hand_up(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let v = invocation(id, groups);
+    if v >= op.rows {
+        return;
+    }
+    var around = vec2(0.0);
+    let end = ring_start[v + 1u] & ~HELD;
+    for (var i = ring_start[v] & ~HELD; i < end; i++) {
+        let k = ring[i];
+        if k < op.free {
+            around += value_at(k) * edge_weight(v, k);
+        }
+    }
+    let share = SMOOTHING * values[op.diagonal + v];
+    vectors[op.out + v] = value_at(v) * (1.0 - SMOOTHING) + around * share;
+}

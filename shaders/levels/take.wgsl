@@ -1,0 +1,13 @@
+// Moves each free vertex a times along the correction x.
+
+@compute @workgroup_size(WORKGROUP)
+fn take(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let v = invocation(id, groups);
+    if v >= op.rows {
+        return;
+    }
+    positions[v] = advanced(positions[v], op.a * vectors[op.x + v]);
+}

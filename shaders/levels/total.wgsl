@@ -1,0 +1,24 @@
+// Adds up the four rows of partial sums that along.wgsl left. One workgroup.
+
+var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
+
+@compute @workgroup_size(FINISH_WORKGROUP)
+fn total(@builtin(local_invocation_index) local: u32) {
+    for (var i = 0u; i < 4u; i++) {
+        var sum = vec2(0.0);
+        for (var k = local; k < op.rows; k += FINISH_WORKGROUP) {
+            sum = pair_add(sum, vectors[op.x + i * op.rows + k]);
+        }
+        totals[local] = sum;
+        for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
+            workgroupBarrier();
+            if local < half {
+                totals[local] = pair_add(totals[local], totals[local + half]);
+            }
+        }
+        if local == 0u {
+            vectors[op.out + i] = totals[0];
+        }
+        workgroupBarrier();
+    }
+}

@@ -1,0 +1,46 @@
+// A free vertex and the triangles around it.
+
+// A patch, its edges in units near their own length so that nothing overflows or vanishes.
+struct Patch {
+    start: u32,
+    end: u32,
+    at: vec4<f32>,
+    unit: f32,
+    mean_area: f32,
+}
+
+fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
+    return edge(p.at, positions[ring[i]]) * p.unit;
+}
+
+// A power of two that brings the length of an edge near one.
+fn unit_of(e: vec2<f32>) -> f32 {
+    let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
+    return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
+}
+
+fn inverse_mean_ratio(t: Corner) -> f32 {
+    return 0.28867513459 * squared_length_sum(t) / doubled_area(t);
+}
+
+fn patch_of(vertex: u32) -> Patch {
+    var p: Patch;
+    p.start = ring_start[vertex] & ~HELD;
+    p.end = ring_start[vertex + 1u] & ~HELD;
+    p.at = positions[vertex];
+    p.unit = unit_of(edge(p.at, positions[ring[p.start]]));
+    p.mean_area = params.mean_area * p.unit * p.unit;
+    return p;
+}
+
+// The least distance of the vertex from the line through a ring edge.
+fn least_height(p: Patch) -> f32 {
+    var least = 3.0e38;
+    var a = ring_edge(p, p.end - 1u);
+    for (var i = p.start; i < p.end; i++) {
+        let b = ring_edge(p, i);
+        least = min(least, cross2(a, b) / length(b - a));
+        a = b;
+    }
+    return least;
+}

@@ -1,0 +1,192 @@
+//! Corrections from coarser levels, on the CPU.
+
+use glam::Vec2;
+use rayon::prelude::*;
+
+use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
+use crate::problem::Problem;
+
+/// Rows that are not worth splitting among threads.
+const GRAIN: usize = 512;
+
+/// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
+/// descent.
+pub(super) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
+    let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
+    let start = problem.ring_start();
+    let ring = |v: usize| {
+        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
+        ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
+    };
+    let diagonal = hierarchy.inverse_diagonal();
+    let scaled = rows(gradient.len(), |v| gradient[v] * diagonal[v]);
+    let smoothed = |v: usize| {
+        let around: Vec2 = ring(v).map(|k| scaled[k] * hierarchy.weight(v, k)).sum();
+        gradient[v] * (1.0 - SMOOTHING) + around * SMOOTHING
+    };
+    let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
+    let restricted = rows(first.operator.rows(), |aggregate| {
+        let members = &members[starts[aggregate] as usize..starts[aggregate + 1] as usize];
+        -members.iter().map(|&v| smoothed(v as usize)).sum::<Vec2>()
+    });
+    let coarse = solve(hierarchy.levels(), &restricted);
+    let at = |v: usize| match hierarchy.aggregate_of()[v] {
+        NONE => Vec2::ZERO,
+        aggregate => coarse[aggregate as usize],
+    };
+    rows(gradient.len(), |v| {
+        let around: Vec2 = ring(v).map(|k| at(k) * hierarchy.weight(v, k)).sum();
+        at(v) * (1.0 - SMOOTHING) + around * (SMOOTHING * diagonal[v])
+    })
+}
+
+/// One V-cycle over the levels, from zero.
+fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
+    let Some((level, below)) = levels.split_first() else { return Vec::new() };
+    let n = right.len();
+    match &level.coarser {
+        Coarser::Direct(inverse) => {
+            let row = |i: usize| inverse[i * n..(i + 1) * n].iter().zip(right);
+            rows(n, |i| row(i).map(|(&a, &b)| b * a).sum())
+        }
+        Coarser::Nothing => smooth(level, vec![Vec2::ZERO; n], right),
+        Coarser::Level { prolongation, restriction } => {
+            let mut x = smooth(level, vec![Vec2::ZERO; n], right);
+            let residual = residual(level, &x, right);
+            let restricted = rows(restriction.rows(), |i| times(restriction, i, &residual));
+            let coarse = solve(below, &restricted);
+            x.par_iter_mut()
+                .with_min_len(GRAIN)
+                .enumerate()
+                .for_each(|(i, x)| *x += times(prolongation, i, &coarse));
+            smooth(level, x, right)
+        }
+    }
+}
+
+fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
+    rows(right.len(), |i| right[i] - times(&level.operator, i, x))
+}
+
+/// Two steps of Chebyshev's iteration.
+fn smooth(level: &Level, mut x: Vec<Vec2>, right: &[Vec2]) -> Vec<Vec2> {
+    let [first, again, now] = CHEBYSHEV;
+    let add = |x: &mut [Vec2], d: &[Vec2]| {
+        x.par_iter_mut().with_min_len(GRAIN).zip(d).for_each(|(x, &d)| *x += d);
+    };
+    let scale = &level.inverse_diagonal;
+    let r = residual(level, &x, right);
+    let d = rows(x.len(), |i| r[i] * (first * scale[i]));
+    add(&mut x, &d);
+    let r = residual(level, &x, right);
+    let d = rows(x.len(), |i| d[i] * again + r[i] * (now * scale[i]));
+    add(&mut x, &d);
+    x
+}
+
+fn times(matrix: &Sparse, row: usize, x: &[Vec2]) -> Vec2 {
+    matrix.row(row).map(|(column, value)| x[column] * value).sum()
+}
+
+fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync + Send) -> Vec<Vec2> {
+    (0..count).into_par_iter().with_min_len(GRAIN).map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::metric::Metric;
+    use crate::prepare::prepare;
+
+    /// A square of right triangles, of two sizes, large enough for three coarse levels.
+    fn square() -> Problem {
+        let side = 81u32;
+        let at = |i: u32| f64::from(i) * if i < 40 { 1.0 } else { 1.5 };
+        let points = (0..side * side).map(|k| [at(k % side), f64::from(k / side)]).collect();
+        let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
+        let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
+        let mesh = Mesh { points, triangles: triangles.collect(), fixed: Vec::new() };
+        prepare(&mesh).unwrap().1
+    }
+
+    fn hierarchy(problem: &Problem) -> Hierarchy {
+        let stiffness = Metric::Imr.properties().stiffness.unwrap();
+        Hierarchy::new(problem, problem.positions(), stiffness)
+    }
+
+    /// Something that looks like noise.
+    fn noise(count: usize, seed: f32) -> Vec<Vec2> {
+        (0..count)
+            .map(|k| Vec2::new((k as f32 * seed).sin(), (k as f32 * seed * 1.7).cos()))
+            .collect()
+    }
+
+    fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| f64::from(a.dot(*b))).sum()
+    }
+
+    #[test]
+    fn there_are_levels() {
+        let problem = square();
+        let rows: Vec<usize> =
+            hierarchy(&problem).levels().iter().map(|level| level.operator.rows()).collect();
+        assert!(rows.len() >= 3, "{rows:?}");
+        assert!(rows[0] < problem.free_count() / 4, "{rows:?}");
+        assert!(rows.windows(2).all(|pair| pair[1] < pair[0] / 2), "{rows:?}");
+    }
+
+    #[test]
+    fn a_correction_is_symmetric_and_descends() {
+        let problem = square();
+        let hierarchy = hierarchy(&problem);
+        for seed in [0.37, 1.1, 2.9] {
+            let (a, b) =
+                (noise(problem.free_count(), seed), noise(problem.free_count(), seed + 0.2));
+            let (to_a, to_b) =
+                (correction(&hierarchy, &problem, &a), correction(&hierarchy, &problem, &b));
+            assert!(dot(&a, &to_a) < 0.0 && dot(&b, &to_b) < 0.0);
+            let (across, back) = (dot(&a, &to_b), dot(&b, &to_a));
+            let scale = (dot(&a, &to_a) * dot(&b, &to_b)).sqrt();
+            assert!((across - back).abs() < 1e-5 * scale, "{across} and {back} of {scale}");
+        }
+    }
+
+    #[test]
+    fn smooth_errors_are_corrected_nearly_whole() {
+        // The Laplacian of a wave over the whole square, which sweeps alone would take thousands for.
+        let problem = square();
+        let hierarchy = hierarchy(&problem);
+        let free = problem.free_count();
+        let mean =
+            problem.positions().iter().sum::<glam::DVec2>() / problem.positions().len() as f64;
+        let (low, high) = problem
+            .positions()
+            .iter()
+            .fold((mean, mean), |(low, high), p| (low.min(*p), high.max(*p)));
+        let wave: Vec<Vec2> = problem
+            .positions()
+            .iter()
+            .map(|p| (*p - low) / (high - low))
+            .map(|p| {
+                Vec2::splat(
+                    ((p.x * std::f64::consts::PI).sin() * (p.y * std::f64::consts::PI).sin())
+                        as f32,
+                )
+            })
+            .collect();
+        let start = problem.ring_start();
+        let gradient = rows(free, |v| {
+            let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
+            let part = |&k: &u32| (wave[v] - wave[k as usize]) * hierarchy.weight(v, k as usize);
+            ring.iter().map(part).sum()
+        });
+        let step = correction(&hierarchy, &problem, &gradient);
+        // Along the step, as far as a line search would go.
+        let length = -dot(&step, &wave[..free]) / dot(&step, &step);
+        let left: Vec<Vec2> =
+            wave[..free].iter().zip(&step).map(|(w, s)| *w + *s * length as f32).collect();
+        let share = (dot(&left, &left) / dot(&wave[..free], &wave[..free])).sqrt();
+        assert!(share < 0.1, "{share} of the wave is left");
+    }
+}

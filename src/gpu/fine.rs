@@ -1,0 +1,139 @@
+//! The mesh itself in a multilevel run on a device.
+
+use glam::DVec2;
+
+use super::buffers::MeshBuffers;
+use super::device::{Gpu, GpuError, scoped};
+use super::engine::{moved_positions, objectives_of};
+use super::layout::{Control, HISTORY, unpair};
+use super::levels::Levels;
+use super::readback::{self, Waiting};
+use super::run::Run;
+use crate::engine::Objectives;
+use crate::metric::Metric;
+use crate::multilevel::{FineLevel, Hierarchy, Proposal};
+use crate::plan::{Plan, StopRule};
+use crate::problem::Problem;
+
+/// Positions on a device, and where the last correction leads. The host decides each step, from a few
+/// numbers that it reads back.
+pub(crate) struct GpuFine<'a> {
+    gpu: &'a Gpu,
+    problem: &'a Problem,
+    start: &'a [DVec2],
+    metric: Metric,
+    mesh: MeshBuffers,
+    run: Run,
+    levels: Option<Levels>,
+    waiting: Waiting,
+}
+
+impl<'a> GpuFine<'a> {
+    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order).
+    ///
+    /// # Errors
+    /// As [`GpuEngine::new`](super::GpuEngine::new).
+    pub(crate) fn new(
+        gpu: &'a Gpu,
+        problem: &'a Problem,
+        start: &'a [DVec2],
+        plan: &Plan,
+        waiting: Waiting,
+    ) -> Result<Self, GpuError> {
+        gpu.check()?;
+        let mesh = MeshBuffers::new(gpu, problem, start)?;
+        // The host judges: on the device nothing ever ends.
+        let stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
+        let run = Run::new(gpu, problem, &mesh, Plan { stop, ..plan.clone() }, false)?;
+        let metric = plan.scheme.base();
+        Ok(Self { gpu, problem, start, metric, mesh, run, levels: None, waiting })
+    }
+
+    fn submit(&self, encode: impl FnOnce(&mut wgpu::ComputePass<'_>)) -> Result<(), GpuError> {
+        let label = Some("gpu-smooth multilevel");
+        scoped(&self.gpu.device, || {
+            let mut encoder =
+                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+            encode(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label,
+                timestamp_writes: None,
+            }));
+            self.gpu.queue.submit([encoder.finish()]);
+        })
+    }
+
+    /// The four totals of the objective along the correction.
+    async fn totals(&self, levels: &Levels) -> Result<Proposal, GpuError> {
+        let totals: Vec<[f32; 2]> =
+            readback::read(self.gpu, &levels.vectors, 4, self.waiting).await?;
+        let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
+        let triangles = self.problem.triangles().len() as f64;
+        Ok(Proposal {
+            here: total(0) / triangles,
+            there: (total(2) == 0.0).then(|| total(1) / triangles),
+            slope: total(3) / triangles,
+        })
+    }
+}
+
+impl FineLevel for GpuFine<'_> {
+    async fn objectives(&mut self) -> Result<Objectives, GpuError> {
+        self.submit(|pass| self.run.encode_evaluation(pass))?;
+        let control: Vec<Control> =
+            readback::read(self.gpu, &self.run.control, 1, self.waiting).await?;
+        let last = control
+            .first()
+            .map(|control| control.history[((control.evaluated - 1) % HISTORY) as usize]);
+        Ok(match last {
+            Some(sums) => objectives_of(&self.run.plan, &sums, self.problem),
+            None => Objectives::untracked(),
+        })
+    }
+
+    async fn sweep(&mut self, omega: f64) -> Result<(), GpuError> {
+        self.submit(|pass| self.run.encode_relaxed_sweep(pass, omega))
+    }
+
+    async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        moved_positions(self.gpu, &self.mesh.positions, self.problem, self.start, self.waiting)
+            .await
+    }
+
+    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        self.levels = Some(Levels::new(
+            self.gpu,
+            self.problem,
+            &self.mesh,
+            &self.run.params,
+            self.metric,
+            &hierarchy,
+        )?);
+        Ok(())
+    }
+
+    async fn propose(&mut self, omega: f64, length: f64) -> Result<Proposal, GpuError> {
+        let Some(levels) = &self.levels else {
+            return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
+        };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|pass| {
+            self.run.encode_relaxed_sweep(pass, omega);
+            levels.encode_correction(pass);
+            levels.encode_along(pass);
+        })?;
+        self.totals(levels).await
+    }
+
+    async fn objective_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
+        let Some(levels) = &self.levels else { return Ok(None) };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|pass| levels.encode_along(pass))?;
+        Ok(self.totals(levels).await?.there)
+    }
+
+    async fn take(&mut self, length: f64) -> Result<(), GpuError> {
+        let Some(levels) = &self.levels else { return Ok(()) };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|pass| levels.encode_take(pass))
+    }
+}

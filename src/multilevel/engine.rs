@@ -1,0 +1,240 @@
+//! A multilevel run, wherever the mesh itself is.
+
+use glam::DVec2;
+
+use super::hierarchy::Hierarchy;
+use super::search::Search;
+use crate::engine::Objectives;
+use crate::gpu::GpuError;
+use crate::metric::{Metric, Stiffness};
+use crate::plan::{Plan, Stop, StopRule};
+use crate::problem::Problem;
+
+/// Corrections begin when a sweep alone takes less than this share off what f has above its ideal
+/// value: before, a few bad triangles would hold every correction back.
+const SWEEPS_PAY: f64 = 0.1;
+/// And after this many sweeps at the latest.
+const MOST_SWEEPS_BEFORE: usize = 10;
+/// Over-relaxation of sweeps before the corrections, but for the first, and of those between them.
+/// Measured from strongly perturbed and smoothly distorted starts of 2,000 to a million vertices.
+const OMEGA_BEFORE: f64 = 1.5;
+const OMEGA_BETWEEN: f64 = 1.3;
+/// Every over-relaxation a run uses beside 1 and the metric's own.
+pub(crate) const OMEGAS: [f64; 2] = [OMEGA_BEFORE, OMEGA_BETWEEN];
+/// The hierarchy is built anew after this many corrections, once, if meanwhile f has lost more than the share
+/// below of what it had above its ideal: then sizes of elements have changed.
+const REBUILD_AFTER: u32 = 2;
+const REBUILD_IF: f64 = 0.15;
+/// A correction taken at a shorter length than this helps no more than one refused,
+const SHORT: f64 = 0.05;
+/// and after so many of them in a row the run goes on without.
+const MOST_REFUSED: u32 = 2;
+
+/// A window no history fills: the run is then not judged by its decay.
+const NO_ESTIMATE: usize = 1 << 30;
+
+/// The mesh itself: what a multilevel run asks of the place where it is.
+///
+/// Objectives are mean excesses: f less the metric's ideal value squared.
+pub(crate) trait FineLevel {
+    /// The objectives now, of all tracked metrics.
+    async fn objectives(&mut self) -> Result<Objectives, GpuError>;
+
+    /// One sweep.
+    async fn sweep(&mut self, omega: f64) -> Result<(), GpuError>;
+
+    /// Normalized positions of all vertices.
+    async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
+
+    /// Takes the levels below.
+    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
+
+    /// One sweep, then the correction from the levels below, tried at `length`.
+    async fn propose(&mut self, omega: f64, length: f64) -> Result<Proposal, GpuError>;
+
+    /// The objective with all free vertices moved `length` times along the correction; `None` if a
+    /// triangle is inverted there.
+    async fn objective_along(&mut self, length: f64) -> Result<Option<f64>, GpuError>;
+
+    /// Moves them there.
+    async fn take(&mut self, length: f64) -> Result<(), GpuError>;
+}
+
+/// A correction, before it is taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proposal {
+    /// The objective without it.
+    pub(crate) here: f64,
+    /// Its derivative along the correction.
+    pub(crate) slope: f64,
+    /// The objective at the length asked for; `None` if a triangle is inverted there.
+    pub(crate) there: Option<f64>,
+}
+
+/// A run of sweeps with corrections from coarser levels.
+pub(crate) struct MultilevelEngine<'a, F> {
+    problem: &'a Problem,
+    fine: F,
+    metric: Metric,
+    stiffness: Stiffness,
+    rule: StopRule,
+    track_all: bool,
+    /// Over-relaxation if corrections come to nothing.
+    omega: f64,
+    phase: Phase,
+    history: Vec<f64>,
+    corrections: u32,
+    stop: Option<Stop>,
+}
+
+#[derive(Clone, Copy)]
+enum Phase {
+    /// Sweeps alone do most.
+    Before,
+    /// Each sweep is followed by a correction.
+    Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
+    /// Sweeps alone, as no correction helps.
+    Without { since: usize },
+}
+
+impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
+    /// Starts a run on `fine`, which has the problem's mesh. Of the plan, the base metric and the stop rule
+    /// count; that metric has a stiffness.
+    pub(crate) fn new(problem: &'a Problem, fine: F, plan: &Plan) -> Self {
+        let metric = plan.scheme.base();
+        Self {
+            problem,
+            fine,
+            metric,
+            stiffness: metric.properties().stiffness.unwrap_or(Stiffness::Uniform(1.0)),
+            rule: plan.stop,
+            track_all: plan.track_all,
+            omega: metric.properties().omega,
+            phase: Phase::Before,
+            history: Vec::new(),
+            corrections: 0,
+            stop: None,
+        }
+    }
+
+    /// As [`Engine::advance`](crate::Engine::advance).
+    pub(crate) async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
+        let mut log = Vec::new();
+        if self.history.is_empty() {
+            let start = self.fine.objectives().await?;
+            self.record(start, &mut log);
+        }
+        for _ in 0..sweeps {
+            if self.stop.is_some() {
+                break;
+            }
+            let objectives = match self.phase {
+                Phase::Before => self.sweep_before().await?,
+                Phase::Correcting { since, length, proposed, refused } => {
+                    self.sweep_and_correct(since, length, proposed, refused).await?
+                }
+                Phase::Without { .. } => {
+                    self.fine.sweep(self.omega).await?;
+                    self.fine.objectives().await?
+                }
+            };
+            self.record(objectives, &mut log);
+        }
+        Ok(log)
+    }
+
+    /// Why the run has ended, if it has.
+    pub(crate) fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    /// Corrections taken so far.
+    pub(crate) fn corrections(&self) -> u32 {
+        self.corrections
+    }
+
+    /// As [`Engine::best_positions`](crate::Engine::best_positions): no step raises the objective.
+    pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        self.fine.positions().await
+    }
+
+    async fn sweep_before(&mut self) -> Result<Objectives, GpuError> {
+        let omega = if self.history.len() == 1 { 1.0 } else { OMEGA_BEFORE };
+        self.fine.sweep(omega).await?;
+        let objectives = self.fine.objectives().await?;
+        let last = self.excess(self.history.len() - 1);
+        let now = objectives.of(self.metric).unwrap_or(f64::NAN) - self.metric.ideal_squared();
+        if last - now < SWEEPS_PAY * last || self.history.len() >= MOST_SWEEPS_BEFORE {
+            let since = self.history.len();
+            self.phase = Phase::Correcting { since, length: 1.0, proposed: 0, refused: 0 };
+        }
+        Ok(objectives)
+    }
+
+    async fn sweep_and_correct(
+        &mut self,
+        since: usize,
+        last_length: f64,
+        proposed: u32,
+        refused: u32,
+    ) -> Result<Objectives, GpuError> {
+        let built = self.excess(since);
+        let lost = built - self.excess(self.history.len() - 1);
+        if proposed == 0 || proposed == REBUILD_AFTER && lost > REBUILD_IF * built {
+            let positions = self.fine.positions().await?;
+            let hierarchy = Hierarchy::new(self.problem, &positions, self.stiffness);
+            self.fine.set_hierarchy(hierarchy)?;
+        }
+        let mut length = Search::first_length(last_length);
+        let Proposal { here, slope, there } = self.fine.propose(OMEGA_BETWEEN, length).await?;
+        let mut search = Search::new(here, slope);
+        if slope < 0.0 {
+            let mut next = search.tried(length, there);
+            while let Some(another) = next {
+                length = another;
+                next = search.tried(length, self.fine.objective_along(length).await?);
+            }
+        }
+        let (excess, length, refused) = match search.best() {
+            Some((length, there)) => {
+                self.fine.take(length).await?;
+                self.corrections += 1;
+                (there, length, if length < SHORT { refused + 1 } else { 0 })
+            }
+            None => (here, last_length, refused + 1),
+        };
+        self.phase = match refused {
+            MOST_REFUSED => Phase::Without { since: self.history.len() },
+            _ => Phase::Correcting { since, length, proposed: proposed + 1, refused },
+        };
+        if self.track_all {
+            return self.fine.objectives().await;
+        }
+        let mut objectives = Objectives::untracked();
+        objectives.set(self.metric, self.metric.ideal_squared() + excess);
+        Ok(objectives)
+    }
+
+    /// The base objective above its ideal value.
+    fn excess(&self, evaluation: usize) -> f64 {
+        self.history[evaluation] - self.metric.ideal_squared()
+    }
+
+    fn record(&mut self, objectives: Objectives, log: &mut Vec<Objectives>) {
+        self.history.push(objectives.of(self.metric).unwrap_or(f64::NAN));
+        log.push(objectives);
+        // The decay is extrapolated from what the present phase has done alone. Corrected sweeps leave no slow
+        // mode behind that only a longer window would see.
+        let (since, window) = match self.phase {
+            Phase::Before => (0, NO_ESTIMATE),
+            // A step that failed gains little, and says nothing on what is left.
+            Phase::Correcting { since, refused: 1.., .. } => (since, NO_ESTIMATE),
+            Phase::Correcting { since, .. } => (since, 1),
+            Phase::Without { since } => (since, StopRule::window(&self.metric.into()) as usize),
+        };
+        let history = &self.history[since..];
+        let rule =
+            StopRule { max_sweeps: self.rule.max_sweeps.saturating_sub(since as u32), ..self.rule };
+        self.stop = rule.judge(history, history.len() - 1, window);
+    }
+}

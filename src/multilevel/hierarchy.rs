@@ -1,0 +1,248 @@
+//! The levels of a mesh: aggregates, and the graph Laplacians on them.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::aggregate::{Aggregates, NONE};
+use super::dense;
+use super::sparse::Sparse;
+use crate::metric::Stiffness;
+use crate::problem::Problem;
+
+/// Unknowns up to which a level is solved directly.
+const DIRECT: usize = 96;
+
+/// Share of a Jacobi step that smooths the prolongation.
+pub(crate) const SMOOTHING: f32 = 0.9;
+
+/// Two steps of Chebyshev's iteration for D⁻¹A over the upper three quarters of its spectrum, which is
+/// taken to end at 1.8: the factor of D⁻¹r in the first step d, then of d and of D⁻¹r in the second.
+pub(crate) const CHEBYSHEV: [f32; 3] = {
+    let (center, radius) = (0.625 * 1.8, 0.375 * 1.8);
+    let (first, second) = (radius / center, 1.0 / (2.0 * center / radius - radius / center));
+    [1.0 / center, first * second, 2.0 * second / radius]
+};
+
+/// Two unknowns of a coarse level are taken for neighbors if the entry between them is at least this share of the
+/// geometric mean of their diagonals.
+const STRONG: f32 = 0.1;
+
+/// A hierarchy of graph Laplacians that stand in for the Hessian of the objective. Level 0 are the free vertices; of
+/// it only the aggregates and weights are kept, as its matrix follows from the one-rings.
+pub(crate) struct Hierarchy {
+    aggregates: Aggregates,
+    member_start: Vec<u32>,
+    member: Vec<u32>,
+    size: Vec<f32>,
+    inverse_diagonal: Vec<f32>,
+    doubled_stiffness: f32,
+    levels: Vec<Level>,
+}
+
+/// A level below the free vertices.
+pub(crate) struct Level {
+    pub(crate) operator: Sparse,
+    /// The reciprocals of the operator's diagonal.
+    pub(crate) inverse_diagonal: Vec<f32>,
+    pub(crate) coarser: Coarser,
+}
+
+/// How a level goes on below.
+pub(crate) enum Coarser {
+    /// To a level of fewer unknowns.
+    Level { prolongation: Sparse, restriction: Sparse },
+    /// The inverse of the operator, row by row.
+    Direct(Vec<f32>),
+    /// There is nothing left to do.
+    Nothing,
+}
+
+impl Hierarchy {
+    /// Builds the levels for elements of the sizes they have at `positions`.
+    pub(crate) fn new(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Self {
+        let free = problem.free_count();
+        let aggregates =
+            Aggregates::new(free, |v| neighbors(problem, v).filter(move |&k| (k as usize) < free));
+        let (member_start, member) = aggregates.members();
+        let (factor, size) = match stiffness {
+            Stiffness::BySize(factor) => (factor, element_sizes(problem, positions)),
+            Stiffness::Uniform(factor) => (factor, vec![2.0 * problem.mean_area() as f32; free]),
+        };
+        let mut hierarchy = Self {
+            aggregates,
+            member_start,
+            member,
+            size,
+            inverse_diagonal: Vec::new(),
+            doubled_stiffness: 2.0 * factor as f32,
+            levels: Vec::new(),
+        };
+        hierarchy.inverse_diagonal = (0..free)
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|v| {
+                1.0 / neighbors(problem, v).map(|k| hierarchy.weight(v, k as usize)).sum::<f32>()
+            })
+            .collect();
+        hierarchy.levels = levels(hierarchy.first_coarse_operator(problem));
+        hierarchy
+    }
+
+    /// Galerkin's operator on the aggregates. The prolongation to the vertices is not kept: it follows from
+    /// the aggregates and the one-rings.
+    fn first_coarse_operator(&self, problem: &Problem) -> Sparse {
+        let free = problem.free_count();
+        let of = &self.aggregates.of;
+        let prolongation = Sparse::from_rows(free, self.aggregates.count, |v, sum| {
+            if of[v] != NONE {
+                sum.add(of[v], 1.0 - SMOOTHING);
+            }
+            let share = SMOOTHING * self.inverse_diagonal[v];
+            for k in
+                neighbors(problem, v).map(|k| k as usize).filter(|&k| k < free && of[k] != NONE)
+            {
+                sum.add(of[k], share * self.weight(v, k));
+            }
+        });
+        let restriction = prolongation.transposed(self.aggregates.count);
+        Sparse::from_rows(self.aggregates.count, self.aggregates.count, |row, sum| {
+            for (v, left) in restriction.row(row) {
+                for (column, right) in prolongation.row(v) {
+                    sum.add(column as u32, left / self.inverse_diagonal[v] * right);
+                }
+                for k in neighbors(problem, v).map(|k| k as usize).filter(|&k| k < free) {
+                    let left = -left * self.weight(v, k);
+                    for (column, right) in prolongation.row(k) {
+                        sum.add(column as u32, left * right);
+                    }
+                }
+            }
+        })
+    }
+
+    /// Weight of the edge from a free vertex to a neighbor.
+    #[inline]
+    pub(crate) fn weight(&self, v: usize, k: usize) -> f32 {
+        let near = self.size[v];
+        // Of fixed vertices no size is kept: they take that of whoever asks.
+        let far = self.size.get(k).copied().unwrap_or(near);
+        self.doubled_stiffness / (near + far)
+    }
+
+    /// The size of elements at each free vertex, and twice the stiffness: a weight is the latter over the
+    /// sum of two sizes.
+    pub(crate) fn sizes(&self) -> (&[f32], f32) {
+        (&self.size, self.doubled_stiffness)
+    }
+
+    /// The aggregate of each free vertex, [`NONE`] if it has no free neighbor.
+    pub(crate) fn aggregate_of(&self) -> &[u32] {
+        &self.aggregates.of
+    }
+
+    /// Where the members of each aggregate start in [`Self::members`], and one past the last.
+    pub(crate) fn member_starts(&self) -> &[u32] {
+        &self.member_start
+    }
+
+    /// The free vertices in aggregates, aggregate by aggregate.
+    pub(crate) fn members(&self) -> &[u32] {
+        &self.member
+    }
+
+    /// The reciprocal of each free vertex's diagonal entry.
+    pub(crate) fn inverse_diagonal(&self) -> &[f32] {
+        &self.inverse_diagonal
+    }
+
+    /// The levels below the free vertices, finest first.
+    pub(crate) fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+}
+
+/// The levels from an operator down.
+fn levels(mut operator: Sparse) -> Vec<Level> {
+    let mut levels = Vec::new();
+    loop {
+        let n = operator.rows();
+        let diagonal =
+            |i: usize| operator.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
+        let inverse_diagonal: Vec<f32> = (0..n).map(|i| 1.0 / diagonal(i)).collect();
+        if n <= DIRECT {
+            let coarser = Coarser::Direct(dense::inverse(&operator));
+            levels.push(Level { operator, inverse_diagonal, coarser });
+            return levels;
+        }
+        let scale = &inverse_diagonal;
+        let neighbors = |i: usize| {
+            let strong = move |&(k, value): &(usize, f32)| {
+                k != i && value * value * scale[i] * scale[k] >= STRONG * STRONG
+            };
+            operator.row(i).filter(strong).map(|(k, _)| k as u32)
+        };
+        let groups = Aggregates::new(n, neighbors);
+        if groups.count == 0 {
+            levels.push(Level { operator, inverse_diagonal, coarser: Coarser::Nothing });
+            return levels;
+        }
+        let prolongation = Sparse::from_rows(n, groups.count, |i, sum| {
+            for (k, value) in operator.row(i).filter(|&(k, _)| groups.of[k] != NONE) {
+                let own = if k == i { 1.0 } else { 0.0 };
+                sum.add(groups.of[k], own - SMOOTHING * inverse_diagonal[i] * value);
+            }
+        });
+        let restriction = prolongation.transposed(groups.count);
+        let coarse = Sparse::from_rows(groups.count, groups.count, |row, sum| {
+            for (i, left) in restriction.row(row) {
+                for (k, middle) in operator.row(i) {
+                    for (column, right) in prolongation.row(k) {
+                        sum.add(column as u32, left * middle * right);
+                    }
+                }
+            }
+        });
+        levels.push(Level {
+            operator,
+            inverse_diagonal,
+            coarser: Coarser::Level { prolongation, restriction },
+        });
+        operator = coarse;
+    }
+}
+
+/// All neighbors of a free vertex.
+fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
+    let start = problem.ring_start();
+    problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
+}
+
+/// The mean doubled area of the triangles at each free vertex, averaged once with its neighbors.
+fn element_sizes(problem: &Problem, positions: &[DVec2]) -> Vec<f32> {
+    let free = problem.free_count();
+    let own: Vec<f32> = (0..free)
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|v| {
+            let start = problem.ring_start();
+            let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
+            let edge = |k: u32| positions[k as usize] - positions[v];
+            let next = ring.iter().skip(1).chain(ring.first());
+            let doubled: f64 =
+                ring.iter().zip(next).map(|(&a, &b)| edge(a).perp_dot(edge(b)).abs()).sum();
+            (doubled / ring.len() as f64) as f32
+        })
+        .collect();
+    (0..free)
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|v| {
+            let (mut sum, mut count) = (own[v], 1.0);
+            for size in neighbors(problem, v).filter_map(|k| own.get(k as usize)) {
+                sum += size;
+                count += 1.0;
+            }
+            sum / count
+        })
+        .collect()
+}

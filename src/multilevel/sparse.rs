@@ -1,0 +1,180 @@
+//! Sparse matrices of the coarse levels.
+
+use rayon::prelude::*;
+
+/// A sparse matrix as compressed rows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sparse {
+    start: Vec<u32>,
+    column: Vec<u32>,
+    value: Vec<f32>,
+}
+
+impl Sparse {
+    /// Builds a matrix row by row, in parallel. `fill` adds the entries of a row to the sum it is given.
+    pub(super) fn from_rows(
+        rows: usize,
+        columns: usize,
+        fill: impl Fn(usize, &mut RowSum) + Sync,
+    ) -> Self {
+        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).max(64);
+        let parts: Vec<Sparse> = (0..rows.div_ceil(chunk))
+            .into_par_iter()
+            .map(|part| {
+                let mut sum = RowSum::new(columns);
+                let mut matrix = Sparse::default();
+                for row in part * chunk..rows.min((part + 1) * chunk) {
+                    fill(row, &mut sum);
+                    sum.drain_into(&mut matrix);
+                }
+                matrix
+            })
+            .collect();
+        let mut whole = Sparse { start: Vec::with_capacity(rows + 1), ..Sparse::default() };
+        let entries = parts.iter().map(|part| part.column.len()).sum();
+        whole.column.reserve_exact(entries);
+        whole.value.reserve_exact(entries);
+        whole.start.push(0);
+        for part in parts {
+            let before = whole.column.len() as u32;
+            whole.start.extend(part.start.iter().map(|end| before + end));
+            whole.column.extend_from_slice(&part.column);
+            whole.value.extend_from_slice(&part.value);
+        }
+        whole
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Where each row starts in [`Self::columns`] and [`Self::values`], and one past the last.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.start
+    }
+
+    /// The column of each entry.
+    pub(crate) fn columns(&self) -> &[u32] {
+        &self.column
+    }
+
+    /// The value of each entry.
+    pub(crate) fn values(&self) -> &[f32] {
+        &self.value
+    }
+
+    /// The entries of a row.
+    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let range = self.start[row] as usize..self.start[row + 1] as usize;
+        let columns = self.column[range.clone()].iter().map(|&c| c as usize);
+        columns.zip(self.value[range].iter().copied())
+    }
+
+    /// The transpose; its rows' entries ascend by column.
+    pub(super) fn transposed(&self, columns: usize) -> Self {
+        let mut start = vec![0u32; columns + 1];
+        for &column in &self.column {
+            start[column as usize + 1] += 1;
+        }
+        for column in 0..columns {
+            start[column + 1] += start[column];
+        }
+        let mut next = start.clone();
+        let mut transposed = Sparse {
+            start,
+            column: vec![0; self.column.len()],
+            value: vec![0.0; self.value.len()],
+        };
+        for row in 0..self.rows() {
+            for (column, value) in self.row(row) {
+                let at = next[column] as usize;
+                transposed.column[at] = row as u32;
+                transposed.value[at] = value;
+                next[column] += 1;
+            }
+        }
+        transposed
+    }
+}
+
+/// The entries of one row while they are being summed up.
+pub(super) struct RowSum {
+    /// Where each column stands in `entries`, if it does.
+    place: Vec<u32>,
+    entries: Vec<(u32, f32)>,
+}
+
+const NOWHERE: u32 = u32::MAX;
+
+impl RowSum {
+    fn new(columns: usize) -> Self {
+        Self { place: vec![NOWHERE; columns], entries: Vec::with_capacity(64) }
+    }
+
+    /// Adds to the entry of a column.
+    #[inline]
+    pub(super) fn add(&mut self, column: u32, value: f32) {
+        let place = &mut self.place[column as usize];
+        if *place == NOWHERE {
+            *place = self.entries.len() as u32;
+            self.entries.push((column, value));
+        } else {
+            self.entries[*place as usize].1 += value;
+        }
+    }
+
+    fn drain_into(&mut self, matrix: &mut Sparse) {
+        for (column, value) in self.entries.drain(..) {
+            self.place[column as usize] = NOWHERE;
+            matrix.column.push(column);
+            matrix.value.push(value);
+        }
+        matrix.start.push(matrix.column.len() as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dense(matrix: &Sparse, columns: usize) -> Vec<Vec<f32>> {
+        let mut dense = vec![vec![0.0; columns]; matrix.rows()];
+        for (row, values) in dense.iter_mut().enumerate() {
+            matrix.row(row).for_each(|(column, value)| values[column] += value);
+        }
+        dense
+    }
+
+    /// A thousand rows, enough for several chunks, with entries added in two parts.
+    fn sample() -> Sparse {
+        Sparse::from_rows(1000, 70, |row, sum| {
+            for k in 0..row % 5 {
+                sum.add(((row * 7 + k * 13) % 70) as u32, 1.0 + k as f32);
+                sum.add((row * 7 % 70) as u32, row as f32);
+            }
+        })
+    }
+
+    #[test]
+    fn entries_of_a_column_are_added_up() {
+        let matrix = sample();
+        let values = dense(&matrix, 70);
+        assert_eq!((matrix.rows(), matrix.row(10).count()), (1000, 0));
+        // Of row 13: k = 0, 1, 2, the first of them in the column of the second part.
+        assert_eq!(matrix.row(13).count(), 3);
+        assert_eq!(values[13][13 * 7 % 70], 1.0 + 3.0 * 13.0);
+        assert_eq!(values[13][(13 * 7 + 26) % 70], 3.0);
+    }
+
+    #[test]
+    fn the_transpose_swaps_rows_and_columns() {
+        let (matrix, transposed) = (sample(), sample().transposed(70));
+        let (straight, swapped) = (dense(&matrix, 70), dense(&transposed, 1000));
+        for row in 0..1000 {
+            for column in 0..70 {
+                assert_eq!(straight[row][column], swapped[column][row]);
+            }
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Sweeps corrected from coarser levels.
+
+use std::ops::ControlFlow;
+
+use crate::{
+    backends, distorted, global, history, name, perturbed, plate, run, scheme, support, with_points,
+};
+use gpu_smooth::{
+    Backend, Derivatives, Mesh, Method, Metric, Options, Outcome, SmoothError, Smoother, Stop,
+};
+
+fn multilevel(metric: Metric) -> Options {
+    Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
+}
+
+/// The same, but sweeps alone.
+fn sweeps(metric: Metric) -> Options {
+    Options { method: Method::Sweeps, ..multilevel(metric) }
+}
+
+fn last(outcome: &Outcome, metric: Metric) -> f64 {
+    *history(outcome, metric).last().unwrap()
+}
+
+#[test]
+fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
+    // Sweeps alone take 40 to 300 and more with the size.
+    for vertices in [500, 2000, 8000] {
+        let plate = plate(vertices);
+        let meshes =
+            [support::perturb_random(&plate, 1.0, 1), support::distort_smooth(&plate, 0.9)];
+        for mesh in meshes {
+            let smoother = Smoother::new(&mesh).unwrap();
+            let backend = &backends()[0];
+            let long = Options { tolerance: 1e-10, max_sweeps: 3000, ..sweeps(Metric::Imr) };
+            let limit = last(&run(&smoother, &long, backend), Metric::Imr);
+            for backend in backends() {
+                let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
+                let label = format!("{vertices} vertices on the {}", name(backend));
+                assert_eq!(outcome.stop, Stop::Converged, "{label}");
+                assert!(outcome.sweeps <= 14, "{label}: {} sweeps", outcome.sweeps);
+                let left = last(&outcome, Metric::Imr) / limit - 1.0;
+                assert!(left < 1e-6, "{label}: {left:e} left");
+            }
+        }
+    }
+}
+
+#[test]
+fn it_ends_at_the_global_optimum() {
+    let rms = global::rms_optimum(perturbed());
+    let (imr, _) = global::imr_optimum(&rms);
+    for mesh in [perturbed(), distorted()] {
+        let smoother = Smoother::new(mesh).unwrap();
+        for (metric, optimum) in
+            [(Metric::Imr, imr), (Metric::Ar, imr), (Metric::Rms, global::f_rms(&rms))]
+        {
+            for backend in backends() {
+                let options = Options { tolerance: 1e-8, ..multilevel(metric) };
+                let f = last(&run(&smoother, &options, backend), metric);
+                let off = f / optimum - 1.0;
+                assert!(off.abs() < 1e-7, "{metric} on the {}: {off:e}", name(backend));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_step_lowers_the_objective_and_inverts_nothing() {
+    for mesh in [perturbed(), distorted()] {
+        let smoother = Smoother::new(mesh).unwrap();
+        for metric in [Metric::Imr, Metric::Ar, Metric::Rms] {
+            for backend in backends() {
+                let whole = run(&smoother, &multilevel(metric), backend);
+                let f = history(&whole, metric);
+                assert!(f.windows(2).all(|pair| pair[1] < pair[0]), "{f:?}");
+                assert!(whole.corrections > 0 && whole.corrections < whole.sweeps);
+                for max_sweeps in 1..whole.sweeps {
+                    let options = Options { max_sweeps, ..multilevel(metric) };
+                    let outcome = run(&smoother, &options, backend);
+                    assert_eq!(outcome.sweeps, max_sweeps);
+                    assert_eq!(outcome.returned, 0, "left to the certificate");
+                    let after = with_points(mesh, &outcome.points);
+                    assert!(support::is_valid(&after), "{metric} on the {}", name(backend));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn both_engines_take_the_same_steps() {
+    let smoother = Smoother::new(distorted()).unwrap();
+    for metric in [Metric::Imr, Metric::Rms] {
+        let [cpu, gpu] = backends().each_ref().map(|b| run(&smoother, &multilevel(metric), b));
+        assert_eq!((cpu.sweeps, cpu.corrections), (gpu.sweeps, gpu.corrections), "{metric}");
+        for (c, g) in history(&cpu, metric).iter().zip(history(&gpu, metric)) {
+            assert!((g / c - 1.0).abs() < 1e-6, "{metric}: {g} for {c}");
+        }
+    }
+}
+
+#[test]
+fn runs_repeat_bit_for_bit() {
+    let smoother = Smoother::new(perturbed()).unwrap();
+    for backend in backends() {
+        let [first, second] = [(); 2].map(|()| run(&smoother, &multilevel(Metric::Imr), backend));
+        assert_eq!(first.points, second.points, "{}", name(backend));
+    }
+    let with_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(&smoother, &multilevel(Metric::Imr), &Backend::Cpu)).points
+    };
+    assert_eq!(with_threads(1), with_threads(3));
+}
+
+#[test]
+fn tiny_and_scattered_meshes_converge() {
+    // One free vertex has no level below; the pieces share none.
+    let fan = Mesh {
+        points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.3, 0.2]],
+        triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+        fixed: vec![],
+    };
+    let mut pieces = fan.clone();
+    for k in 1..300u32 {
+        let (x, y) = (f64::from(k % 20) * 3.0, f64::from(k / 20) * 3.0);
+        pieces.points.extend(fan.points.iter().map(|p| [p[0] + x, p[1] + y]));
+        pieces.triangles.extend(fan.triangles.iter().map(|t| t.map(|v| v + 5 * k)));
+    }
+    for mesh in [fan, pieces] {
+        let smoother = Smoother::new(&mesh).unwrap();
+        for backend in backends() {
+            let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
+            assert_eq!(outcome.stop, Stop::Converged, "{}", name(backend));
+            for center in outcome.points.chunks(5).zip(mesh.points.chunks(5)) {
+                let middle = [center.1[0][0] + 1.0, center.1[0][1] + 1.0];
+                let off = (0..2).map(|i| (center.0[4][i] - middle[i]).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-3, "{off} on the {}", name(backend));
+            }
+        }
+    }
+}
+
+#[test]
+fn elements_graded_over_seven_decades_converge() {
+    let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.5, 2);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let long = Options { tolerance: 1e-9, max_sweeps: 5000, ..sweeps(Metric::Imr) };
+    let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
+    for backend in backends() {
+        let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
+        let left = last(&outcome, Metric::Imr) / limit - 1.0;
+        assert!(left < 1e-6, "{left:e} left on the {}", name(backend));
+        assert!(support::is_valid(&with_points(&mesh, &outcome.points)));
+    }
+}
+
+#[test]
+fn it_is_the_default_where_it_is_to_be_had() {
+    let alone = |metric: Metric| Options { scheme: metric.into(), ..Options::default() };
+    for metric in [Metric::Imr, Metric::Ar, Metric::Rms] {
+        assert!(alone(metric).is_multilevel());
+    }
+    let imr = alone(Metric::Imr);
+    let others = [
+        alone(Metric::Edge),
+        alone(Metric::Area),
+        Options { scheme: scheme("rms+imr"), ..imr.clone() },
+        Options { omega: Some(1.5), ..imr.clone() },
+        Options { inner: 2, ..imr.clone() },
+        Options { derivatives: Derivatives::FiniteDifference, ..imr.clone() },
+        Options { method: Method::Sweeps, ..imr.clone() },
+        Options::paper(Metric::Imr.into()),
+    ];
+    let smoother = Smoother::new(perturbed()).unwrap();
+    for options in others {
+        assert!(!options.is_multilevel(), "{options:?}");
+        let asked = Options { method: Method::Multilevel, ..options.clone() };
+        let done = smoother.run(&asked, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        match done {
+            Err(SmoothError::Option { option: "method", .. }) => assert!(!asked.is_multilevel()),
+            Ok(outcome) => assert!(asked.is_multilevel() && outcome.corrections > 0),
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+#[test]
+fn history_holds_every_metric_if_asked() {
+    let smoother = Smoother::new(distorted()).unwrap();
+    for backend in backends() {
+        let options = Options { track_all: true, ..multilevel(Metric::Imr) };
+        let outcome = run(&smoother, &options, backend);
+        assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);
+        for objectives in &outcome.history {
+            let (imr, ar) =
+                (objectives.of(Metric::Imr).unwrap(), objectives.of(Metric::Ar).unwrap());
+            assert!((imr / ar - 1.0).abs() < 1e-5);
+            assert!(Metric::ALL.iter().all(|&m| objectives.of(m).is_some()));
+        }
+    }
+}
