@@ -68,6 +68,8 @@
 //! 2³² vertices, and on a GPU no buffer larger than the device binds (128 MiB, the default limit, is
 //! eight million vertices).
 
+mod boundary;
+mod clamp;
 mod coloring;
 mod cpu;
 mod dual;
