@@ -28,8 +28,10 @@ pub enum Backend {
     Gpu(Gpu),
 }
 
-/// Hears how far a run is, and may end it.
-pub type Observer<'o> = dyn FnMut(&Progress) -> ControlFlow<()> + 'o;
+/// Hears how far a run is, and may end it: any `FnMut(&Progress) -> ControlFlow<()>`.
+pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
+
+impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
 /// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -141,7 +143,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         backend: &Backend,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let place = match backend {
             Backend::Cpu => Place::Cpu,
@@ -153,8 +155,8 @@ impl<'a> Smoother<'a> {
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
     /// The future completes only if somebody polls the device meanwhile, as an application does that
-    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as `observe` can, which then returns the best
-    /// state so far.
+    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as
+    /// `observe` can, which then returns the best state so far. The future is `Send` if `observe` is.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -162,7 +164,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         gpu: &Gpu,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         self.run_at(options, Place::Gpu(gpu, Waiting::Await), observe).await
     }
@@ -171,7 +173,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         place: Place<'_>,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
@@ -225,7 +227,7 @@ impl<'a> Smoother<'a> {
         goal: Goal,
         options: &Options,
         place: Place<'_>,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<GoalOutcome, SmoothError> {
         let Goal { fraction, desired } = goal;
         if let Desired::Value(desired) = desired {
@@ -316,7 +318,7 @@ impl Run<'_, '_> {
         &self,
         plan: Plan,
         from: &[DVec2],
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<End, SmoothError> {
         let base = plan.scheme.base();
         let problem = &self.smoother.problem;
