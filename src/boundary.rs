@@ -16,7 +16,7 @@ impl Topology {
 
     /// The boundary as closed loops of vertices, the last joined to the first, with the mesh on the left:
     /// around the outside counter-clockwise, around a hole clockwise, so that the sign of a loop's
-    /// area tells them apart. No loop passes a vertex twice; where parts or holes touch in a vertex, each has its
+    /// area, [`signed_area`], tells them apart. No loop passes a vertex twice; where parts or holes touch in a vertex, each has its
     /// own loop. A loop starts at its least vertex, and loops are in the order of these.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
         let mut edges = self.boundary_edges();
@@ -70,4 +70,15 @@ impl Topology {
         }
         Some(before).filter(|&next| next != from)
     }
+}
+
+/// The area within a loop of vertices: positive if it runs counter-clockwise, negative, as around a hole, if
+/// clockwise. Rounded; a vertex that `points` has not is passed over.
+pub fn signed_area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
+    let mut corners = vertices.iter().filter_map(|&v| points.get(v as usize));
+    let Some(&[x, y]) = corners.next() else { return 0.0 };
+    // Relative to the first: far from the origin the products would cancel.
+    let relative: Vec<[f64; 2]> = corners.map(|p| [p[0] - x, p[1] - y]).collect();
+    relative.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]).sum::<f64>()
+        / 2.0
 }

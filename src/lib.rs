@@ -64,8 +64,8 @@
 //! # }
 //! ```
 //!
-//! What a user drags is best stopped before a triangle gives way: [`Topology::move_clamped`]; what bounds the mesh tells
-//! [`Topology::boundary_loops`]. How long each kernel takes, [`Timestamps`] say. An application that changes
+//! What a user drags is best stopped before a triangle gives way: [`Topology::move_clamped`]; what bounds the mesh,
+//! and where its holes are, [`Topology::boundary_loops`] and [`signed_area`] tell. How long each kernel takes, [`Timestamps`] say. An application that changes
 //! schemes as it runs compiles them ahead by [`Gpu::prepare`].
 //!
 //! `examples/embed` and `examples/moving_boundary` are complete. To have a whole run with its stop rule
@@ -97,6 +97,7 @@ mod smoother;
 mod topology;
 pub mod validity;
 
+pub use boundary::signed_area;
 pub use coloring::{Coloring, UNCOLORED};
 pub use cpu::CpuEngine;
 pub use dual::{Dual, Real};

@@ -2,19 +2,13 @@
 
 mod support;
 
-use gpu_smooth::{Mesh, MeshError, Topology};
+use gpu_smooth::{Mesh, MeshError, Topology, signed_area};
 use support::{Outline, SplitMix64, check};
 
 /// Two round holes in a plate.
 fn plate(vertices: usize) -> Mesh {
     let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 0.9 1 0.4 20\ncircle 2.1 1 0.3 16\n";
     support::triangulate(&Outline::parse(text).unwrap(), vertices).unwrap()
-}
-
-fn doubled_area(mesh: &Mesh, vertices: &[u32]) -> f64 {
-    let next = vertices.iter().cycle().skip(1);
-    let ends = vertices.iter().zip(next).map(|(&v, &w)| [v, w].map(|v| mesh.points[v as usize]));
-    ends.map(|[[px, py], [qx, qy]]| px * qy - py * qx).sum()
 }
 
 /// The edges of loops, against the edges that one triangle has, in the direction it has them.
@@ -52,14 +46,24 @@ fn loops_are_the_outside_and_the_holes() {
     {
         assert_loops_are_the_boundary(&mesh);
         let loops = Topology::new(&mesh).unwrap().boundary_loops();
-        let mut areas: Vec<f64> = loops.iter().map(|l| doubled_area(&mesh, l) / 2.0).collect();
+        let mut areas: Vec<f64> = loops.iter().map(|l| signed_area(&mesh.points, l)).collect();
         areas.sort_by(f64::total_cmp);
         let polygon = |r: f64, n: f64| -0.5 * n * r * r * (std::f64::consts::TAU / n).sin();
         for (found, expected) in areas.iter().zip([polygon(0.4, 20.0), polygon(0.3, 16.0), 6.0]) {
             assert!((found - expected).abs() < 1e-6, "{found} for {expected}");
         }
         assert_eq!(areas.len(), 3);
+        assert!((areas.iter().sum::<f64>() - check::area(&mesh)).abs() < 1e-6);
     }
+}
+
+#[test]
+fn signed_area_by_hand() {
+    let points = [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]];
+    assert_eq!(signed_area(&points, &[0, 1, 2, 3]), 6.0);
+    assert_eq!(signed_area(&points, &[2, 1, 0]), -3.0);
+    assert_eq!(signed_area(&points, &[9, 0, 1, 2, 3]), 6.0);
+    assert_eq!([signed_area(&points, &[]), signed_area(&points, &[0, 1])], [0.0; 2]);
 }
 
 /// A grid of unit squares, but for those at the given places.
@@ -87,7 +91,7 @@ fn loops_that_touch_are_apart() {
         let mesh = without(5, &squares);
         assert_loops_are_the_boundary(&mesh);
         let loops = Topology::new(&mesh).unwrap().boundary_loops();
-        let found = loops.iter().filter(|l| doubled_area(&mesh, l) < 0.0).count();
+        let found = loops.iter().filter(|l| signed_area(&mesh.points, l) < 0.0).count();
         assert_eq!((found, loops.len() - found), (holes, outsides), "{squares:?}: {loops:?}");
     }
 }

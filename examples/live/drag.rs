@@ -1,6 +1,6 @@
 //! What the user can take hold of, and how far it may move in one frame.
 
-use gpu_smooth::{MeshError, Topology};
+use gpu_smooth::{MeshError, Topology, signed_area};
 
 use super::smoothing::rounded;
 
@@ -22,10 +22,7 @@ impl Holes {
         let mut loops = Vec::new();
         for vertices in topology.boundary_loops() {
             // The outside goes around counter-clockwise, a hole clockwise.
-            let ends = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            let ends = ends.map(|(&v, &w)| [points[v as usize], points[w as usize]]);
-            let doubled_area: f64 = ends.map(|[[px, py], [qx, qy]]| px * qy - py * qx).sum();
-            let hole = (doubled_area < 0.0).then_some(loops.len());
+            let hole = (signed_area(points, &vertices) < 0.0).then_some(loops.len());
             vertices.iter().for_each(|&v| of[v as usize] = Some(hole));
             if hole.is_some() {
                 loops.push(vertices);

@@ -13,7 +13,9 @@ pub(crate) mod support;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, wgpu};
+use gpu_smooth::{
+    DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, signed_area, wgpu,
+};
 use wgpu::BufferUsages as Usage;
 use wgpu::util::DeviceExt;
 
@@ -130,13 +132,8 @@ fn plate(vertices: usize) -> Result<Mesh> {
 
 /// The vertices on the edge of the hole: of the boundary's loops, the one that goes around clockwise.
 fn hole(topology: &Topology, points: &[[f64; 2]]) -> Vec<u32> {
-    let doubled_area = |vertices: &Vec<u32>| -> f64 {
-        let next = vertices.iter().cycle().skip(1);
-        let corners =
-            vertices.iter().zip(next).map(|(&v, &w)| [points[v as usize], points[w as usize]]);
-        corners.map(|[[px, py], [qx, qy]]| px * qy - py * qx).sum()
-    };
-    topology.boundary_loops().into_iter().find(|l| doubled_area(l) < 0.0).unwrap_or_default()
+    let mut loops = topology.boundary_loops().into_iter();
+    loops.find(|vertices| signed_area(points, vertices) < 0.0).unwrap_or_default()
 }
 
 fn turned([x, y]: [f64; 2], turns: f64) -> [f64; 2] {
