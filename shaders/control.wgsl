@@ -11,6 +11,7 @@ struct Control {
     best_sum: vec2<f32>,
     padding: vec2<u32>,
     // Sums by evaluation (modulo HISTORY) and slot, each a pair of floats. A slot is a metric, or
-    // INVERTED: the number of triangles that are inverted or flat in single precision.
+    // INVERTED: the number of triangles that are inverted or flat in single precision, or
+    // WORST: the largest imr² - 1, no sum.
     history: array<vec2<f32>, HISTORY_LENGTH>,
 }

@@ -49,22 +49,30 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
+// Of two parts of the triangles: the sum, or the worst, which stands behind what is summed.
+fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
+    if tracked == TRACKED {
+        return max(a, b);
+    }
+    return pair_add(a, b);
+}
+
 @compute @workgroup_size(FINISH_WORKGROUP)
 fn finish(@builtin(local_invocation_index) local: u32) {
     // Nothing returns early here: barriers must be met by all.
     let running = control.done == 0u;
     let evaluation = control.evaluated;
     let partials = params.partials;
-    for (var i = 0u; i < TRACKED; i++) {
+    for (var i = 0u; i <= TRACKED; i++) {
         var sum = vec2(0.0);
         for (var k = local; k < partials; k += FINISH_WORKGROUP) {
-            sum = pair_add(sum, partial_sums[i * partials + k]);
+            sum = joined(i, sum, partial_sums[i * partials + k]);
         }
         totals[local] = sum;
         for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
             workgroupBarrier();
             if local < half {
-                totals[local] = pair_add(totals[local], totals[local + half]);
+                totals[local] = joined(i, totals[local], totals[local + half]);
             }
         }
         if local == 0u && running {

@@ -1,6 +1,6 @@
-// Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted: each invocation strides over the
-// triangles and leaves one pair of floats a metric; finish.wgsl adds those up. No barrier: those
-// are dear on software adapters.
+// Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted, and behind them the
+// worst imr² - 1: each invocation strides over the triangles and leaves one pair of floats each;
+// finish.wgsl puts those together. No barrier: those are dear on software adapters.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective(
@@ -12,17 +12,21 @@ fn objective(
     }
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, TRACKED>;
+    var worst = 0.0;
     for (var t = id.x; t < params.triangles; t += stride) {
         let p = positions[triangles[3u * t]];
         let a = edge(p, positions[triangles[3u * t + 1u]]);
         let b = edge(p, positions[triangles[3u * t + 2u]]);
-        let values = tracked_values(Corner(a, b, params.mean_area));
+        let corner = Corner(a, b, params.mean_area);
+        let values = tracked_values(corner);
         for (var i = 0u; i < TRACKED; i++) {
             let s = two_sum(sums[i].x, values[i]);
             sums[i] = vec2(s.x, sums[i].y + s.y);
         }
+        worst = max(worst, shape_excess(corner, values));
     }
     for (var i = 0u; i < TRACKED; i++) {
         partial_sums[i * stride + id.x] = sums[i];
     }
+    partial_sums[TRACKED * stride + id.x] = vec2(worst, 0.0);
 }

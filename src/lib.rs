@@ -34,30 +34,39 @@
 //!
 //! A [`Gpu`] can be made of the application's own device. A [`DeviceMesh`] then stays there as long as its
 //! triangles do, and [`Sweeps`] are encoded into the application's own command buffers: nothing is
-//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from.
+//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from. What can fail, compiles or
+//! makes a resource is done once; a frame only encodes.
 //!
 //! ```no_run
 //! # use gpu_smooth::*;
 //! # fn draw(_: &mut wgpu::CommandEncoder, _: &wgpu::Buffer) {}
 //! # fn f(
-//! #     (device, queue): (wgpu::Device, wgpu::Queue), mesh: &Mesh, vertices: &wgpu::Buffer
+//! #     (device, queue): (wgpu::Device, wgpu::Queue), mesh: &Mesh, vertices: &wgpu::Buffer,
+//! #     numbers: &wgpu::Buffer
 //! # ) -> Result<(), SmoothError> {
 //! // Once; the device was made with the limits of `Gpu::required_limits`.
 //! let gpu = Gpu::new(device.clone(), queue.clone())?;
 //! let device_mesh = DeviceMesh::new(&gpu, mesh)?;
-//! let mut sweeps = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
 //! let place = VertexBuffer { buffer: vertices, offset: 0, stride: 12 };
+//! let bound = device_mesh.bind_vertices(&place)?;
+//! let mut sweeps = Sweeps::new(&device_mesh, &Options::default())?;
+//! let objective = sweeps.bind_objective(numbers, 0)?;
 //!
 //! // In each frame, for a mesh whose boundary or vertices the application moves.
 //! let mut encoder = device.create_command_encoder(&Default::default());
-//! device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+//! bound.encode_import(&mut encoder);
 //! sweeps.encode(&mut encoder, 5);
-//! device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+//! bound.encode_export(&mut encoder);
+//! objective.encode(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
 //! draw(&mut encoder, vertices);
 //! queue.submit([encoder.finish()]);
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! What a user drags is best stopped before a triangle gives way: [`Topology::move_clamped`]; what bounds the mesh,
+//! and where its holes are, [`Topology::boundary_loops`] and [`signed_area`] tell. How long each kernel takes, [`Timestamps`] say. An application that changes
+//! schemes as it runs compiles them ahead by [`Gpu::prepare`].
 //!
 //! `examples/embed` and `examples/moving_boundary` are complete. To have a whole run with its stop rule
 //! without blocking the thread, there is [`Smoother::run_async`].
@@ -68,6 +77,8 @@
 //! 2³² vertices, and on a GPU no buffer larger than the device binds (128 MiB, the default limit, is
 //! eight million vertices).
 
+mod boundary;
+mod clamp;
 mod coloring;
 mod cpu;
 mod dual;
@@ -87,12 +98,16 @@ mod smoother;
 mod topology;
 pub mod validity;
 
+pub use boundary::signed_area;
 pub use coloring::{Coloring, UNCOLORED};
 pub use cpu::CpuEngine;
 pub use dual::{Dual, Real};
 pub use engine::{Engine, Objectives};
 pub use error::{MeshError, ReadError, SmoothError, WriteError};
-pub use gpu::{DeviceMesh, Gpu, GpuError, MeshSize, Sweeps, VertexBuffer};
+pub use gpu::{
+    BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, MeshSize, ObjectiveValues, Sweeps,
+    Timestamps, VertexBuffer,
+};
 pub use mesh::{Format, Mesh, MeshFile, Place};
 pub use metric::{Corner, Metric, Properties, Stiffness, UnknownMetric};
 pub use options::{Desired, Goal, Method, Options};

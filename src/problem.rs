@@ -127,14 +127,11 @@ impl Problem {
         (self.center, self.scale)
     }
 
-    /// Puts the normalized positions of all vertices, fixed ones too, back in the mesh's order and
-    /// units. A vertex in no triangle is where `mesh` has it.
-    pub fn denormalize_all(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
-        let mut points = mesh.points.clone();
-        for (&v, &now) in self.vertices.iter().zip(positions) {
-            points[v as usize] = (self.center + now / self.scale).to_array();
-        }
-        points
+    /// Brings the normalized positions of all vertices, fixed ones too, back into the mesh's units, each with the
+    /// mesh's number of the vertex.
+    pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
+        let point = |&now: &DVec2| (self.center + now / self.scale).to_array();
+        self.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
     /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did

@@ -29,8 +29,10 @@ pub enum Backend {
     Gpu(Gpu),
 }
 
-/// Hears how far a run is, and may end it.
-pub type Observer<'o> = dyn FnMut(&Progress) -> ControlFlow<()> + 'o;
+/// Hears how far a run is, and may end it: any `FnMut(&Progress) -> ControlFlow<()>`.
+pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
+
+impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
 /// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -144,7 +146,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         backend: &Backend,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let place = match backend {
             Backend::Cpu => Place::Cpu,
@@ -156,8 +158,8 @@ impl<'a> Smoother<'a> {
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
     /// The future completes only if somebody polls the device meanwhile, as an application does that
-    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as `observe` can, which then returns the best
-    /// state so far.
+    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as
+    /// `observe` can, which then returns the best state so far. The future is `Send` if `observe` is.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -165,7 +167,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         gpu: &Gpu,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         self.run_at(options, Place::Gpu(gpu, Waiting::Await), observe).await
     }
@@ -174,7 +176,7 @@ impl<'a> Smoother<'a> {
         &self,
         options: &Options,
         place: Place<'_>,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
@@ -228,7 +230,7 @@ impl<'a> Smoother<'a> {
         goal: Goal,
         options: &Options,
         place: Place<'_>,
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<GoalOutcome, SmoothError> {
         let Goal { fraction, desired } = goal;
         if let Desired::Value(desired) = desired {
@@ -337,7 +339,7 @@ impl Run<'_, '_> {
         options: &Options,
         target: Option<f64>,
         from: &[DVec2],
-        observe: &mut Observer<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<End, SmoothError> {
         let base = options.scheme.base();
         let mut engine = self.engine(options, target, from)?;

@@ -13,7 +13,7 @@ pub(crate) fn doubled_area(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
 }
 
 /// A number whose sign is exactly that of the triangle's area (Shewchuk's adaptive predicate).
-fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
+pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| {
         let [x, y] = points[v as usize];
         Coord { x, y }

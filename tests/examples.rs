@@ -10,7 +10,7 @@ mod moving_boundary;
 
 use std::path::Path;
 
-use gpu_smooth::MeshFile;
+use gpu_smooth::{MeshFile, Metric};
 use moving_boundary::support;
 
 /// How bright a pixel is to the eye, from 0 to 255.
@@ -25,8 +25,12 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
     let [before, after] = embed::smooth_and_draw(file.mesh(), 5).unwrap();
 
     let f = support::f_imr(file.mesh());
-    assert!((f64::from(before.f) / f - 1.0).abs() < 1e-5, "{} for {f}", before.f);
-    assert!(after.f < 1.2 && before.inverted == 0.0 && after.inverted == 0.0, "{}", after.f);
+    let [before_f, after_f] = [&before, &after].map(|frame| frame.quality.of(Metric::Imr));
+    assert!((f64::from(before_f) / f - 1.0).abs() < 1e-5, "{before_f} for {f}");
+    assert!(after_f < 1.2 && [&before, &after].iter().all(|frame| frame.quality.inverted == 0));
+    let worst = support::worst_imr(file.mesh());
+    assert!((f64::from(before.quality.worst_imr) / worst - 1.0).abs() < 1e-3, "{worst}");
+    assert!(after.quality.worst_imr < 5.0);
 
     // What is outside of the plate and in its holes stays white.
     let is_white = |&&pixel: &&[u8; 4]| pixel == [255; 4];

@@ -82,7 +82,7 @@ fn a_vertex_follows_the_pointer_and_the_mesh_follows_the_vertex() {
         both.filter(|&(&p, &q)| distance(p, q) > 0.01).count()
     };
     assert!(moved(&hand) > 50, "only {} vertices moved", moved(&hand));
-    assert_eq!(hand.app.smoothing.inverted(), 0);
+    assert_eq!(hand.app.smoothing.objectives.inverted, 0);
 
     hand.app.release().unwrap();
     hand.frames(100);

@@ -13,7 +13,8 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, Mesh, MeshFile, MeshSize, Metric, Options, Sweeps, VertexBuffer, wgpu,
+    DeviceMesh, Gpu, Mesh, MeshFile, MeshSize, Metric, ObjectiveValues, Options, Sweeps,
+    VertexBuffer, wgpu,
 };
 use picture::Picture;
 use wgpu::BufferUsages as Usage;
@@ -33,7 +34,9 @@ fn main() -> Result<()> {
     let [before, after] = smooth_and_draw(MeshFile::read(&mesh)?.mesh(), 5)?;
     for (name, frame) in [("before.png", before), ("after.png", after)] {
         frame.write(&out.join(name))?;
-        println!("{name}: f_imr {:.4}, {} inverted", frame.f, frame.inverted);
+        let ObjectiveValues { worst_imr, inverted, .. } = frame.quality;
+        let f = frame.quality.of(Metric::Imr);
+        println!("{name}: f_imr {f:.4}, worst {worst_imr:.2}, {inverted} inverted");
     }
     Ok(())
 }
@@ -41,8 +44,7 @@ fn main() -> Result<()> {
 /// A picture of the mesh, and how good the mesh in it is.
 pub(crate) struct Frame {
     pub(crate) pixels: Vec<[u8; 4]>,
-    pub(crate) f: f32,
-    pub(crate) inverted: f32,
+    pub(crate) quality: ObjectiveValues,
 }
 
 impl Frame {
@@ -68,38 +70,37 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let picture = Picture::new(&device, mesh, &vertices);
     let objectives = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("objectives"),
-        size: 4 * Sweeps::OBJECTIVE_FLOATS as u64,
+        size: size_of::<ObjectiveValues>() as u64,
         usage: Usage::STORAGE | Usage::COPY_SRC,
         mapped_at_creation: false,
     });
 
-    // The smoother's, made once. Device and queue are handles: a clone names the same device.
+    // The smoother's, made once and bound to these two buffers. Device and queue are handles: a clone names the same device.
     let gpu = Gpu::new(device.clone(), queue.clone())?;
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
-    let mut smoother = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
-    let place = VertexBuffer { buffer: &vertices, offset: 0, stride: size_of::<Vertex>() as u64 };
+    let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
+    let stride = size_of::<Vertex>() as u64;
+    let bound =
+        device_mesh.bind_vertices(&VertexBuffer { buffer: &vertices, offset: 0, stride })?;
+    let objective = smoother.bind_objective(&objectives, 0)?;
 
     let mut frame = |sweeps| -> Result<Frame> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if sweeps > 0 {
             // The import takes over whatever the application has moved since the last export. Nothing
             // has been here, so that it could be left out.
-            device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+            bound.encode_import(&mut encoder);
             smoother.encode(&mut encoder, sweeps);
-            device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+            bound.encode_export(&mut encoder);
         }
-        smoother.encode_objective(&gpu, &mut encoder, &objectives, 0)?;
+        objective.encode(&mut encoder);
         picture.draw(&mut encoder, &vertices);
         queue.submit([encoder.finish()]);
 
         // Only for the file and the numbers: a window needs neither.
         let pixels = picture.read(&device, &queue)?;
-        let objectives: Vec<f32> = picture::read(&device, &queue, &objectives)?;
-        Ok(Frame {
-            pixels,
-            f: objectives[Metric::Imr as usize],
-            inverted: objectives[Metric::ALL.len()],
-        })
+        let quality: Vec<ObjectiveValues> = picture::read(&device, &queue, &objectives)?;
+        Ok(Frame { pixels, quality: quality[0] })
     };
     Ok([frame(0)?, frame(sweeps)?])
 }
@@ -109,12 +110,11 @@ fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
-    let smoother_needs = Gpu::required_limits(size, &adapter.limits())?;
     let application_needs = wgpu::Limits::default();
     let device = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("application"),
         required_features: Gpu::required_features(),
-        required_limits: application_needs.or_better_values_from(&smoother_needs),
+        required_limits: Gpu::required_limits(application_needs, size, &adapter.limits())?,
         ..Default::default()
     });
     Ok(pollster::block_on(device)?)

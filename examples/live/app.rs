@@ -2,7 +2,7 @@
 //! window or not.
 
 use gpu_smooth::wgpu;
-use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Quality, Scheme};
+use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -37,7 +37,11 @@ pub(crate) fn open(
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
         required_features: Gpu::required_features(),
         // What the smoother needs, and textures as large as a window may become.
-        required_limits: Gpu::required_limits(size, &available)?.using_resolution(available),
+        required_limits: Gpu::required_limits(
+            wgpu::Limits::downlevel_defaults().using_resolution(available.clone()),
+            size,
+            &available,
+        )?,
         ..Default::default()
     }))?;
     Ok((adapter, device, queue))
@@ -156,14 +160,14 @@ impl App {
         self.smoothing.receive()?;
         self.update_panel();
         if let Some(drag) = &self.drag
-            && let Some(points) = drag.step(&self.smoothing.topology, &self.smoothing.points)
+            && let Some(points) = drag.step(&self.smoothing.topology, &self.smoothing.points)?
         {
             self.smoothing.set_points(points);
         }
         let sweeps = if self.paused { 0 } else { self.sweeps_per_frame };
         let device = self.smoothing.gpu.device();
         let mut encoder = device.create_command_encoder(&Default::default());
-        self.smoothing.encode(&mut encoder, sweeps)?;
+        self.smoothing.encode(&mut encoder, sweeps);
         self.renderer.draw(&mut encoder, target);
         self.smoothing.gpu.queue().submit([encoder.finish()]);
         self.smoothing.request();
@@ -182,8 +186,7 @@ impl App {
     }
 
     fn update_panel(&mut self) {
-        let Smoothing { mesh, topology, points, .. } = &self.smoothing;
-        let worst = Quality::of(points, topology).worst_imr;
+        let Smoothing { mesh, objectives, .. } = &self.smoothing;
         let base = self.smoothing.scheme().base();
         let (each, [sweeps, frames]) = (self.sweeps_per_frame, self.meter.rates);
         let state = if self.paused { "paused".into() } else { format!("{each} sweeps a frame") };
@@ -191,9 +194,9 @@ impl App {
         let status = vec![
             ("mesh", format!("{} vertices, {} triangles", mesh.points.len(), mesh.triangles.len())),
             ("scheme", format!("{}, {state}", self.smoothing.scheme())),
-            ("f", format!("{:.4} by {base}", self.smoothing.objective())),
-            ("worst", format!("{worst:.2} inverse mean ratio")),
-            ("inverted", self.smoothing.inverted().to_string()),
+            ("f", format!("{:.4} by {base}", objectives.of(base))),
+            ("worst", format!("{:.2} inverse mean ratio", objectives.worst_imr)),
+            ("inverted", objectives.inverted.to_string()),
             ("speed", format!("{sweeps:.0} sweeps/s, {frames:.0} frames/s")),
         ];
         let help = vec![

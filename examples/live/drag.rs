@@ -1,6 +1,6 @@
 //! What the user can take hold of, and how far it may move in one frame.
 
-use gpu_smooth::{Corner, Metric, Topology};
+use gpu_smooth::{MeshError, Topology, signed_area};
 
 use super::smoothing::rounded;
 
@@ -8,8 +8,6 @@ use super::smoothing::rounded;
 const WORST: f64 = 8.0;
 /// A frame moves by at most this part of the edges around, so that the sweeps keep up.
 const REACH: f64 = 0.3;
-/// A move that is refused is tried at half its length, and so on.
-const ATTEMPTS: u32 = 6;
 
 /// The holes of a mesh.
 pub(crate) struct Holes {
@@ -20,35 +18,14 @@ pub(crate) struct Holes {
 
 impl Holes {
     pub(crate) fn new(topology: &Topology, points: &[[f64; 2]]) -> Self {
-        // Each boundary edge runs with the mesh on its left: an outer boundary counter-clockwise, that of
-        // a hole clockwise.
-        let mut next = vec![Vec::new(); points.len()];
-        for &[a, b, c] in topology.triangles() {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let both = |&&t: &&u32| topology.triangles()[t as usize].contains(&to);
-                if topology.star(from).iter().filter(both).count() == 1 {
-                    next[from as usize].push(to);
-                }
-            }
-        }
-        let mut of: Vec<_> = next.iter().map(|to| (!to.is_empty()).then_some(None)).collect();
-        let (mut loops, mut seen) = (Vec::new(), vec![false; points.len()]);
-        for start in 0..points.len() as u32 {
-            let (mut part, mut open, mut doubled_area) = (Vec::new(), vec![start], 0.0);
-            while let Some(v) = open.pop() {
-                if std::mem::replace(&mut seen[v as usize], true) || next[v as usize].is_empty() {
-                    continue;
-                }
-                part.push(v);
-                for &w in &next[v as usize] {
-                    let ([px, py], [qx, qy]) = (points[v as usize], points[w as usize]);
-                    doubled_area += px * qy - py * qx;
-                    open.push(w);
-                }
-            }
-            if doubled_area < 0.0 {
-                part.iter().for_each(|&v| of[v as usize] = Some(Some(loops.len())));
-                loops.push(part);
+        let mut of = vec![None; points.len()];
+        let mut loops = Vec::new();
+        for vertices in topology.boundary_loops() {
+            // The outside goes around counter-clockwise, a hole clockwise.
+            let hole = (signed_area(points, &vertices) < 0.0).then_some(loops.len());
+            vertices.iter().for_each(|&v| of[v as usize] = Some(hole));
+            if hole.is_some() {
+                loops.push(vertices);
             }
         }
         Self { loops, of }
@@ -104,28 +81,26 @@ impl Drag {
 
     /// The points after one frame's move toward the goal, as far as the triangles allow; `None` if nothing
     /// moves.
-    pub(crate) fn step(&self, topology: &Topology, points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    pub(crate) fn step(
+        &self,
+        topology: &Topology,
+        points: &[[f64; 2]],
+    ) -> Result<Option<Vec<[f64; 2]>>, MeshError> {
         let from = points[self.grip as usize];
         let way = distance(from, self.goal);
-        let mut share = (REACH * self.edge_length(topology, points) / way).min(1.0);
+        let reach = (REACH * self.edge_length(topology, points) / way).min(1.0);
+        let delta = [0, 1].map(|i| reach * (self.goal[i] - from[i]));
+        let there = |&v: &u32| {
+            let [x, y] = points[v as usize];
+            (v, [x + delta[0], y + delta[1]])
+        };
+        let moves: Vec<_> = self.vertices.iter().map(there).collect();
         let mut moved = points.to_vec();
-        for _ in 0..ATTEMPTS {
-            let delta = [0, 1].map(|i| share * (self.goal[i] - from[i]));
-            for &v in &self.vertices {
-                let [x, y] = points[v as usize];
-                moved[v as usize] = rounded([x + delta[0], y + delta[1]]);
-            }
-            let fits = |&t: &u32| {
-                let corners = &topology.triangles()[t as usize];
-                let worst = imr(points, corners).max(WORST);
-                imr(&moved, corners) <= worst
-            };
-            if self.triangles.iter().all(fits) {
-                return (moved[self.grip as usize] != from).then_some(moved);
-            }
-            share /= 2.0;
+        topology.move_clamped(&mut moved, &moves, WORST)?;
+        for &v in &self.vertices {
+            moved[v as usize] = rounded(moved[v as usize]);
         }
-        None
+        Ok((moved[self.grip as usize] != from).then_some(moved))
     }
 
     /// The mean length of the edges around what is held.
@@ -140,11 +115,4 @@ impl Drag {
 
 pub(crate) fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
-}
-
-fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
-    let [p, q, r] = corners.map(|v| points[v as usize]);
-    let edge = |to: [f64; 2]| [to[0] - p[0], to[1] - p[1]];
-    // The mean area makes no difference to this metric.
-    Metric::Imr.quality(&Corner { a: edge(q), b: edge(r), mean_area: 1.0 })
 }

@@ -2,7 +2,8 @@
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage, util::DeviceExt};
 use gpu_smooth::{
-    DeviceMesh, Gpu, Mesh, Metric, Options, Scheme, Sweeps, Topology, VertexBuffer, validity,
+    BoundObjective, BoundVertices, DeviceMesh, Gpu, Mesh, Metric, ObjectiveValues, Options, Scheme,
+    Sweeps, Topology, VertexBuffer, validity,
 };
 use std::sync::mpsc::{Receiver, channel};
 
@@ -10,7 +11,6 @@ use super::Result;
 
 /// Bytes of a vertex: x and y, both f32.
 const STRIDE: u64 = 8;
-const OBJECTIVES: usize = Sweeps::OBJECTIVE_FLOATS;
 
 /// A mesh that is smoothed where it is drawn from, and the host's copy of it.
 pub(crate) struct Smoothing {
@@ -21,10 +21,12 @@ pub(crate) struct Smoothing {
     pub(crate) vertices: wgpu::Buffer,
     /// The same on the host, as the last frame left them.
     pub(crate) points: Vec<[f64; 2]>,
-    /// f by each metric, then the number of inverted triangles, as the last frame left them.
-    objectives: [f32; OBJECTIVES],
+    /// How good the mesh is, as the last frame left it.
+    pub(crate) objectives: ObjectiveValues,
     device_mesh: DeviceMesh,
+    bound: BoundVertices,
     sweeps: Sweeps,
+    objective: BoundObjective,
     scheme: Scheme,
     /// Whether the host has moved vertices since the last frame.
     moved: bool,
@@ -38,7 +40,9 @@ impl Smoothing {
     pub(crate) fn new(gpu: Gpu, mesh: Mesh, scheme: Scheme) -> Result<Self> {
         let topology = Topology::new(&mesh)?;
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
-        let sweeps = Sweeps::new(&gpu, &device_mesh, &options(&scheme))?;
+        let sweeps = Sweeps::new(&device_mesh, &options(&scheme))?;
+        // Every scheme that a key may choose, so that no frame waits for a compiler.
+        Metric::ALL.iter().try_for_each(|&metric| gpu.prepare(&options(&metric.into())))?;
         let device = gpu.device();
         let points: Vec<_> = mesh.points.iter().map(|&p| rounded(p)).collect();
         let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -56,20 +60,25 @@ impl Smoothing {
                 mapped_at_creation: false,
             })
         };
-        let objective_bytes = (OBJECTIVES * size_of::<f32>()) as u64;
+        let objective_bytes = size_of::<ObjectiveValues>() as u64;
         let objective_buffer =
             buffer("objectives", objective_bytes, Usage::STORAGE | Usage::COPY_SRC);
         let staging_bytes = vertices.size() + objective_bytes;
         let staging = buffer("staging", staging_bytes, Usage::MAP_READ | Usage::COPY_DST);
+        let place = VertexBuffer { buffer: &vertices, offset: 0, stride: STRIDE };
+        let bound = device_mesh.bind_vertices(&place)?;
+        let objective = sweeps.bind_objective(&objective_buffer, 0)?;
         Ok(Self {
             gpu,
             mesh,
             topology,
             vertices,
             points,
-            objectives: [f32::NAN; OBJECTIVES],
+            objectives: ObjectiveValues::default(),
             device_mesh,
+            bound,
             sweeps,
+            objective,
             scheme,
             moved: false,
             objective_buffer,
@@ -84,18 +93,15 @@ impl Smoothing {
 
     /// Goes on with another scheme, from the vertices as they are.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
-        self.sweeps = Sweeps::new(&self.gpu, &self.device_mesh, &options(&scheme))?;
+        self.sweeps = Sweeps::new(&self.device_mesh, &options(&scheme))?;
+        self.objective = self.sweeps.bind_objective(&self.objective_buffer, 0)?;
         self.scheme = scheme;
         Ok(())
     }
 
     /// Lets the sweeps move all vertices but these and those that the mesh itself fixes.
     pub(crate) fn hold(&mut self, held: &[u32]) -> Result<()> {
-        let mut fixed = vec![false; self.points.len()];
-        for &v in self.mesh.fixed.iter().chain(held) {
-            fixed[v as usize] = true;
-        }
-        self.device_mesh.set_fixed(&self.gpu, &fixed)?;
+        self.device_mesh.set_fixed(&[&self.mesh.fixed, held].concat())?;
         self.sweeps.restart();
         Ok(())
     }
@@ -119,18 +125,16 @@ impl Smoothing {
 
     /// Encodes what a frame does before it draws: takes the user's moves, sweeps, and leaves the vertices
     /// where they are drawn from and where the host reads them.
-    pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, sweeps: u32) -> Result<()> {
-        let buffer = VertexBuffer { buffer: &self.vertices, offset: 0, stride: STRIDE };
+    pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, sweeps: u32) {
         if std::mem::take(&mut self.moved) {
-            self.device_mesh.encode_import(&self.gpu, encoder, &buffer)?;
+            self.bound.encode_import(encoder);
         }
         self.sweeps.encode(encoder, sweeps);
-        self.sweeps.encode_objective(&self.gpu, encoder, &self.objective_buffer, 0)?;
-        self.device_mesh.encode_export(&self.gpu, encoder, &buffer)?;
+        self.objective.encode(encoder);
+        self.bound.encode_export(encoder);
         let end = self.vertices.size();
         encoder.copy_buffer_to_buffer(&self.vertices, 0, &self.staging, 0, end);
         encoder.copy_buffer_to_buffer(&self.objective_buffer, 0, &self.staging, end, None);
-        Ok(())
     }
 
     /// To be called when what was encoded has been submitted.
@@ -148,31 +152,20 @@ impl Smoothing {
         let Some(mapped) = self.mapped.take() else { return Ok(()) };
         self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
         mapped.recv()??;
-        let floats: Vec<f32> = {
+        {
             let bytes = self.staging.slice(..).get_mapped_range()?;
-            bytemuck::pod_collect_to_vec(&bytes)
-        };
+            let (points, objectives) = bytes.split_at(self.vertices.size() as usize);
+            let points: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(points);
+            self.points = points.iter().map(|p| p.map(f64::from)).collect();
+            self.objectives = bytemuck::pod_read_unaligned(objectives);
+        }
         self.staging.unmap();
-        let (points, objectives) = floats.split_at(2 * self.points.len());
-        let (points, _) = points.as_chunks::<2>();
-        self.points = points.iter().map(|p| p.map(f64::from)).collect();
-        self.objectives.copy_from_slice(objectives);
         Ok(())
-    }
-
-    /// f by the base metric, after the last frame.
-    pub(crate) fn objective(&self) -> f32 {
-        self.objectives[self.scheme.base() as usize]
-    }
-
-    /// Triangles inverted or flat in single precision, after the last frame.
-    pub(crate) fn inverted(&self) -> usize {
-        self.objectives[Metric::ALL.len()] as usize
     }
 
     /// Counts the triangles that are inverted or flat, by exact arithmetic on the device's positions.
     pub(crate) fn count_infeasible(&self) -> Result<usize> {
-        let points = self.device_mesh.read_points(&self.gpu, &self.mesh)?;
+        let points = self.device_mesh.read_points()?;
         Ok(validity::infeasible(&points, self.topology.triangles()).len())
     }
 }

@@ -13,7 +13,9 @@ pub(crate) mod support;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, wgpu};
+use gpu_smooth::{
+    DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, signed_area, wgpu,
+};
 use wgpu::BufferUsages as Usage;
 use wgpu::util::DeviceExt;
 
@@ -71,7 +73,7 @@ pub(crate) fn simulate(
 ) -> Result<Vec<Step>> {
     let mesh = plate(vertices)?;
     let topology = Topology::new(&mesh)?;
-    let hole = hole(&mesh);
+    let hole = hole(&topology, &mesh.points);
 
     // `Gpu::open` makes a device for whoever has none; examples/embed brings its own.
     let gpu = Gpu::open(None)?;
@@ -82,9 +84,10 @@ pub(crate) fn simulate(
         contents: bytemuck::cast_slice(&positions),
         usage: Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST,
     });
-    let place = VertexBuffer { buffer: &buffer, offset: 0, stride: size_of::<[f32; 2]>() as u64 };
+    let stride = size_of::<[f32; 2]>() as u64;
     let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
-    let mut smoother = Sweeps::new(&gpu, &device_mesh, &Options::default())?;
+    let bound = device_mesh.bind_vertices(&VertexBuffer { buffer: &buffer, offset: 0, stride })?;
+    let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
 
     let mut left_alone = mesh.points.clone();
     let mut log = Vec::new();
@@ -95,15 +98,15 @@ pub(crate) fn simulate(
         let start = Instant::now();
         for (v, [x, y]) in turned.clone() {
             let xy = [x as f32, y as f32];
-            queue.write_buffer(&buffer, place.stride * u64::from(v), bytemuck::cast_slice(&xy));
+            queue.write_buffer(&buffer, stride * u64::from(v), bytemuck::cast_slice(&xy));
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         // All other vertices still are where the export left them, and keep their full precision.
-        device_mesh.encode_import(&gpu, &mut encoder, &place)?;
+        bound.encode_import(&mut encoder);
         // No `restart`: the hole turns by less than an edge. That the scheme goes on over-relaxed is what
         // carries the motion far into the mesh.
         smoother.encode(&mut encoder, sweeps);
-        device_mesh.encode_export(&gpu, &mut encoder, &place)?;
+        bound.encode_export(&mut encoder);
         queue.submit([encoder.finish()]);
         // Here the simulation would compute on the vertex buffer. This is for the clock only.
         device.poll(wgpu::PollType::wait_indefinitely())?;
@@ -113,7 +116,7 @@ pub(crate) fn simulate(
         log.push(Step {
             angle,
             took,
-            kept: Quality::of(&device_mesh.read_points(&gpu, &mesh)?, &topology),
+            kept: Quality::of(&device_mesh.read_points()?, &topology),
             left: Quality::of(&left_alone, &topology),
         });
     }
@@ -127,13 +130,10 @@ fn plate(vertices: usize) -> Result<Mesh> {
     Ok(support::triangulate(&support::Outline::parse(&outline)?, vertices)?)
 }
 
-/// The vertices on the edge of the hole.
-fn hole(mesh: &Mesh) -> Vec<u32> {
-    let on_hole = |v: &u32| {
-        let [x, y] = mesh.points[*v as usize];
-        (x - CENTER[0]).hypot(y - CENTER[1]) < RADIUS + 1e-9
-    };
-    (0..mesh.points.len() as u32).filter(on_hole).collect()
+/// The vertices on the edge of the hole: of the boundary's loops, the one that goes around clockwise.
+fn hole(topology: &Topology, points: &[[f64; 2]]) -> Vec<u32> {
+    let mut loops = topology.boundary_loops().into_iter();
+    loops.find(|vertices| signed_area(points, vertices) < 0.0).unwrap_or_default()
 }
 
 fn turned([x, y]: [f64; 2], turns: f64) -> [f64; 2] {

@@ -2,8 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::buffers::MeshSize;
 use super::kernel::Pipelines;
+use super::shaders::Kernel;
+use crate::error::SmoothError;
+use crate::options::Options;
 
 /// The GPU engine cannot start or go on.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -35,6 +37,14 @@ pub enum GpuError {
         limit: &'static str,
         /// Its value on this device.
         available: u64,
+    },
+    /// A feature that this takes was not asked for when the device was made.
+    #[error("{what} needs a device made with the feature {feature}")]
+    Feature {
+        /// What takes it.
+        what: &'static str,
+        /// Its name in wgpu.
+        feature: &'static str,
     },
     /// The device has no memory left.
     #[error("the device is out of memory: {0}")]
@@ -120,6 +130,7 @@ impl Gpu {
         let summary = AdapterSummary::new(&adapter.get_info());
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gpu-smooth device"),
+            required_features: adapter.features() & Self::optional_features(),
             required_limits: adapter.limits(),
             ..Default::default()
         }))
@@ -145,7 +156,12 @@ impl Gpu {
     ///
     /// It has to be made with [`Self::required_limits`] or better. Its callbacks for errors and
     /// for loss stay the application's: this library catches the errors of its own calls in error
-    /// scopes, and learns of a lost device by reading back.
+    /// scopes, and learns of a lost device by reading back. What is wrong with an encoder that was passed in (it
+    /// is of another device, or finished) wgpu reports when the application finishes it, to the application.
+    ///
+    /// # Panics
+    /// Nothing here does. But wgpu itself panics where resources of two *instances* meet, in its own calls as in
+    /// this library's: an application has one [`wgpu::Instance`].
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the device binds too few storage buffers, or what it refuses.
@@ -160,60 +176,27 @@ impl Gpu {
         summary: AdapterSummary,
         lost: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, GpuError> {
-        let available = device.limits().max_storage_buffers_per_shader_stage;
-        let needed = super::kernel::storage_bindings();
-        if needed > available {
-            return Err(GpuError::Limit {
-                what: "the number of storage buffers a kernel reads".into(),
-                needed: needed.into(),
-                limit: "max_storage_buffers_per_shader_stage",
-                available: available.into(),
-            });
-        }
+        super::limits::check(&device.limits())?;
         let pipelines = Arc::new(scoped(&device, || Pipelines::new(&device))?);
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost })
     }
 
-    /// The features a device needs: none beyond core WebGPU.
-    pub fn required_features() -> wgpu::Features {
-        wgpu::Features::empty()
-    }
-
-    /// The limits a device needs for meshes of up to `size`: [`wgpu::Limits::downlevel_defaults`], raised
-    /// where the kernels or the mesh need more.
-    ///
-    /// For a device that has other work too, ask for
-    /// `own.or_better_values_from(&Gpu::required_limits(size, &adapter.limits())?)`. A vertex buffer
-    /// with a stride above 16 bytes may need a larger `max_storage_buffer_binding_size` than the mesh.
+    /// Compiles all that meshes take with these options, so that neither a frame nor a later
+    /// [`Sweeps::new`](super::Sweeps::new) has to wait for it. What is compiled already costs nothing; another
+    /// thread can do it meanwhile.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low; it names the limit.
-    pub fn required_limits(
-        size: MeshSize,
-        available: &wgpu::Limits,
-    ) -> Result<wgpu::Limits, GpuError> {
-        size.check(available)?;
-        let defaults = wgpu::Limits::downlevel_defaults();
-        let mut limits = wgpu::Limits {
-            max_storage_buffers_per_shader_stage: super::kernel::storage_bindings()
-                .max(defaults.max_storage_buffers_per_shader_stage),
-            ..defaults
-        };
-        if limits.max_storage_buffers_per_shader_stage
-            > available.max_storage_buffers_per_shader_stage
-        {
-            return Err(GpuError::Limit {
-                what: "the number of storage buffers a kernel reads".into(),
-                needed: limits.max_storage_buffers_per_shader_stage.into(),
-                limit: "max_storage_buffers_per_shader_stage",
-                available: available.max_storage_buffers_per_shader_stage.into(),
-            });
+    /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
+    pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
+        options.check()?;
+        let mut kernels = Kernel::needed_by(&options.plan(None));
+        if options.is_multilevel() {
+            kernels.extend(Kernel::of_levels(options.scheme.base()));
         }
-        let largest = size.largest();
-        limits.max_storage_buffer_binding_size =
-            limits.max_storage_buffer_binding_size.max(largest);
-        limits.max_buffer_size = limits.max_buffer_size.max(largest);
-        Ok(limits)
+        for kernel in kernels {
+            self.pipelines.get(&self.device, &kernel)?;
+        }
+        Ok(())
     }
 
     /// The device, a handle.

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::buffers::MeshBuffers;
 use super::device::{Gpu, GpuError, scoped};
 use super::layout::{Control, HISTORY, SLOTS, join, split, unpair};
+use super::passes::sealed::Target;
 use super::readback::{self, Waiting};
 use super::run::Run;
 use crate::engine::Objectives;
@@ -58,17 +59,14 @@ impl<'a> GpuEngine<'a> {
             let mut encoder =
                 self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
             {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label,
-                    timestamp_writes: None,
-                });
+                let mut passes = encoder.passes("gpu-smooth sweeps");
                 if self.evaluated == 0 {
-                    self.run.encode_evaluation(&mut pass);
+                    self.run.encode_evaluation(&mut passes);
                 }
                 let first = self.evaluated.max(1);
                 for sweep in first..first + sweeps {
-                    self.run.encode_sweep(&mut pass, sweep);
-                    self.run.encode_evaluation(&mut pass);
+                    self.run.encode_sweep(&mut passes, sweep);
+                    self.run.encode_evaluation(&mut passes);
                 }
             }
             self.gpu.queue.submit([encoder.finish()]);

@@ -1,12 +1,14 @@
-//! Positions and objectives in buffers of the application.
+//! Positions in a vertex buffer of the application.
 
 use wgpu::BufferUsages as Usage;
 
 use super::buffers::filled;
 use super::device::{Gpu, GpuError, scoped};
-use super::layout::{Exchange, Publish, SLOTS, pair};
+use super::kernel::Pipeline;
+use super::layout::{Exchange, pair};
+use super::passes::Encoder;
+use super::run::dispatch;
 use super::shaders::{Interface, Kernel};
-use crate::metric::Metric;
 use crate::problem::Problem;
 
 /// Where an application keeps its vertices: f32 x and y of vertex i at `offset + i * stride`.
@@ -22,18 +24,23 @@ pub struct VertexBuffer<'a> {
     pub stride: u64,
 }
 
-/// A place of floats in a buffer, as the kernels see it: bound from an aligned byte on.
-struct Window<'a> {
+/// A place of words in a buffer, as the kernels see it: bound from an aligned byte on.
+pub(crate) struct Window<'a> {
     buffer: &'a wgpu::Buffer,
     start: u64,
     size: u64,
-    /// Floats from the start of the binding.
-    offset: u32,
+    /// Words from the start of the binding.
+    pub(crate) offset: u32,
 }
 
 impl<'a> Window<'a> {
     /// Checks that `bytes` bytes from `offset` on can be bound as storage.
-    fn new(gpu: &Gpu, buffer: &'a wgpu::Buffer, offset: u64, bytes: u64) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        buffer: &'a wgpu::Buffer,
+        offset: u64,
+        bytes: u64,
+    ) -> Result<Self, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
         if !buffer.usage().contains(Usage::STORAGE) {
             let usage = buffer.usage();
@@ -63,7 +70,7 @@ impl<'a> Window<'a> {
         Ok(Self { buffer, start, size, offset: ((offset - start) / 4) as u32 })
     }
 
-    fn binding(&self) -> wgpu::BindingResource<'a> {
+    pub(crate) fn binding(&self) -> wgpu::BindingResource<'a> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: self.buffer,
             offset: self.start,
@@ -72,76 +79,81 @@ impl<'a> Window<'a> {
     }
 }
 
-/// A vertex buffer bound to a mesh for import and export.
-pub(crate) fn bind_vertices(
-    gpu: &Gpu,
-    problem: &Problem,
-    vertex_count: usize,
-    positions: &wgpu::Buffer,
-    numbers: &wgpu::Buffer,
-    with: &VertexBuffer<'_>,
-) -> Result<wgpu::BindGroup, GpuError> {
-    let VertexBuffer { buffer, offset, stride } = *with;
-    if !stride.is_multiple_of(4) || stride < 8 || stride / 4 > u64::from(u32::MAX) {
-        let problem = format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
-        return Err(GpuError::Buffer(problem));
-    }
-    let bytes = (vertex_count as u64 - 1).saturating_mul(stride).saturating_add(8);
-    let window = Window::new(gpu, buffer, offset, bytes)?;
-    let (center, scale) = problem.normalization();
-    let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
-    let exchange = Exchange {
-        zero: 0,
-        vertices: problem.positions().len() as u32,
-        offset: window.offset,
-        stride: (stride / 4) as u32,
-        center: [x, y, x_low, y_low],
-        scale: scale as f32,
-        inverse_scale: (1.0 / scale) as f32,
-        padding: [0; 2],
-    };
-    scoped(&gpu.device, || {
-        let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
-        let resources = [
-            uniform.as_entire_binding(),
-            positions.as_entire_binding(),
-            numbers.as_entire_binding(),
-            window.binding(),
-        ];
-        gpu.pipelines.bind(&gpu.device, Interface::Exchange, &resources)
-    })
+/// A vertex buffer bound to a mesh for import and export. Made by
+/// [`DeviceMesh::bind_vertices`](super::DeviceMesh::bind_vertices); it keeps the buffer alive, and works on when
+/// the mesh is dropped.
+pub struct BoundVertices {
+    import: Pipeline,
+    export: Pipeline,
+    bind_group: wgpu::BindGroup,
+    count: u32,
 }
 
-/// A place for objectives bound to a run.
-pub(crate) fn bind_objectives(
-    gpu: &Gpu,
-    triangles: usize,
-    tracked: &[Metric],
-    control: &wgpu::Buffer,
-    buffer: &wgpu::Buffer,
-    offset: u64,
-) -> Result<wgpu::BindGroup, GpuError> {
-    let window = Window::new(gpu, buffer, offset, (SLOTS * size_of::<f32>()) as u64)?;
-    let mut ideal_squared = [[0.0; 4]; 2];
-    for &metric in tracked {
-        let slot = metric as usize;
-        ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
+impl BoundVertices {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        vertex_count: usize,
+        positions: &wgpu::Buffer,
+        numbers: &wgpu::Buffer,
+        with: &VertexBuffer<'_>,
+    ) -> Result<Self, GpuError> {
+        let VertexBuffer { buffer, offset, stride } = *with;
+        if !stride.is_multiple_of(4) || stride < 8 || stride / 4 > u64::from(u32::MAX) {
+            let problem =
+                format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
+            return Err(GpuError::Buffer(problem));
+        }
+        let bytes = (vertex_count as u64 - 1).saturating_mul(stride).saturating_add(8);
+        let window = Window::new(gpu, buffer, offset, bytes)?;
+        let (center, scale) = problem.normalization();
+        let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
+        let count = problem.positions().len() as u32;
+        let exchange = Exchange {
+            zero: 0,
+            vertices: count,
+            offset: window.offset,
+            stride: (stride / 4) as u32,
+            center: [x, y, x_low, y_low],
+            scale: scale as f32,
+            inverse_scale: (1.0 / scale) as f32,
+            padding: [0; 2],
+        };
+        let bind_group = scoped(&gpu.device, || {
+            let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
+            let resources = [
+                uniform.as_entire_binding(),
+                positions.as_entire_binding(),
+                numbers.as_entire_binding(),
+                window.binding(),
+            ];
+            gpu.pipelines.bind(&gpu.device, Interface::Exchange, &resources)
+        })?;
+        let [import, export] =
+            [Kernel::Import, Kernel::Export].map(|kernel| gpu.pipelines.get(&gpu.device, &kernel));
+        Ok(Self { import: import?, export: export?, bind_group, count })
     }
-    let publish = Publish {
-        offset: window.offset,
-        triangles: triangles as u32,
-        padding: [0; 2],
-        ideal_squared,
-    };
-    scoped(&gpu.device, || {
-        let uniform = filled(gpu, "publish", &[publish], Usage::UNIFORM);
-        let resources =
-            [uniform.as_entire_binding(), control.as_entire_binding(), window.binding()];
-        gpu.pipelines.bind(&gpu.device, Interface::Publish, &resources)
-    })
-}
 
-/// The pipeline of one of the kernels that exchange.
-pub(crate) fn pipeline(gpu: &Gpu, kernel: Kernel) -> Result<wgpu::ComputePipeline, GpuError> {
-    gpu.pipelines.get(&gpu.device, &kernel)
+    /// Takes all positions, of fixed vertices too, from the application's vertex buffer, as it is when
+    /// the command buffer runs.
+    ///
+    /// A vertex whose floats are those of the last export has not been moved by the application and
+    /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
+    /// where it was. Triangles may arrive inverted; sweeps then go on around them.
+    pub fn encode_import(&self, encoder: &mut impl Encoder) {
+        self.encode(encoder, "gpu-smooth import", &self.import);
+    }
+
+    /// Writes all positions into the application's vertex buffer: of every vertex that a triangle uses, x
+    /// and y and nothing else.
+    pub fn encode_export(&self, encoder: &mut impl Encoder) {
+        self.encode(encoder, "gpu-smooth export", &self.export);
+    }
+
+    fn encode(&self, encoder: &mut impl Encoder, label: &'static str, pipeline: &Pipeline) {
+        encoder.passes(label).run(pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            dispatch(pass, self.count);
+        });
+    }
 }

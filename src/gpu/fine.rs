@@ -7,6 +7,8 @@ use super::device::{Gpu, GpuError, scoped};
 use super::engine::{moved_positions, objectives_of};
 use super::layout::{Control, HISTORY, unpair};
 use super::levels::Levels;
+use super::passes::Passes;
+use super::passes::sealed::Target;
 use super::readback::{self, Waiting};
 use super::run::Run;
 use crate::engine::Objectives;
@@ -49,15 +51,12 @@ impl<'a> GpuFine<'a> {
         Ok(Self { gpu, problem, start, metric, mesh, run, levels: None, waiting })
     }
 
-    fn submit(&self, encode: impl FnOnce(&mut wgpu::ComputePass<'_>)) -> Result<(), GpuError> {
-        let label = Some("gpu-smooth multilevel");
+    fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
+        let label = "gpu-smooth multilevel";
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
         scoped(&self.gpu.device, || {
-            let mut encoder =
-                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-            encode(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label,
-                timestamp_writes: None,
-            }));
+            let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+            encode(&mut encoder.passes(label));
             self.gpu.queue.submit([encoder.finish()]);
         })
     }
@@ -78,7 +77,7 @@ impl<'a> GpuFine<'a> {
 
 impl FineLevel for GpuFine<'_> {
     async fn objectives(&mut self) -> Result<Objectives, GpuError> {
-        self.submit(|pass| self.run.encode_evaluation(pass))?;
+        self.submit(|passes| self.run.encode_evaluation(passes))?;
         let control: Vec<Control> =
             readback::read(self.gpu, &self.run.control, 1, self.waiting).await?;
         let last = control
@@ -91,7 +90,7 @@ impl FineLevel for GpuFine<'_> {
     }
 
     async fn sweep(&mut self, omega: f64) -> Result<(), GpuError> {
-        self.submit(|pass| self.run.encode_relaxed_sweep(pass, omega))
+        self.submit(|passes| self.run.encode_relaxed_sweep(passes, omega))
     }
 
     async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
@@ -116,10 +115,10 @@ impl FineLevel for GpuFine<'_> {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
         };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|pass| {
-            self.run.encode_relaxed_sweep(pass, omega);
-            levels.encode_correction(pass);
-            levels.encode_along(pass);
+        self.submit(|passes| {
+            self.run.encode_relaxed_sweep(passes, omega);
+            levels.encode_correction(passes);
+            levels.encode_along(passes);
         })?;
         self.totals(levels).await
     }
@@ -127,13 +126,13 @@ impl FineLevel for GpuFine<'_> {
     async fn objective_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         let Some(levels) = &self.levels else { return Ok(None) };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|pass| levels.encode_along(pass))?;
+        self.submit(|passes| levels.encode_along(passes))?;
         Ok(self.totals(levels).await?.there)
     }
 
     async fn take(&mut self, length: f64) -> Result<(), GpuError> {
         let Some(levels) = &self.levels else { return Ok(()) };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|pass| levels.encode_take(pass))
+        self.submit(|passes| levels.encode_take(passes))
     }
 }

@@ -61,6 +61,13 @@ pub(crate) fn storage_bindings() -> u32 {
     bindings(Interface::Run).iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
 }
 
+/// A kernel made ready to run.
+#[derive(Clone)]
+pub(crate) struct Pipeline {
+    pub(crate) kernel: Kernel,
+    pub(crate) raw: wgpu::ComputePipeline,
+}
+
 /// The pipelines of a device, made when first asked for.
 pub(crate) struct Pipelines {
     run: Layout,
@@ -144,17 +151,13 @@ impl Pipelines {
     }
 
     /// The pipeline of a kernel.
-    pub(crate) fn get(
-        &self,
-        device: &wgpu::Device,
-        kernel: &Kernel,
-    ) -> Result<wgpu::ComputePipeline, GpuError> {
+    pub(crate) fn get(&self, device: &wgpu::Device, kernel: &Kernel) -> Result<Pipeline, GpuError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = made.get(kernel) {
-            return Ok(pipeline.clone());
+        if let Some(raw) = made.get(kernel) {
+            return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });
         }
         let label = kernel.label();
-        let pipeline = scoped(device, || {
+        let raw = scoped(device, || {
             let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&label),
                 source: wgpu::ShaderSource::Wgsl(kernel.wgsl().into()),
@@ -168,8 +171,8 @@ impl Pipelines {
                 cache: None,
             })
         })?;
-        made.insert(kernel.clone(), pipeline.clone());
-        Ok(pipeline)
+        made.insert(kernel.clone(), raw.clone());
+        Ok(Pipeline { kernel: kernel.clone(), raw })
     }
 }
 
@@ -189,9 +192,7 @@ mod tests {
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish]);
-        kernels.extend(Metric::ALL.iter().flat_map(|&m| [Kernel::Gradient(m), Kernel::Along(m)]));
-        kernels.extend([Kernel::HandDown, Kernel::HandUp, Kernel::Apply, Kernel::Chebyshev]);
-        kernels.extend([Kernel::Direct, Kernel::Total, Kernel::Take]);
+        kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }
 
@@ -216,6 +217,34 @@ mod tests {
             });
             assert_eq!(spaces, wanted.collect::<Vec<_>>(), "{}", kernel.label());
         }
+    }
+
+    #[test]
+    fn what_was_prepared_is_not_compiled_again() {
+        use crate::gpu::{DeviceMesh, Gpu, Sweeps, VertexBuffer};
+        use crate::{Mesh, Options};
+
+        let gpu = Gpu::open(None).unwrap();
+        let made = || gpu.pipelines.made.lock().unwrap().len();
+        let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
+        assert_eq!(made(), 0);
+        gpu.prepare(&options).unwrap();
+        let prepared = made();
+        assert!(prepared >= 7, "{prepared}");
+
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, fixed: vec![] }).unwrap();
+        let sweeps = Sweeps::new(&mesh, &options).unwrap();
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 64,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let vertices = VertexBuffer { buffer: &buffer, offset: 0, stride: 8 };
+        let _bound = (mesh.bind_vertices(&vertices).unwrap(), sweeps.bind_objective(&buffer, 0));
+        assert_eq!(made(), prepared);
     }
 
     #[test]

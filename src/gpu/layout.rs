@@ -12,10 +12,13 @@ pub(crate) const WORKGROUP: u32 = 64;
 /// Invocations of the `finish` kernel.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
-/// What is summed over the triangles: every metric's q² - ideal², and the number of inverted ones.
-pub(crate) const SLOTS: usize = Metric::ALL.len() + 1;
+/// What is had of the triangles: every metric's q² - ideal² and the number of inverted ones, summed, and the
+/// worst imr² - 1.
+pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
 /// The slot after the metrics'.
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
+/// The slot after that.
+pub(crate) const WORST: u32 = INVERTED + 1;
 /// Set in the ring start of a vertex that is to stay, though it has a ring.
 pub(crate) const HELD: u32 = 1 << 31;
 

@@ -4,7 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use super::buffers::{MeshBuffers, check_binding, filled, zeroed};
 use super::device::{Gpu, GpuError, scoped};
+use super::kernel::Pipeline;
 use super::layout::{LevelOp, WORKGROUP};
+use super::passes::Passes;
 use super::run::{dispatch, objective_groups};
 use super::shaders::{Interface, Kernel};
 use crate::metric::Metric;
@@ -26,7 +28,7 @@ pub(super) struct Levels {
 }
 
 struct Dispatch {
-    pipeline: wgpu::ComputePipeline,
+    pipeline: Pipeline,
     op: LevelOp,
     /// Which uniform it is.
     number: u32,
@@ -266,19 +268,19 @@ impl Levels {
     }
 
     /// From the positions to the correction.
-    pub(super) fn encode_correction(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.correction.iter().for_each(|step| self.encode(pass, step));
+    pub(super) fn encode_correction(&self, passes: &mut Passes<'_>) {
+        self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
     /// Evaluates the objective along the correction; the totals are then at the start of `vectors`.
-    pub(super) fn encode_along(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.encode(pass, &self.along);
-        self.encode(pass, &self.total);
+    pub(super) fn encode_along(&self, passes: &mut Passes<'_>) {
+        self.encode(passes, &self.along);
+        self.encode(passes, &self.total);
     }
 
     /// Moves the vertices along the correction.
-    pub(super) fn encode_take(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.encode(pass, &self.take);
+    pub(super) fn encode_take(&self, passes: &mut Passes<'_>) {
+        self.encode(passes, &self.take);
     }
 
     /// Sets how far the next submission goes along the correction.
@@ -290,12 +292,13 @@ impl Levels {
         }
     }
 
-    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, step: &Dispatch) {
-        pass.set_pipeline(&step.pipeline);
-        pass.set_bind_group(0, &self.bind_group, &[step.number * self.stride]);
-        match step.groups {
-            Groups::ForRows => dispatch(pass, step.op.rows),
-            Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
-        }
+    fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {
+        passes.run(&step.pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[step.number * self.stride]);
+            match step.groups {
+                Groups::ForRows => dispatch(pass, step.op.rows),
+                Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
+            }
+        });
     }
 }

@@ -6,7 +6,9 @@ use wgpu::BufferUsages as Usage;
 
 use super::buffers::{MeshBuffers, filled, zeroed};
 use super::device::{Gpu, GpuError, scoped};
+use super::kernel::Pipeline;
 use super::layout::{Control, Params, SweepColor, WORKGROUP, pair};
+use super::passes::Passes;
 use super::shaders::{Interface, Kernel};
 use crate::metric::Metric;
 use crate::multilevel::OMEGAS;
@@ -14,7 +16,7 @@ use crate::plan::{Plan, Sharpness, StopRule};
 use crate::problem::Problem;
 
 /// Workgroups along x of a dispatch too long for one dimension.
-const FOLD: u32 = 32768;
+pub(crate) const FOLD: u32 = 32768;
 
 /// A plan bound to a mesh on the device: encodes sweeps and evaluations, submits nothing.
 pub(crate) struct Run {
@@ -23,10 +25,10 @@ pub(crate) struct Run {
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
-    sweeps: Vec<(Metric, wgpu::ComputePipeline)>,
-    objective: wgpu::ComputePipeline,
-    finish: wgpu::ComputePipeline,
-    keep_best: Option<wgpu::ComputePipeline>,
+    sweeps: Vec<(Metric, Pipeline)>,
+    objective: Pipeline,
+    finish: Pipeline,
+    keep_best: Option<Pipeline>,
     objective_groups: u32,
     colors: Vec<Range<u32>>,
     steps: Steps,
@@ -90,7 +92,7 @@ impl Run {
         keep_best: bool,
     ) -> Result<Self, GpuError> {
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel);
-        let mut sweeps: Vec<(Metric, wgpu::ComputePipeline)> = Vec::new();
+        let mut sweeps: Vec<(Metric, Pipeline)> = Vec::new();
         for &metric in plan.scheme.metrics() {
             if sweeps.iter().all(|&(known, _)| known != metric) {
                 sweeps.push((metric, pipeline(Kernel::Sweep(metric, plan.derivatives))?));
@@ -103,7 +105,7 @@ impl Run {
         let objective_groups = objective_groups(problem);
         let partials = objective_groups * WORKGROUP;
         let partial_bytes =
-            (plan.tracked().len() as u64 + 1) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
+            (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
         let steps = Steps::new(gpu, &plan);
         let params = params(problem, &plan, partials);
@@ -159,40 +161,50 @@ impl Run {
     }
 
     /// One sweep over all colors; sweeps count from 1.
-    pub(crate) fn encode_sweep(&self, pass: &mut wgpu::ComputePass<'_>, sweep: u32) {
+    pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, sweep: u32) {
         let step = Steps::of(&self.plan, sweep);
-        self.encode_step(pass, self.plan.scheme.metric(sweep), step);
+        self.encode_step(passes, self.plan.scheme.metric(sweep), step);
     }
 
     /// One sweep with the base metric, over-relaxed as a multilevel run wants it.
-    pub(crate) fn encode_relaxed_sweep(&self, pass: &mut wgpu::ComputePass<'_>, omega: f64) {
+    pub(crate) fn encode_relaxed_sweep(&self, passes: &mut Passes<'_>, omega: f64) {
         let step = (omega as f32, self.plan.sharpness.last);
-        self.encode_step(pass, self.plan.scheme.base(), step);
+        self.encode_step(passes, self.plan.scheme.base(), step);
     }
 
-    fn encode_step(&self, pass: &mut wgpu::ComputePass<'_>, metric: Metric, step: (f32, u32)) {
+    fn encode_step(&self, passes: &mut Passes<'_>, metric: Metric, step: (f32, u32)) {
         let pipeline = self.sweeps.iter().find(|&&(known, _)| known == metric);
         let step = self.steps.known.iter().position(|&known| known == step);
         // Both were made for every sweep of the plan.
         let (Some((_, pipeline)), Some(step)) = (pipeline, step) else { return };
-        pass.set_pipeline(pipeline);
         let first = (step * self.colors.len()) as u32;
-        for (color, range) in (first..).zip(&self.colors) {
-            pass.set_bind_group(0, &self.bind_group, &[color * self.steps.stride]);
-            dispatch(pass, range.end - range.start);
+        for (color, range) in (0..).zip(&self.colors) {
+            passes.run(pipeline, Some(color), |pass| {
+                let uniform = (first + color) * self.steps.stride;
+                pass.set_bind_group(0, &self.bind_group, &[uniform]);
+                dispatch(pass, range.end - range.start);
+            });
         }
     }
 
     /// Evaluates the objectives, judges, and keeps the positions if they are the best.
-    pub(crate) fn encode_evaluation(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_bind_group(0, &self.bind_group, &[0]);
-        pass.set_pipeline(&self.objective);
-        pass.dispatch_workgroups(self.objective_groups, 1, 1);
-        pass.set_pipeline(&self.finish);
-        pass.dispatch_workgroups(1, 1, 1);
+    pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
+        let bind = |pass: &mut wgpu::ComputePass<'_>| {
+            pass.set_bind_group(0, &self.bind_group, &[0]);
+        };
+        passes.run(&self.objective, None, |pass| {
+            bind(pass);
+            pass.dispatch_workgroups(self.objective_groups, 1, 1);
+        });
+        passes.run(&self.finish, None, |pass| {
+            bind(pass);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
         if let Some(keep_best) = &self.keep_best {
-            pass.set_pipeline(keep_best);
-            dispatch(pass, self.colors.last().map_or(0, |range| range.end));
+            passes.run(keep_best, None, |pass| {
+                bind(pass);
+                dispatch(pass, self.colors.last().map_or(0, |range| range.end));
+            });
         }
     }
 }

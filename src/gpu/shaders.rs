@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::layout::{FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP};
+use super::layout::{FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP, WORST};
 use crate::metric::Metric;
 use crate::multilevel::{NONE, SMOOTHING};
-use crate::plan::{Derivatives, NOISE, Stop, line_search};
+use crate::plan::{Derivatives, NOISE, Plan, Stop, line_search};
 
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
 const PAIRS: &str = include_str!("../../shaders/pairs.wgsl");
@@ -86,6 +86,30 @@ pub enum Interface {
 }
 
 impl Kernel {
+    /// Every kernel that a plan and what belongs to it may need, on an application's device or in a run.
+    pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
+        let sweeps = plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives));
+        let mut kernels: Vec<_> = sweeps.collect();
+        kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
+        kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
+        kernels
+    }
+
+    /// Every kernel that corrections from coarser levels take.
+    pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
+        let of_metric = [Kernel::Gradient(metric), Kernel::Along(metric)];
+        let others = [
+            Kernel::HandDown,
+            Kernel::HandUp,
+            Kernel::Apply,
+            Kernel::Chebyshev,
+            Kernel::Direct,
+            Kernel::Total,
+            Kernel::Take,
+        ];
+        of_metric.into_iter().chain(others).collect()
+    }
+
     /// The name of the entry point.
     pub fn entry_point(&self) -> &'static str {
         match self {
@@ -192,6 +216,7 @@ fn constants() -> String {
         ("HISTORY", HISTORY),
         ("SLOTS", SLOTS as u32),
         ("INVERTED", INVERTED),
+        ("WORST", WORST),
         ("HELD", HELD),
         ("NONE", NONE),
         ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
@@ -270,9 +295,19 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted.
+/// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted; its shape
+/// beside them.
 fn tracked_metrics(metrics: &[Metric]) -> String {
     let mut text: String = metrics.iter().map(|m| m.properties().wgsl).collect();
+    // AR is equal to IMR.
+    let known = metrics.iter().position(|m| matches!(m, Metric::Imr | Metric::Ar));
+    let shape = match known {
+        Some(i) => format!("values[{i}]"),
+        None => {
+            text.push_str(Metric::Imr.properties().wgsl);
+            format!("{}_excess(t)", Metric::Imr)
+        }
+    };
     let mut calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
     calls.push("select(0.0, 1.0, doubled_area(t) <= 0.0)".to_owned());
     let _ = write!(
@@ -280,6 +315,9 @@ fn tracked_metrics(metrics: &[Metric]) -> String {
         "const TRACKED: u32 = {count}u;
 fn tracked_values(t: Corner) -> array<f32, TRACKED> {{
     return array<f32, TRACKED>({calls});
+}}
+fn shape_excess(t: Corner, values: array<f32, TRACKED>) -> f32 {{
+    return {shape};
 }}
 ",
         count = calls.len(),
@@ -293,13 +331,14 @@ fn tracked_slots(metrics: &[Metric]) -> String {
     let slots: Vec<String> = metrics
         .iter()
         .map(|&m| m as u32)
-        .chain([INVERTED])
+        .chain([INVERTED, WORST])
         .map(|slot| format!("{slot}u"))
         .collect();
     format!(
-        "const TRACKED: u32 = {count}u;
+        "const TRACKED: u32 = {summed}u;
 const TRACKED_SLOTS = array<u32, {count}>({slots});
 ",
+        summed = slots.len() - 1,
         count = slots.len(),
         slots = slots.join(", ")
     )

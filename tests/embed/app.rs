@@ -2,7 +2,10 @@
 
 use std::sync::{Arc, LazyLock, Mutex};
 
-use gpu_smooth::{DeviceMesh, Gpu, GpuError, Mesh, MeshSize, SmoothError, VertexBuffer, wgpu};
+use gpu_smooth::{
+    BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, ObjectiveValues,
+    SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
+};
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;
 
@@ -27,17 +30,35 @@ pub(crate) fn adapter() -> &'static wgpu::Adapter {
     &ADAPTER
 }
 
+/// What an application that needs nothing for itself asks for.
+pub(crate) fn least_limits(size: MeshSize) -> wgpu::Limits {
+    let own = wgpu::Limits::downlevel_webgl2_defaults();
+    Gpu::required_limits(own, size, &adapter().limits()).unwrap()
+}
+
 impl App {
-    /// On a device made with exactly what the library says it needs.
+    /// On a device made with exactly what the library says it needs, and room for vertices of any stride.
     pub(crate) fn new() -> Self {
-        let limits = Gpu::required_limits(LARGEST, &adapter().limits()).unwrap();
-        Self::with_limits(limits).unwrap()
+        Self::with(Gpu::required_features(), Self::limits()).unwrap()
+    }
+
+    fn limits() -> wgpu::Limits {
+        wgpu::Limits { max_storage_buffer_binding_size: 1 << 20, ..least_limits(LARGEST) }
+    }
+
+    /// On one that has a clock as well.
+    pub(crate) fn with_timestamps() -> Self {
+        Self::with(Gpu::optional_features(), Self::limits()).unwrap()
     }
 
     pub(crate) fn with_limits(limits: wgpu::Limits) -> Result<Self, GpuError> {
+        Self::with(Gpu::required_features(), limits)
+    }
+
+    fn with(features: wgpu::Features, limits: wgpu::Limits) -> Result<Self, GpuError> {
         let (device, queue) = block_on(adapter().request_device(&wgpu::DeviceDescriptor {
             label: Some("application"),
-            required_features: Gpu::required_features(),
+            required_features: features,
             required_limits: limits,
             ..Default::default()
         }))
@@ -103,8 +124,17 @@ impl App {
     }
 
     /// Positions as the device has them, and no sweep or import on the way.
-    pub(crate) fn points(&self, device_mesh: &DeviceMesh, mesh: &Mesh) -> Vec<[f64; 2]> {
-        device_mesh.read_points(&self.gpu, mesh).unwrap()
+    pub(crate) fn points(&self, device_mesh: &DeviceMesh) -> Vec<[f64; 2]> {
+        device_mesh.read_points().unwrap()
+    }
+
+    /// Evaluates the objectives in a command buffer of their own.
+    pub(crate) fn objective(&self, sweeps: &Sweeps) -> ObjectiveValues {
+        let buffer =
+            self.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
+        let bound = sweeps.bind_objective(&buffer, 0).unwrap();
+        self.submit(|encoder| bound.encode(encoder));
+        bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.read(&buffer)))
     }
 }
 
@@ -165,6 +195,10 @@ impl Vertices {
     pub(crate) fn place(&self) -> VertexBuffer<'_> {
         VertexBuffer { buffer: &self.buffer, offset: self.offset, stride: self.stride }
     }
+
+    pub(crate) fn bind(&self, device_mesh: &DeviceMesh) -> BoundVertices {
+        device_mesh.bind_vertices(&self.place()).unwrap()
+    }
 }
 
 /// A plate with a round hole.
@@ -197,5 +231,8 @@ const _: () = {
     const fn moves_between_threads<T: Send + Sync>() {}
     moves_between_threads::<Gpu>();
     moves_between_threads::<DeviceMesh>();
-    moves_between_threads::<gpu_smooth::Sweeps>();
+    moves_between_threads::<Sweeps>();
+    moves_between_threads::<BoundVertices>();
+    moves_between_threads::<BoundObjective>();
+    moves_between_threads::<Timestamps>();
 };

@@ -27,16 +27,16 @@ fn an_export_writes_x_and_y_of_used_vertices_and_nothing_else() {
     let mesh = with_unused_vertices();
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     for &[offset, stride] in LAYOUTS {
         let vertices = Vertices::new(&app, &mesh, offset, stride);
         let before = app.read(&vertices.buffer);
         app.submit(|encoder| {
-            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_import(encoder);
             sweeps.encode(encoder, 2);
-            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_export(encoder);
         });
-        let (points, after) = (app.points(&device_mesh, &mesh), app.read(&vertices.buffer));
+        let (points, after) = (app.points(&device_mesh), app.read(&vertices.buffer));
         let mut expected: Vec<u32> = (0..after.len()).map(filler).collect();
         for &v in mesh.triangles.as_flattened() {
             let at = vertices.word(v);
@@ -68,9 +68,9 @@ fn an_import_reads_every_layout_alike() {
         let there = transformed(&mesh, 1.0 + i as f64 / 8.0, [i as f64, -0.5]);
         let vertices = Vertices::new(&app, &there, offset, stride);
         app.submit(|encoder| {
-            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_import(encoder);
         });
-        let points = app.points(&device_mesh, &mesh);
+        let points = app.points(&device_mesh);
         for &v in mesh.triangles.as_flattened() {
             let given = there.points[v as usize].map(|x| f64::from(x as f32));
             for (x, found) in given.into_iter().zip(points[v as usize]) {
@@ -89,20 +89,20 @@ fn what_the_application_leaves_alone_keeps_its_full_precision() {
     let app = App::new();
     let [alone, exchanged] = [false, true].map(|exchange| {
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         for _ in 0..20 {
             app.submit(|encoder| {
                 if exchange {
-                    device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+                    vertices.bind(&device_mesh).encode_import(encoder);
                 }
                 sweeps.encode(encoder, 3);
                 if exchange {
-                    device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+                    vertices.bind(&device_mesh).encode_export(encoder);
                 }
             });
         }
-        app.points(&device_mesh, &mesh)
+        app.points(&device_mesh)
     });
     assert_eq!(alone, exchanged);
 
@@ -119,14 +119,14 @@ fn a_vertex_the_application_moves_is_followed() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let vertices = Vertices::usual(&app, &mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let frame = |sweeps: &mut Sweeps, count| {
         app.submit(|encoder| {
-            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_import(encoder);
             sweeps.encode(encoder, count);
-            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_export(encoder);
         });
-        Mesh { points: app.points(&device_mesh, &mesh), ..mesh.clone() }
+        Mesh { points: app.points(&device_mesh), ..mesh.clone() }
     };
     let smooth = frame(&mut sweeps, 40);
 
@@ -168,13 +168,13 @@ fn two_vertex_buffers_can_show_one_mesh() {
     let mesh = bad_plate(500);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let [first, second] = [[0, 8], [16, 24]]
         .map(|[offset, stride]| (Vertices::new(&app, &mesh, offset, stride), stride));
     app.submit(|encoder| {
         sweeps.encode(encoder, 4);
         for (vertices, _) in [&first, &second] {
-            device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_export(encoder);
         }
     });
     let (a, b) = (app.read(&first.0.buffer), app.read(&second.0.buffer));
@@ -192,18 +192,18 @@ fn a_position_that_is_not_finite_is_not_taken() {
     for scheme in ["imr", "rms", "area"] {
         let device_mesh = app.mesh(&mesh);
         let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         for wrong in [[f64::NAN; 2], [1.0, f64::INFINITY], [f64::NEG_INFINITY, 1.0]] {
             let vertices = Vertices::usual(&app, &mesh);
             vertices.put(&app, v, wrong);
-            let before = app.points(&device_mesh, &mesh);
+            let before = app.points(&device_mesh);
             app.submit(|encoder| {
-                device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+                vertices.bind(&device_mesh).encode_import(encoder);
             });
-            assert_eq!(app.points(&device_mesh, &mesh)[v as usize], before[v as usize]);
+            assert_eq!(app.points(&device_mesh)[v as usize], before[v as usize]);
             app.submit(|encoder| {
                 sweeps.encode(encoder, 10);
-                device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+                vertices.bind(&device_mesh).encode_export(encoder);
             });
             let words = app.read(&vertices.buffer);
             for &v in &others {

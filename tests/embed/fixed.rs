@@ -1,6 +1,6 @@
 //! Vertices the application holds and lets go.
 
-use gpu_smooth::{DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps};
+use gpu_smooth::{DeviceMesh, Mesh, MeshError, Options, SmoothError, Sweeps};
 
 use crate::app::{App, bad_plate, interior};
 
@@ -15,18 +15,16 @@ impl Held {
     fn new(mesh: Mesh) -> Self {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+        let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         Self { app, mesh, device_mesh, sweeps }
     }
 
     fn hold(&self, which: &[u32]) {
-        let mut flags = vec![false; self.mesh.points.len()];
-        which.iter().for_each(|&v| flags[v as usize] = true);
-        self.device_mesh.set_fixed(&self.app.gpu, &flags).unwrap();
+        self.device_mesh.set_fixed(which).unwrap();
     }
 
     fn points(&self) -> Vec<[f64; 2]> {
-        self.app.points(&self.device_mesh, &self.mesh)
+        self.app.points(&self.device_mesh)
     }
 
     /// Which vertices three sweeps move.
@@ -69,7 +67,7 @@ fn each_single_vertex_can_be_held() {
 }
 
 #[test]
-fn no_flag_lets_the_boundary_go() {
+fn nothing_lets_the_boundary_go() {
     let mut held = Held::new(bad_plate(600));
     held.hold(&[]);
     let free = interior(&held.mesh);
@@ -117,7 +115,7 @@ fn a_fixed_vertex_still_goes_where_the_application_puts_it() {
     let [x, y] = held.mesh.points[v as usize];
     vertices.put(&held.app, v, [x + 1e-3, y]);
     held.app.submit(|encoder| {
-        held.device_mesh.encode_import(&held.app.gpu, encoder, &vertices.place()).unwrap();
+        vertices.bind(&held.device_mesh).encode_import(encoder);
         held.sweeps.encode(encoder, 3);
     });
     let [now, _] = held.points()[v as usize];
@@ -126,14 +124,21 @@ fn a_fixed_vertex_still_goes_where_the_application_puts_it() {
 }
 
 #[test]
-fn the_wrong_number_of_flags_is_refused() {
-    let held = Held::new(bad_plate(300));
+fn holding_a_vertex_that_does_not_exist_is_refused_and_changes_nothing() {
+    let mut held = Held::new(bad_plate(300));
     let count = held.mesh.points.len();
-    for wrong in [0, count - 1, count + 1] {
-        let error = held.device_mesh.set_fixed(&held.app.gpu, &vec![true; wrong]).unwrap_err();
-        let GpuError::Buffer(text) = error else { panic!("{error}") };
-        assert_eq!(text, format!("{wrong} flags were given for {count} vertices"));
+    let free = interior(&held.mesh);
+    held.hold(&free[1..]);
+    for wrong in [count as u32, u32::MAX] {
+        let error = held.device_mesh.set_fixed(&[free[0], wrong]).unwrap_err();
+        let SmoothError::Mesh(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }) =
+            error
+        else {
+            panic!("{error}");
+        };
+        assert_eq!((vertex, vertices), (wrong, count));
     }
+    assert_eq!(held.moved(), free[..1]);
 }
 
 #[test]

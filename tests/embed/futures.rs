@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, Desired, Goal, Metric, Options, Outcome, Progress, Smoother, Stop, wgpu,
+    Backend, Desired, Goal, Metric, Options, Outcome, Progress, Smoother, Stop, Sweeps, wgpu,
 };
 
 use crate::app::{App, bad_plate};
@@ -69,6 +69,32 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
         assert_same(&expected, &found.unwrap());
         assert!(frames > 0, "the future blocked the thread");
     }
+}
+
+/// A runtime with many threads takes only futures that are `Send`.
+#[test]
+fn futures_can_move_between_threads() {
+    const fn is_send<T: Send>(_: &T) {}
+    let mesh = bad_plate(200);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let app = App::new();
+    let (device_mesh, options) = (app.mesh(&mesh), Options::default());
+    is_send(&smoother.run_async(&options, &app.gpu, &mut |_: &Progress| ControlFlow::Break(())));
+    let observe: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send) = &mut go_on;
+    is_send(&smoother.run_async(&options, &app.gpu, observe));
+    is_send(&device_mesh.read_points_async());
+}
+
+#[test]
+fn points_polled_by_the_application_are_those_read_by_blocking() {
+    let mesh = bad_plate(600);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    app.submit(|encoder| sweeps.encode(encoder, 5));
+    let (found, frames) = drive(app.device(), device_mesh.read_points_async());
+    assert!(frames > 0, "the future blocked the thread");
+    assert_eq!(found.unwrap(), app.points(&device_mesh));
 }
 
 #[test]

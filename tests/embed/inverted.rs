@@ -77,15 +77,15 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
             let app = App::new();
             let device_mesh = app.mesh(&sound);
             let options = Options { scheme: metric.into(), derivatives, ..Options::default() };
-            let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
             let vertices = Vertices::usual(&app, &broken);
             app.submit(|encoder| {
-                device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+                vertices.bind(&device_mesh).encode_import(encoder);
             });
-            let start = app.points(&device_mesh, &sound);
+            let start = app.points(&device_mesh);
             assert!(bad(&start) > 10);
             app.submit(|encoder| sweeps.encode(encoder, 20));
-            let end = app.points(&device_mesh, &sound);
+            let end = app.points(&device_mesh);
 
             let case = format!("{throw:?}, {metric}, {derivatives:?}");
             assert!(end.as_flattened().iter().all(|x| x.is_finite()), "{case}: not finite");
@@ -101,15 +101,15 @@ fn once_the_application_mends_the_mesh_all_is_well_again() {
     let (sound, broken) = broken(Throw::Out);
     let app = App::new();
     let device_mesh = app.mesh(&sound);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     for mesh in [&broken, &sound] {
         let vertices = Vertices::usual(&app, mesh);
         app.submit(|encoder| {
-            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
+            vertices.bind(&device_mesh).encode_import(encoder);
             sweeps.encode(encoder, 20);
         });
     }
-    let points = app.points(&device_mesh, &sound);
+    let points = app.points(&device_mesh);
     let topology = Topology::new(&sound).unwrap();
     let quality = Quality::of(&points, &topology);
     assert_eq!(quality.inverted, 0);

@@ -8,7 +8,7 @@ use gpu_smooth::{
 };
 use wgpu::Limits;
 
-use crate::app::{App, Vertices, adapter, bad_plate, gpu_error};
+use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
 use crate::support::{f_imr, lattice};
 
 #[track_caller]
@@ -29,7 +29,7 @@ const SIZE: MeshSize = MeshSize { vertices: 1000, triangles: 1900 };
 fn required_limits_name_the_limit_that_is_too_low() {
     let low = Limits { max_storage_buffer_binding_size: 16_000, ..Limits::default() };
     assert_limit(
-        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffer_binding_size",
         16_000,
         "the buffer of triangles (1000 vertices) needs 22800, \
@@ -37,7 +37,7 @@ fn required_limits_name_the_limit_that_is_too_low() {
     );
     let low = Limits { max_buffer_size: 15_999, ..Limits::default() };
     assert_limit(
-        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_buffer_size",
         15_999,
         "the buffer of vertex positions (1000 vertices) needs 16000, \
@@ -45,12 +45,26 @@ fn required_limits_name_the_limit_that_is_too_low() {
     );
     let low = Limits { max_storage_buffers_per_shader_stage: 4, ..Limits::default() };
     assert_limit(
-        &Gpu::required_limits(SIZE, &low).unwrap_err(),
+        &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffers_per_shader_stage",
         4,
-        "the number of storage buffers a kernel reads needs 7, \
+        "the storage buffers of a kernel needs 7, \
          but the device's max_storage_buffers_per_shader_stage is 4",
     );
+}
+
+#[test]
+fn what_the_application_needs_for_itself_stays() {
+    let most = Limits { max_bind_groups: 8, max_buffer_size: 1 << 40, ..adapter().limits() };
+    let own = Limits {
+        max_bind_groups: 8,
+        max_buffer_size: 1 << 40,
+        max_compute_workgroup_size_x: 16,
+        max_texture_dimension_2d: 123,
+        ..Limits::default()
+    };
+    let limits = Gpu::required_limits(own.clone(), SIZE, &most).unwrap();
+    assert_eq!(limits, Limits { max_compute_workgroup_size_x: 256, ..own });
 }
 
 #[test]
@@ -61,17 +75,17 @@ fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
         max_storage_buffer_binding_size: 1_200_000_000,
         ..Limits::default()
     };
-    let limits = Gpu::required_limits(size, &most).unwrap();
+    let limits = Gpu::required_limits(Limits::default(), size, &most).unwrap();
     assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
     assert_eq!(limits.max_buffer_size, 1_200_000_000);
     let less = Limits { max_storage_buffer_binding_size: 1_199_999_999, ..most };
-    assert!(Gpu::required_limits(size, &less).is_err());
+    assert!(Gpu::required_limits(Limits::default(), size, &less).is_err());
 }
 
 #[test]
 fn required_limits_and_features_are_what_this_adapter_has() {
     let adapter = adapter();
-    let limits = Gpu::required_limits(SIZE, &adapter.limits()).unwrap();
+    let limits = least_limits(SIZE);
     assert!(limits.check_limits(&adapter.limits()));
     assert!(adapter.features().contains(Gpu::required_features()));
     assert!(Gpu::required_features().is_empty());
@@ -81,22 +95,22 @@ fn required_limits_and_features_are_what_this_adapter_has() {
 fn a_device_with_exactly_the_required_limits_smooths() {
     let mesh = bad_plate(1000);
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
-    let app = App::with_limits(Gpu::required_limits(size, &adapter().limits()).unwrap()).unwrap();
+    let app = App::with_limits(least_limits(size)).unwrap();
     let device_mesh = app.mesh(&mesh);
     let options = Options { track_all: true, ..Options::default() };
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let vertices = Vertices::new(&app, &mesh, 0, 8);
     app.submit(|encoder| {
         sweeps.encode(encoder, 10);
-        device_mesh.encode_export(&app.gpu, encoder, &vertices.place()).unwrap();
+        vertices.bind(&device_mesh).encode_export(encoder);
     });
-    let points = app.points(&device_mesh, &mesh);
+    let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
 }
 
 /// A device that binds 32 KiB at once.
 fn small() -> App {
-    let limits = Gpu::required_limits(SIZE, &adapter().limits()).unwrap();
+    let limits = least_limits(SIZE);
     App::with_limits(Limits { max_storage_buffer_binding_size: 32 << 10, ..limits }).unwrap()
 }
 
@@ -117,9 +131,9 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     // A smaller one goes well afterward.
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     app.submit(|encoder| sweeps.encode(encoder, 5));
-    let points = app.points(&device_mesh, &mesh);
+    let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
 }
 
@@ -131,7 +145,7 @@ fn a_vertex_buffer_too_large_to_bind_is_refused() {
     let bytes = 64 * mesh.points.len() as u64;
     let buffer = app.buffer(bytes, wgpu::BufferUsages::STORAGE);
     let place = VertexBuffer { buffer: &buffer, offset: 0, stride: 64 };
-    let error = device_mesh.encode_import(&app.gpu, &mut app.encoder(), &place).unwrap_err();
+    let error = device_mesh.bind_vertices(&place).err().unwrap();
     let needed = bytes - 56;
     assert_limit(
         &error,
@@ -151,14 +165,14 @@ fn a_device_that_binds_too_few_buffers_is_refused() {
         &error,
         "max_storage_buffers_per_shader_stage",
         4,
-        "the number of storage buffers a kernel reads needs 7, \
+        "the storage buffers of a kernel needs 7, \
          but the device's max_storage_buffers_per_shader_stage is 4",
     );
 }
 
 #[test]
 fn a_device_with_small_workgroups_is_refused() {
-    let limits = Gpu::required_limits(SIZE, &adapter().limits()).unwrap();
+    let limits = least_limits(SIZE);
     let limits = Limits {
         max_compute_invocations_per_workgroup: 128,
         max_compute_workgroup_size_x: 128,
@@ -166,7 +180,7 @@ fn a_device_with_small_workgroups_is_refused() {
     };
     let result = App::with_limits(limits).and_then(|app| {
         let device_mesh = app.mesh(&bad_plate(300));
-        Sweeps::new(&app.gpu, &device_mesh, &Options::default()).map_err(gpu_error).map(drop)
+        Sweeps::new(&device_mesh, &Options::default()).map_err(gpu_error).map(drop)
     });
     let text = result.unwrap_err().to_string();
     assert!(text.contains("128") && text.contains("256"), "{text}");

@@ -94,25 +94,27 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let mesh = bad_plate(500);
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let usage = wgpu::BufferUsages::STORAGE;
-        let published = app.buffer(4 * Sweeps::OBJECTIVE_FLOATS as u64, usage);
+        let published = app.buffer(64, usage);
+        let bound = vertices.bind(&device_mesh);
+        let objective = sweeps.bind_objective(&published, 0).unwrap();
         app.submit(|encoder| sweeps.encode(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
-            // Most of wgpu looks as if it still worked; these may notice or not.
-            let _ = device_mesh.encode_import(&app.gpu, encoder, &vertices.place());
+            // Most of wgpu looks as if it still worked.
+            bound.encode_import(encoder);
             sweeps.encode(encoder, 2);
-            let _ = sweeps.encode_objective(&app.gpu, encoder, &published, 0);
-            let _ = device_mesh.encode_export(&app.gpu, encoder, &vertices.place());
+            objective.encode(encoder);
+            bound.encode_export(encoder);
         });
-        let _ = device_mesh.set_fixed(&app.gpu, &vec![false; mesh.points.len()]);
-        assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+        let _ = device_mesh.set_fixed(&[]);
+        assert_lost(&device_mesh.read_points().unwrap_err());
         match DeviceMesh::new(&app.gpu, &mesh) {
             Err(error) => assert_lost(&gpu_error(error)),
             Ok(device_mesh) => {
-                assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+                assert_lost(&device_mesh.read_points().unwrap_err());
             }
         }
     });
@@ -127,20 +129,20 @@ fn a_new_device_goes_on_from_the_last_positions() {
         {
             let app = App::new();
             let device_mesh = app.mesh(&mesh);
-            let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
             app.submit(|encoder| sweeps.encode(encoder, 3));
-            mesh.points = app.points(&device_mesh, &mesh);
+            mesh.points = app.points(&device_mesh);
             app.submit(|encoder| sweeps.encode(encoder, 3));
             app.device().destroy();
-            assert_lost(&device_mesh.read_points(&app.gpu, &mesh).unwrap_err());
+            assert_lost(&device_mesh.read_points().unwrap_err());
         }
         let saved = f_imr(&mesh);
         assert!(saved < start);
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         app.submit(|encoder| sweeps.encode(encoder, 20));
-        let points = app.points(&device_mesh, &mesh);
+        let points = app.points(&device_mesh);
         assert!(f_imr(&Mesh { points, ..mesh.clone() }) < saved);
     });
 }

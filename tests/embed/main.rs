@@ -16,3 +16,4 @@ mod lost;
 mod objective;
 mod refusals;
 mod sweeps;
+mod timestamps;

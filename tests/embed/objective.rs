@@ -1,6 +1,6 @@
 //! Objectives written into a buffer of the application, against those of the points read back.
 
-use gpu_smooth::{Mesh, Metric, Options, Quality, Sweeps, Topology};
+use gpu_smooth::{Mesh, Metric, ObjectiveValues, Options, Quality, Sweeps, Topology};
 use wgpu::BufferUsages as Usage;
 
 use gpu_smooth::wgpu;
@@ -8,7 +8,7 @@ use gpu_smooth::wgpu;
 use crate::app::{App, Vertices, bad_plate, filler, interior};
 use crate::support::{orientations, transformed};
 
-const FLOATS: usize = Sweeps::OBJECTIVE_FLOATS;
+const WORDS: usize = size_of::<ObjectiveValues>() / 4;
 
 fn quality(mesh: &Mesh, points: &[[f64; 2]]) -> Quality {
     Quality::of(points, &Topology::new(mesh).unwrap())
@@ -27,31 +27,38 @@ fn floats(words: &[u32]) -> Vec<f32> {
 }
 
 #[test]
-fn the_floats_are_one_for_each_metric_and_the_inverted() {
-    assert_eq!(FLOATS, Metric::ALL.len() + 1);
-}
-
-#[test]
 fn objectives_are_those_of_the_points_read_back() {
     for mesh in [bad_plate(800), transformed(&bad_plate(300), 1e-4, [2.0, 1.0])] {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &all_tracked()).unwrap();
-        let published = readable(&app, FLOATS);
+        let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
         for stage in 0..6 {
-            app.submit(|encoder| {
-                sweeps.encode(encoder, stage);
-                sweeps.encode_objective(&app.gpu, encoder, &published, 0).unwrap();
-            });
-            let found = floats(&app.read(&published));
-            let expected = quality(&mesh, &app.points(&device_mesh, &mesh));
-            for (&metric, found) in Metric::ALL.iter().zip(&found) {
-                let f = expected.f(metric);
-                let off = (f64::from(*found) / f - 1.0).abs();
+            app.submit(|encoder| sweeps.encode(encoder, stage));
+            let found = app.objective(&sweeps);
+            let expected = quality(&mesh, &app.points(&device_mesh));
+            for &metric in Metric::ALL {
+                let (found, f) = (found.of(metric), expected.f(metric));
+                let off = (f64::from(found) / f - 1.0).abs();
                 assert!(off < 1e-5, "{metric} at stage {stage}: {found} for {f}");
             }
-            assert_eq!(found[FLOATS - 1], 0.0);
+            let off = f64::from(found.worst_imr) / expected.worst_imr - 1.0;
+            assert!(off.abs() < 1e-4, "{} for {}", found.worst_imr, expected.worst_imr);
+            assert_eq!(found.inverted, 0);
         }
+    }
+}
+
+#[test]
+fn the_worst_triangle_is_known_whatever_the_metric() {
+    let mesh = bad_plate(400);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let expected = quality(&mesh, &mesh.points).worst_imr;
+    for &metric in Metric::ALL {
+        let options = Options { scheme: metric.into(), ..Options::default() };
+        let found = app.objective(&Sweeps::new(&device_mesh, &options).unwrap()).worst_imr;
+        let off = f64::from(found) / expected - 1.0;
+        assert!(off.abs() < 1e-4, "{metric}: {found} for {expected}");
     }
 }
 
@@ -60,22 +67,22 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     let mesh = bad_plate(500);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &all_tracked()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
     // More than the device remembers.
     let count = 300;
-    let published = readable(&app, FLOATS * count);
+    let published = readable(&app, WORDS * count);
     app.submit(|encoder| {
         for k in 0..count {
-            let offset = (4 * FLOATS * k) as u64;
-            sweeps.encode_objective(&app.gpu, encoder, &published, offset).unwrap();
+            let offset = (4 * WORDS * k) as u64;
+            sweeps.bind_objective(&published, offset).unwrap().encode(encoder);
             sweeps.encode(encoder, u32::from(k < 40));
         }
     });
     let found = floats(&app.read(&published));
-    let rows: Vec<&[f32]> = found.chunks(FLOATS).collect();
+    let rows: Vec<&[f32]> = found.chunks(WORDS).collect();
     let imr = Metric::Imr as usize;
     let first = quality(&mesh, &mesh.points).f(Metric::Imr);
-    let last = quality(&mesh, &app.points(&device_mesh, &mesh)).f(Metric::Imr);
+    let last = quality(&mesh, &app.points(&device_mesh)).f(Metric::Imr);
     assert!((f64::from(rows[0][imr]) / first - 1.0).abs() < 1e-5);
     assert!((f64::from(rows[count - 1][imr]) / last - 1.0).abs() < 1e-5);
     assert!(rows[..20].windows(2).all(|pair| pair[0] != pair[1]));
@@ -88,21 +95,21 @@ fn what_is_not_tracked_is_zero_and_the_rest_of_the_buffer_untouched() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let options = Options { scheme: Metric::Rms.into(), ..Options::default() };
-    let sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     for first in [0usize, 1, 63, 64, 70] {
         let published = readable(&app, 90);
         let words: Vec<u32> = (0..90).map(filler).collect();
         app.gpu.queue().write_buffer(&published, 0, bytemuck::cast_slice(&words));
         app.submit(|encoder| {
-            sweeps.encode_objective(&app.gpu, encoder, &published, 4 * first as u64).unwrap();
+            sweeps.bind_objective(&published, 4 * first as u64).unwrap().encode(encoder);
         });
         let found = app.read(&published);
-        let written = &floats(&found)[first..first + FLOATS];
+        let written = &floats(&found)[first..first + WORDS];
         for &metric in Metric::ALL.iter().filter(|&&metric| metric != Metric::Rms) {
             assert_eq!(written[metric as usize], 0.0, "{metric}");
         }
         assert!(written[Metric::Rms as usize] > 1.0);
-        let outside = |&at: &usize| at < first || at >= first + FLOATS;
+        let outside = |&at: &usize| at < first || at >= first + WORDS;
         assert!((0..90).filter(outside).all(|at| found[at] == words[at]));
     }
 }
@@ -112,21 +119,20 @@ fn triangles_the_application_inverts_are_counted() {
     let mesh = bad_plate(800);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let sweeps = Sweeps::new(&app.gpu, &device_mesh, &all_tracked()).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
     let vertices = Vertices::usual(&app, &mesh);
-    let published = readable(&app, FLOATS);
     let mut counts = Vec::new();
     for v in interior(&mesh).into_iter().step_by(60) {
         // Out of its star, by far.
         vertices.put(&app, v, [-0.4, 2.5]);
         app.submit(|encoder| {
-            device_mesh.encode_import(&app.gpu, encoder, &vertices.place()).unwrap();
-            sweeps.encode_objective(&app.gpu, encoder, &published, 0).unwrap();
+            vertices.bind(&device_mesh).encode_import(encoder);
         });
-        let points = app.points(&device_mesh, &mesh);
+        let points = app.points(&device_mesh);
         let exact = orientations(&Mesh { points, ..mesh.clone() });
         let exact = exact.into_iter().filter(|&sign| sign != 1).count();
-        assert_eq!(f32::from_bits(app.read(&published)[FLOATS - 1]), exact as f32);
+        let found = app.objective(&sweeps);
+        assert_eq!((found.inverted as usize, found.worst_imr), (exact, f32::INFINITY));
         counts.push(exact);
     }
     assert!(counts.is_sorted() && counts[0] >= 1 && *counts.last().unwrap() > 20, "{counts:?}");

@@ -9,25 +9,17 @@ use wgpu::BufferUsages as Usage;
 use crate::app::{App, Vertices, bad_plate};
 use crate::support::lattice;
 
-/// What both import and export say to a place for the vertices of a lattice of 36.
+/// What is said to a place for the vertices of a lattice of 36.
 #[track_caller]
 fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text: &str) {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(bytes, usage);
     let place = VertexBuffer { buffer: &buffer, offset, stride };
-    let mut encoder = app.encoder();
-    for result in [
-        device_mesh.encode_import(&app.gpu, &mut encoder, &place),
-        device_mesh.encode_export(&app.gpu, &mut encoder, &place),
-    ] {
-        let error = result.unwrap_err();
-        assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
-        let whole = format!("the application's buffer cannot be used: {text}");
-        assert_eq!(error.to_string(), whole);
-    }
-    // The encoder is as good as before.
-    app.gpu.queue().submit([encoder.finish()]);
+    let error = device_mesh.bind_vertices(&place).err().unwrap();
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+    let whole = format!("the application's buffer cannot be used: {text}");
+    assert_eq!(error.to_string(), whole);
 }
 
 #[test]
@@ -58,7 +50,7 @@ fn a_buffer_just_large_enough_is_not() {
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(8 + 12 * 35 + 8, Usage::STORAGE);
     let place = VertexBuffer { buffer: &buffer, offset: 8, stride: 12 };
-    app.submit(|encoder| device_mesh.encode_export(&app.gpu, encoder, &place).unwrap());
+    app.submit(|encoder| device_mesh.bind_vertices(&place).unwrap().encode_export(encoder));
 }
 
 #[test]
@@ -82,9 +74,9 @@ fn a_stride_that_fits_no_vertex_is_refused() {
 fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
-    let sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let buffer = app.buffer(bytes, usage);
-    let error = sweeps.encode_objective(&app.gpu, &mut app.encoder(), &buffer, offset).unwrap_err();
+    let error = sweeps.bind_objective(&buffer, offset).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     assert!(error.to_string().ends_with(text), "{error}");
 }
@@ -93,8 +85,8 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
 fn a_place_for_objectives_is_held_to_the_same() {
     let storage = Usage::STORAGE;
     assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
-    assert_objective_refused(20, storage, 0, "it has 20 bytes, and 24 from byte 0 are needed");
-    assert_objective_refused(64, storage, 44, "it has 64 bytes, and 24 from byte 44 are needed");
+    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 28 from byte 0 are needed");
+    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 28 from byte 40 are needed");
     assert_objective_refused(64, storage, 2, "the offset is 2 bytes, not a multiple of 4");
 }
 
@@ -105,8 +97,7 @@ fn a_destroyed_buffer_is_refused() {
     let device_mesh = app.mesh(&mesh);
     let vertices = Vertices::usual(&app, &mesh);
     vertices.buffer.destroy();
-    let error =
-        device_mesh.encode_import(&app.gpu, &mut app.encoder(), &vertices.place()).unwrap_err();
+    let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
     assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
     assert!(error.to_string().contains("destroyed"), "{error}");
 }
@@ -115,25 +106,28 @@ fn a_destroyed_buffer_is_refused() {
 fn what_belongs_to_another_device_is_refused() {
     let (app, other) = (App::new(), App::new());
     let mesh = bad_plate(300);
-    let (own, foreign) = (app.mesh(&mesh), other.mesh(&mesh));
+    let device_mesh = app.mesh(&mesh);
+    let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let vertices = Vertices::usual(&other, &mesh);
-    let refused = |error: &GpuError| matches!(error, GpuError::Refused(_));
-    let mut encoder = app.encoder();
-    // A vertex buffer, a mesh under import and under a scheme, each with the wrong device.
-    let error = own.encode_import(&app.gpu, &mut encoder, &vertices.place()).unwrap_err();
-    assert!(refused(&error), "{error:?}");
-    let error = foreign.encode_export(&app.gpu, &mut encoder, &vertices.place()).unwrap_err();
-    assert!(refused(&error), "{error:?}");
-    let error = foreign.set_fixed(&app.gpu, &vec![false; mesh.points.len()]).unwrap_err();
-    assert!(refused(&error), "{error:?}");
-    let error = foreign.read_points(&app.gpu, &mesh).unwrap_err();
-    assert!(refused(&error), "{error:?}");
-    match Sweeps::new(&app.gpu, &foreign, &Options::default()) {
-        Err(SmoothError::Gpu(GpuError::Refused(_))) => {}
-        Err(error) => panic!("{error:?}"),
-        Ok(_) => panic!("accepted"),
-    }
-    app.gpu.queue().submit([encoder.finish()]);
+    let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
+    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    let error = sweeps.bind_objective(&vertices.buffer, 0).err().unwrap();
+    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+}
+
+#[test]
+fn what_is_wrong_with_an_encoder_the_application_hears_when_it_finishes_it() {
+    let (app, other) = (App::new(), App::new());
+    let mesh = bad_plate(300);
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let vertices = Vertices::usual(&app, &mesh).bind(&device_mesh);
+    let mut encoder = other.encoder();
+    vertices.encode_import(&mut encoder);
+    sweeps.encode(&mut encoder, 2);
+    assert!(other.take_uncaptured().is_empty());
+    let _ = encoder.finish();
+    assert_eq!(other.take_uncaptured().len(), 1);
 }
 
 fn mesh_error(mesh: &Mesh) -> MeshError {
@@ -188,7 +182,7 @@ fn options_out_of_range_are_refused() {
         (Options { inner: 0, ..ok() }, "inner is 0: a visit takes at least one Newton step"),
         (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
     ] {
-        let error = Sweeps::new(&app.gpu, &device_mesh, &options).err().unwrap();
+        let error = Sweeps::new(&device_mesh, &options).err().unwrap();
         assert!(matches!(error, SmoothError::Option { .. }), "{error:?}");
         assert_eq!(error.to_string(), text);
     }

@@ -74,12 +74,12 @@ fn encoded_sweeps_are_those_of_a_run() {
 
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut encoded = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        let mut encoded = Sweeps::new(&device_mesh, &options).unwrap();
         // Three calls in one command buffer, one of them for nothing, and the rest in others.
         app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode(encoder, n)));
         app.submit(|encoder| encoded.encode(encoder, 1));
         app.submit(|encoder| encoded.encode(encoder, sweeps - 4));
-        let found = app.points(&device_mesh, &mesh);
+        let found = app.points(&device_mesh);
         assert_same(name, &mesh, &expected, &found);
     }
 }
@@ -94,16 +94,16 @@ fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
 
     let app = App::new();
     let meshes = [app.mesh(&plate), app.mesh(&other)];
-    let mut first = Sweeps::new(&app.gpu, &meshes[0], &imr).unwrap();
-    let mut second = Sweeps::new(&app.gpu, &meshes[1], &edge).unwrap();
+    let mut first = Sweeps::new(&meshes[0], &imr).unwrap();
+    let mut second = Sweeps::new(&meshes[1], &edge).unwrap();
     app.submit(|encoder| {
         for _ in 0..3 {
             first.encode(encoder, 3);
             second.encode(encoder, 2);
         }
     });
-    assert_same("first", &plate, &first_expected, &app.points(&meshes[0], &plate));
-    assert_same("second", &other, &second_expected, &app.points(&meshes[1], &other));
+    assert_same("first", &plate, &first_expected, &app.points(&meshes[0]));
+    assert_same("second", &other, &second_expected, &app.points(&meshes[1]));
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn two_schemes_take_turns_on_one_mesh() {
     // One submission for everything, and one for each call.
     let [together, apart] = [true, false].map(|together| {
         let device_mesh = app.mesh(&mesh);
-        let bind = |scheme| Sweeps::new(&app.gpu, &device_mesh, &options(scheme)).unwrap();
+        let bind = |scheme| Sweeps::new(&device_mesh, &options(scheme)).unwrap();
         let (mut imr, mut edge) = (bind("imr"), bind("edge"));
         let mut turn = |encoder: &mut CommandEncoder| {
             imr.encode(encoder, 2);
@@ -124,7 +124,7 @@ fn two_schemes_take_turns_on_one_mesh() {
         } else {
             (0..4).for_each(|_| app.submit(&mut turn));
         }
-        app.points(&device_mesh, &mesh)
+        app.points(&device_mesh)
     });
     assert_same("in turn", &mesh, &apart, &together);
     assert_ne!(together, run(&mesh, &options("imr"), 12).0);
@@ -139,15 +139,15 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     // Seven sweeps, and seven more: after a restart, by a scheme bound anew, and going on.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         app.submit(|encoder| sweeps.encode(encoder, 7));
         match case {
             0 => sweeps.restart(),
-            1 => sweeps = Sweeps::new(&app.gpu, &device_mesh, &options).unwrap(),
+            1 => sweeps = Sweeps::new(&device_mesh, &options).unwrap(),
             _ => {}
         }
         app.submit(|encoder| sweeps.encode(encoder, 7));
-        app.points(&device_mesh, &mesh)
+        app.points(&device_mesh)
     });
     assert_same("restarted", &mesh, &anew, &restarted);
     assert_ne!(anew, on);
@@ -158,7 +158,7 @@ fn sweeps_outlive_the_mesh_they_are_bound_to() {
     let mesh = bad_plate(700);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&app.gpu, &device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     drop(device_mesh);
     app.submit(|encoder| sweeps.encode(encoder, 3));
     app.device().poll(gpu_smooth::wgpu::PollType::wait_indefinitely()).unwrap();

@@ -1,0 +1,151 @@
+//! What the device says about the time that kernels take.
+
+use std::collections::BTreeMap;
+use std::future::Future;
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
+
+use gpu_smooth::gpu::{Kernel, Span};
+use gpu_smooth::{Derivatives, GpuError, Mesh, Metric, Options, Smoother, Sweeps, Timestamps};
+use wgpu::BufferUsages as Usage;
+
+use gpu_smooth::wgpu;
+
+use crate::app::{App, Vertices, bad_plate};
+
+/// Import, sweeps, objective and export under the clock.
+fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) -> Vec<Span> {
+    let device_mesh = app.mesh(mesh);
+    let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
+    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let bound = Vertices::usual(app, mesh).bind(&device_mesh);
+    let objective = sweeps.bind_objective(&app.buffer(64, Usage::STORAGE), 0).unwrap();
+    let mut encoder = app.encoder();
+    let mut timed = timestamps.time(&mut encoder);
+    bound.encode_import(&mut timed);
+    sweeps.encode(&mut timed, count);
+    objective.encode(&mut timed);
+    bound.encode_export(&mut timed);
+    let spans = timed.resolve().unwrap();
+    app.gpu.queue().submit([encoder.finish()]);
+    spans.read().unwrap()
+}
+
+#[test]
+fn every_kernel_is_timed_in_the_order_of_encoding() {
+    let (app, mesh) = (App::with_timestamps(), bad_plate(3000));
+    let colors = Smoother::new(&mesh).unwrap().colors() as u32;
+    let mut timestamps = Timestamps::new(&app.gpu).unwrap();
+    let spans = timed_frame(&app, &mesh, &mut timestamps, 3);
+    let mut expected = vec![(Kernel::Import, None)];
+    for metric in [Metric::Edge, Metric::Imr, Metric::Edge] {
+        let sweep = Kernel::Sweep(metric, Derivatives::Analytic);
+        expected.extend((0..colors).map(|color| (sweep.clone(), Some(color))));
+    }
+    let judged = [Kernel::Objective(vec![Metric::Edge]), Kernel::Finish(vec![Metric::Edge])];
+    expected.extend(judged.into_iter().chain([Kernel::Publish, Kernel::Export]).map(|k| (k, None)));
+    let found: Vec<_> = spans.iter().map(|span| (span.kernel.clone(), span.color)).collect();
+    assert_eq!(found, expected);
+
+    assert_eq!(spans[0].start, 0.0);
+    // No test of speed: that a device works at all takes some time, and not minutes.
+    let sum: f64 = spans.iter().map(|span| span.nanoseconds).sum();
+    assert!(sum > 1e3 && sum < 60e9, "{sum} ns");
+    let mut by_metric = BTreeMap::new();
+    for span in &spans {
+        *by_metric.entry(span.kernel.label()).or_insert(0.0) += span.nanoseconds;
+    }
+    assert!(by_metric["gpu-smooth sweep edge"] > 0.0 && by_metric["gpu-smooth sweep imr"] > 0.0);
+    for pair in spans.windows(2) {
+        assert!(pair[0].start + pair[0].nanoseconds <= pair[1].start, "{pair:?}");
+    }
+}
+
+#[test]
+fn more_kernels_than_a_query_set_holds_are_timed() {
+    let (app, mesh) = (App::with_timestamps(), bad_plate(200));
+    let colors = Smoother::new(&mesh).unwrap().colors();
+    let mut timestamps = Timestamps::new(&app.gpu).unwrap();
+    // The clock serves again, with fewer and with more.
+    for count in [600, 2, 900] {
+        let spans = timed_frame(&app, &mesh, &mut timestamps, count);
+        assert_eq!(spans.len(), count as usize * colors + 5);
+        let end = spans.last().unwrap();
+        assert!(spans.iter().all(|span| span.start >= 0.0 && span.start <= end.start));
+        assert!(end.start > 0.0);
+    }
+}
+
+#[test]
+fn timing_changes_nothing_else() {
+    let (app, mesh) = (App::with_timestamps(), bad_plate(700));
+    let mut timestamps = Timestamps::new(&app.gpu).unwrap();
+    let [plain, timed, unresolved] = [0, 1, 2].map(|case| {
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        app.submit(|encoder| {
+            if case == 0 {
+                return sweeps.encode(encoder, 9);
+            }
+            let mut timed = timestamps.time(encoder);
+            sweeps.encode(&mut timed, 9);
+            // The application's own, in between: it dereferences to the encoder.
+            timed.push_debug_group("own");
+            timed.pop_debug_group();
+            if case == 1 {
+                timed.resolve().unwrap();
+            }
+        });
+        app.points(&device_mesh)
+    });
+    assert_eq!(plain, timed);
+    assert_eq!(plain, unresolved);
+}
+
+#[test]
+fn two_frames_in_flight_are_each_their_own() {
+    let (app, mesh) = (App::with_timestamps(), bad_plate(2000));
+    let colors = Smoother::new(&mesh).unwrap().colors();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut timestamps = Timestamps::new(&app.gpu).unwrap();
+    let frames = [1, 30].map(|count| {
+        let mut encoder = app.encoder();
+        let mut timed = timestamps.time(&mut encoder);
+        sweeps.encode(&mut timed, count);
+        let spans = timed.resolve().unwrap();
+        app.gpu.queue().submit([encoder.finish()]);
+        spans
+    });
+    let [first, second] = frames.map(|spans| {
+        let mut future = pin!(spans.read_async());
+        let mut context = Context::from_waker(Waker::noop());
+        loop {
+            if let Poll::Ready(spans) = future.as_mut().poll(&mut context) {
+                return spans.unwrap();
+            }
+            app.device().poll(wgpu::PollType::Poll).unwrap();
+        }
+    });
+    assert_eq!([first.len(), second.len()], [colors, 30 * colors]);
+    let end = |spans: &[Span]| spans.last().map(|s| s.start + s.nanoseconds).unwrap();
+    assert!(end(&first) > 0.0 && end(&first) < end(&second));
+}
+
+#[test]
+fn nothing_encoded_takes_no_time() {
+    let app = App::with_timestamps();
+    let mut timestamps = Timestamps::new(&app.gpu).unwrap();
+    let mut encoder = app.encoder();
+    let spans = timestamps.time(&mut encoder).resolve().unwrap();
+    app.gpu.queue().submit([encoder.finish()]);
+    assert_eq!(spans.read().unwrap(), []);
+}
+
+#[test]
+fn a_device_without_a_clock_is_refused() {
+    let app = App::new();
+    let error = Timestamps::new(&app.gpu).err().unwrap();
+    assert!(matches!(error, GpuError::Feature { feature: "TIMESTAMP_QUERY", .. }), "{error:?}");
+    assert_eq!(error.to_string(), "timing needs a device made with the feature TIMESTAMP_QUERY");
+}
