@@ -2,23 +2,36 @@
 //!
 //! Same colors, same steps and same stopping as the GPU engine, on all cores.
 
+mod lanes;
 mod newton;
+mod objective;
+mod patch;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::engine::{Engine, Objectives};
 use crate::gpu::GpuError;
-use crate::metric::{Corner, Metric, specialize};
+use crate::metric::{Metric, specialize};
 use crate::plan::{Plan, Stop, StopRule};
 use crate::problem::Problem;
-use newton::{Patch, Step};
+use lanes::{LANES, Points};
+use newton::Step;
+pub(crate) use objective::mean_excess;
+use patch::Patches;
+
+/// Vertices of one task.
+const CHUNK: usize = Problem::BLOCK;
 
 /// A run on the CPU.
 pub struct CpuEngine<'a> {
     problem: &'a Problem,
     plan: Plan,
     positions: Vec<DVec2>,
+    /// Where the vertices of a color go.
+    moved: Vec<DVec2>,
     /// The best state; of a monotone scheme it is the last.
     best_positions: Option<Vec<DVec2>>,
     best_sweep: usize,
@@ -29,11 +42,13 @@ pub struct CpuEngine<'a> {
 impl<'a> CpuEngine<'a> {
     /// Starts a run from `positions`, normalized and in the problem's order.
     pub fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: Plan) -> Self {
+        let most = problem.colors().iter().map(|color| color.len()).max().unwrap_or(0);
         let best_positions = (!plan.is_monotone()).then(|| positions.clone());
         Self {
             problem,
             plan,
             positions,
+            moved: vec![DVec2::ZERO; most],
             best_positions,
             best_sweep: 0,
             base_history: Vec::new(),
@@ -49,14 +64,21 @@ impl<'a> CpuEngine<'a> {
             sharpness: self.plan.sharpness.of(sweep),
             derivatives: self.plan.derivatives,
         };
-        let mut moved = Vec::new();
+        let level = Level::new();
         for color in self.problem.colors() {
-            let color = color.start as usize..color.end as usize;
+            let first = color.start as usize;
+            let moved = &mut self.moved[..color.len()];
             // Vertices of one color read each other's neighbors only, never each other.
-            specialize!(metric, METRIC => {
-                visit_all(METRIC, self.problem, &self.positions, color.clone(), &step, &mut moved);
+            moved.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, moved)| {
+                let (problem, positions) = (self.problem, &self.positions);
+                let first = first + chunk * CHUNK;
+                specialize!(metric, METRIC => {
+                    dispatch!(level, simd => {
+                        visit_all(simd, METRIC, problem, positions, first, &step, moved);
+                    });
+                });
             });
-            self.positions[color].copy_from_slice(&moved);
+            self.positions[first..][..color.len()].copy_from_slice(moved);
         }
     }
 
@@ -106,35 +128,37 @@ impl Engine for CpuEngine<'_> {
     }
 }
 
+/// Visits the vertices from `first` on and writes where they go.
 #[inline(always)]
-fn visit_all(
+fn visit_all<S: Simd>(
+    simd: S,
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
-    color: std::ops::Range<usize>,
+    first: usize,
     step: &Step,
-    moved: &mut Vec<DVec2>,
+    moved: &mut [DVec2],
 ) {
-    let visit = |v: usize| {
-        let start = problem.ring_start();
-        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-        let patch = Patch { ring, positions, mean_area: problem.mean_area() };
-        patch.visit(metric, positions[v], step)
-    };
-    color.into_par_iter().with_min_len(256).map(visit).collect_into_vec(moved);
-}
-
-/// Mean of q² - ideal² over all triangles, in an order of summation that does not depend on the
-/// number of threads.
-pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    let mean_area = problem.mean_area();
-    let sums: Vec<f64> = specialize!(metric, METRIC => {
-        let excess = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|v| positions[v as usize]);
-            METRIC.excess(&Corner { a: (q - p).to_array(), b: (r - p).to_array(), mean_area })
-        };
-        let sum = |chunk: &[[u32; 3]]| chunk.iter().map(excess).sum::<f64>();
-        problem.triangles().par_chunks(1024).map(sum).collect()
-    });
-    sums.iter().sum::<f64>() / problem.triangles().len() as f64
+    let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
+    let mut done = 0;
+    while done < moved.len() {
+        let v = (first + done) as u32;
+        let degree = problem.ring_of(v).len();
+        let most = LANES.min(moved.len() - done) as u32;
+        let mut count = 1;
+        while count < most && problem.ring_of(v + count).len() == degree {
+            count += 1;
+        }
+        // Lanes too many visit the last vertex again.
+        let last = v + count - 1;
+        let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
+        let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);
+        let at = patch::points(simd, positions, vertices);
+        let [x, y] = newton::visit(metric, &patches, at, step);
+        let count = count as usize;
+        for (lane, moved) in moved[done..done + count].iter_mut().enumerate() {
+            *moved = DVec2::new(x[lane], y[lane]);
+        }
+        done += count;
+    }
 }
