@@ -25,6 +25,9 @@ use patch::Patches;
 /// Vertices of one task.
 const CHUNK: usize = Problem::BLOCK;
 
+/// Positions that one task copies: fewer are not worth a second thread.
+const COPY: usize = 1 << 14;
+
 /// A run on the CPU.
 pub struct CpuEngine<'a> {
     problem: &'a Problem,
@@ -78,7 +81,8 @@ impl<'a> CpuEngine<'a> {
                     });
                 });
             });
-            self.positions[first..][..color.len()].copy_from_slice(moved);
+            let positions = self.positions[first..][..color.len()].par_chunks_mut(COPY);
+            positions.zip(moved.par_chunks(COPY)).for_each(|(to, from)| to.copy_from_slice(from));
         }
     }
 
