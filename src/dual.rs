@@ -1,52 +1,98 @@
 //! Numbers that carry their first and second derivatives.
 //!
-//! The CPU engine differentiates each metric's *value formula* with these, so a mistake in the
-//! hand-written WGSL derivatives cannot hide in both engines.
+//! They differentiate a metric's *value formula*: the oracle for every hand-written derivative, in
+//! WGSL and on the CPU alike, and what the CPU engine takes where a metric has none.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// What a metric's value formula may do with its arguments: `f64` for values, [`Dual`] for
-/// derivatives.
+/// What a metric's formulas may do with their arguments: `f64` and SIMD vectors of it for values,
+/// [`Dual`] for derivatives.
+///
+/// Formulas go without closures and iterators over such numbers: what the standard library calls is
+/// not compiled for the instructions of the vectors, which makes it several times slower.
 pub trait Real:
-    Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
 {
-    /// The value without its derivatives.
-    fn value(self) -> f64;
+    /// The constant `value`.
+    fn constant(self, value: f64) -> Self;
+    /// The same value, taken for a constant.
+    fn fixed(self) -> Self;
     /// The square root; the derivative at zero is infinite.
     fn sqrt(self) -> Self;
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self;
 }
 
 impl Real for f64 {
-    fn value(self) -> f64 {
+    fn constant(self, value: f64) -> Self {
+        value
+    }
+    fn fixed(self) -> Self {
         self
     }
     fn sqrt(self) -> Self {
         self.sqrt()
     }
+    fn min(self, other: Self) -> Self {
+        self.min(other)
+    }
+    fn max(self, other: Self) -> Self {
+        self.max(other)
+    }
 }
 
 /// A function of two variables at a point: value, gradient and Hessian.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Dual {
+pub struct Dual<T = f64> {
     /// The value.
-    pub value: f64,
+    pub value: T,
     /// First derivatives by x and y.
-    pub gradient: [f64; 2],
+    pub gradient: [T; 2],
     /// Second derivatives xx, xy, yy.
-    pub hessian: [f64; 3],
+    pub hessian: [T; 3],
 }
 
-impl Dual {
+impl<T: Real> Dual<T> {
     /// The variable x (`axis` 0) or y (`axis` 1), times `slope`, at `value`.
-    pub fn variable(value: f64, axis: usize, slope: f64) -> Self {
-        let mut gradient = [0.0; 2];
-        gradient[axis] = slope;
-        Self { value, gradient, hessian: [0.0; 3] }
+    #[inline(always)]
+    pub fn variable(value: T, axis: usize, slope: f64) -> Self {
+        let mut dual = Self::of(value);
+        dual.gradient[axis] = value.constant(slope);
+        dual
+    }
+
+    /// The derivatives of q² less a constant, from those of q less a constant: `value` is that
+    /// of the result, `q` is q.
+    #[inline(always)]
+    pub(crate) fn into_square(self, value: T, q: T) -> Self {
+        let ([x, y], [xx, xy, yy]) = (self.gradient, self.hessian);
+        let twice = q * 2.0;
+        Self {
+            value,
+            gradient: [twice * x, twice * y],
+            hessian: [x * x * 2.0 + twice * xx, x * y * 2.0 + twice * xy, y * y * 2.0 + twice * yy],
+        }
+    }
+
+    /// A constant.
+    #[inline(always)]
+    fn of(value: T) -> Self {
+        let zero = value.constant(0.0);
+        Self { value, gradient: [zero; 2], hessian: [zero; 3] }
     }
 
     /// `f(self)` by the chain rule, from the value and the two derivatives of `f` there.
     #[inline(always)]
-    fn chain(self, f: f64, df: f64, ddf: f64) -> Self {
+    fn chain(self, f: T, df: T, ddf: T) -> Self {
         let [x, y] = self.gradient;
         let [xx, xy, yy] = self.hessian;
         Self {
@@ -57,72 +103,114 @@ impl Dual {
     }
 }
 
-impl From<f64> for Dual {
-    fn from(value: f64) -> Self {
-        Self { value, ..Self::default() }
-    }
-}
-
-impl Add for Dual {
+impl<T: Real> Add for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
+        let ([x, y], [xx, xy, yy]) = (self.gradient, self.hessian);
+        let ([ox, oy], [oxx, oxy, oyy]) = (o.gradient, o.hessian);
         Self {
             value: self.value + o.value,
-            gradient: std::array::from_fn(|i| self.gradient[i] + o.gradient[i]),
-            hessian: std::array::from_fn(|i| self.hessian[i] + o.hessian[i]),
+            gradient: [x + ox, y + oy],
+            hessian: [xx + oxx, xy + oxy, yy + oyy],
         }
     }
 }
 
-impl Sub for Dual {
+impl<T: Real> Sub for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
+        let ([x, y], [xx, xy, yy]) = (self.gradient, self.hessian);
+        let ([ox, oy], [oxx, oxy, oyy]) = (o.gradient, o.hessian);
         Self {
             value: self.value - o.value,
-            gradient: std::array::from_fn(|i| self.gradient[i] - o.gradient[i]),
-            hessian: std::array::from_fn(|i| self.hessian[i] - o.hessian[i]),
+            gradient: [x - ox, y - oy],
+            hessian: [xx - oxx, xy - oxy, yy - oyy],
         }
     }
 }
 
-impl Mul for Dual {
+impl<T: Real> Mul for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let ([ax, ay], [bx, by]) = (self.gradient, o.gradient);
-        let cross = [2.0 * ax * bx, ax * by + ay * bx, 2.0 * ay * by];
+        let (a, [ax, ay], [axx, axy, ayy]) = (self.value, self.gradient, self.hessian);
+        let (b, [bx, by], [bxx, bxy, byy]) = (o.value, o.gradient, o.hessian);
         Self {
-            value: self.value * o.value,
-            gradient: std::array::from_fn(|i| {
-                self.gradient[i] * o.value + self.value * o.gradient[i]
-            }),
-            hessian: std::array::from_fn(|i| {
-                self.hessian[i] * o.value + cross[i] + self.value * o.hessian[i]
-            }),
+            value: a * b,
+            gradient: [ax * b + a * bx, ay * b + a * by],
+            hessian: [
+                axx * b + ax * bx * 2.0 + a * bxx,
+                axy * b + (ax * by + ay * bx) + a * bxy,
+                ayy * b + ay * by * 2.0 + a * byy,
+            ],
         }
     }
 }
 
-impl Div for Dual {
+impl<T: Real> Div for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        let r = 1.0 / o.value;
-        self * o.chain(r, -r * r, 2.0 * r * r * r)
+        let r = o.value.constant(1.0) / o.value;
+        let rr = r * r;
+        self * o.chain(r, rr * -1.0, rr * r * 2.0)
     }
 }
 
-impl Real for Dual {
+impl<T: Real> Add<f64> for Dual<T> {
+    type Output = Self;
     #[inline(always)]
-    fn value(self) -> f64 {
-        self.value
+    fn add(self, constant: f64) -> Self {
+        Self { value: self.value + constant, ..self }
+    }
+}
+
+impl<T: Real> Sub<f64> for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, constant: f64) -> Self {
+        Self { value: self.value - constant, ..self }
+    }
+}
+
+impl<T: Real> Mul<f64> for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        let ([x, y], [xx, xy, yy]) = (self.gradient, self.hessian);
+        Self {
+            value: self.value * factor,
+            gradient: [x * factor, y * factor],
+            hessian: [xx * factor, xy * factor, yy * factor],
+        }
+    }
+}
+
+/// `min` and `max` are values only: their derivatives would jump from one argument's to the other's.
+impl<T: Real> Real for Dual<T> {
+    #[inline(always)]
+    fn constant(self, value: f64) -> Self {
+        Self::of(self.value.constant(value))
+    }
+    #[inline(always)]
+    fn fixed(self) -> Self {
+        Self::of(self.value)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
         let s = self.value.sqrt();
-        self.chain(s, 0.5 / s, -0.25 / (s * self.value))
+        let half = s.constant(0.5) / s;
+        self.chain(s, half, half * -0.5 / self.value)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::of(self.value.min(other.value))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::of(self.value.max(other.value))
     }
 }
 

@@ -28,7 +28,7 @@ impl<T: Real> Corner<T> {
     }
 
     #[inline(always)]
-    fn squared_length_sum(&self) -> T {
+    pub(crate) fn squared_length_sum(&self) -> T {
         let [a, b, c] = self.squared_lengths();
         a + b + c
     }
@@ -38,6 +38,40 @@ impl<T: Real> Corner<T> {
     pub fn doubled_area(&self) -> T {
         self.a[0] * self.b[1] - self.a[1] * self.b[0]
     }
+}
+
+/// How the parts of a metric change as the vertex moves that the edges start from.
+impl<T: Real> Corner<T> {
+    /// Gradient of the doubled area, which is linear.
+    #[inline(always)]
+    fn area_gradient(&self) -> [T; 2] {
+        [self.a[1] - self.b[1], self.b[0] - self.a[0]]
+    }
+
+    /// Gradient of the sum of squared lengths; its Hessian is 4 times the identity.
+    #[inline(always)]
+    fn length_sum_gradient(&self) -> [T; 2] {
+        [(self.a[0] + self.b[0]) * -2.0, (self.a[1] + self.b[1]) * -2.0]
+    }
+
+    /// Derivatives of n / (doubled area): from that quotient, one over the doubled area, ∇n, and a
+    /// Hessian of n that is `curvature` times the identity.
+    #[inline(always)]
+    fn quotient(&self, value: T, inverse: T, gradient: [T; 2], curvature: f64) -> Dual<T> {
+        let area = self.area_gradient();
+        let dx = (gradient[0] - value * area[0]) * inverse;
+        let dy = (gradient[1] - value * area[1]) * inverse;
+        let [xx, xy, yy] = symmetric([dx, dy], area);
+        let own = inverse * curvature;
+        let hessian = [own - xx * inverse, xy * inverse * -1.0, own - yy * inverse];
+        Dual { value, gradient: [dx, dy], hessian }
+    }
+}
+
+/// xx, xy, yy of u vᵀ + v uᵀ.
+#[inline(always)]
+fn symmetric<T: Real>(u: [T; 2], v: [T; 2]) -> [T; 3] {
+    [u[0] * v[0] * 2.0, u[0] * v[1] + u[1] * v[0], u[1] * v[1] * 2.0]
 }
 
 /// Constants of a metric: what is known about it, and how its Newton step is safeguarded.
@@ -82,12 +116,23 @@ pub enum Stiffness {
     Uniform(f64),
 }
 
+/// The block in brackets, or the expression after them if they are empty.
+macro_rules! given_or {
+    ([] $otherwise:expr) => {
+        $otherwise
+    };
+    ([$given:block] $otherwise:expr) => {
+        $given
+    };
+}
+
 /// Generates the enum, the table and the formulas from one row per metric.
 macro_rules! metrics {
     ($( $(#[$doc:meta])* $variant:ident = $name:literal {
         properties { $($field:ident: $value:expr,)* }
         excess($t:ident) $excess:block
         model($u:ident, $sharpness:ident) $model:block
+        $( derivatives($w:ident, $power:ident) $derivatives:block )?
     } )*) => {
         /// A quality metric q of a triangle; smaller is better.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -119,6 +164,18 @@ macro_rules! metrics {
                 match self { $( Metric::$variant => {
                     let ($u, $sharpness) = (corner, sharpness);
                     $model
+                } )* }
+            }
+        }
+
+        impl Metric {
+            /// What [`Self::derivatives`] is, by the formulas in the metric's row where it has any:
+            /// for the CPU engine, which has no time for dual numbers.
+            #[inline(always)]
+            pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
+                match self { $( Metric::$variant => {
+                    $( let ($w, $power) = (corner, sharpness); )?
+                    given_or!([$($derivatives)?] self.derivatives(corner, sharpness))
                 } )* }
             }
         }
@@ -156,33 +213,71 @@ metrics! {
             stiffness: None,
         }
         excess(t) {
-            let [mut least, mut most, other] = t.squared_lengths();
-            if least.value() > most.value() { (least, most) = (most, least); }
-            if other.value() < least.value() { least = other; }
-            if other.value() > most.value() { most = other; }
+            let [a, b, c] = t.squared_lengths();
+            let (least, most) = (a.min(b).min(c), a.max(b).max(c));
             (most - least) / least
         }
         model(t, sharpness) {
             // The p-norm of the edge pairs: (max/min) [mean A mean B]^(1/k) with A = (L/max)^k and
             // B = (min/L)^k, both from ratios below one. Scaling by max and min changes nothing,
             // so they may enter as constants.
-            let lengths = t.squared_lengths();
-            let values = lengths.map(Real::value);
-            let most = values[0].max(values[1]).max(values[2]);
-            let least = values[0].min(values[1]).min(values[2]);
-            let (mut a, mut b) = (T::from(0.0), T::from(0.0));
-            for length in lengths {
-                let (mut up, mut down) = (length / T::from(most), T::from(least) / length);
-                for _ in 0..sharpness {
-                    up = up * up;
-                    down = down * down;
-                }
-                a = a + up;
-                b = b + down;
+            let [la, lb, lc] = t.squared_lengths();
+            let most = la.max(lb).max(lc).fixed();
+            let least = la.min(lb).min(lc).fixed();
+            let (mut a0, mut a1, mut a2) = (la / most, lb / most, lc / most);
+            let (mut b0, mut b1, mut b2) = (least / la, least / lb, least / lc);
+            for _ in 0..sharpness {
+                (a0, a1, a2) = (a0 * a0, a1 * a1, a2 * a2);
+                (b0, b1, b2) = (b0 * b0, b1 * b1, b2 * b2);
             }
-            let mut root = a * b / T::from(9.0);
+            let (a, b) = (a0 + a1 + a2, b0 + b1 + b2);
+            let mut root = a * b * (1.0 / 9.0);
             for _ in 0..sharpness { root = root.sqrt(); }
-            root * T::from(most / least) - T::from(1.0)
+            root * (most / least) - 1.0
+        }
+        derivatives(t, sharpness) {
+            let [la, lb, lc] = t.squared_lengths();
+            let (most, least) = (la.max(lb).max(lc), la.min(lb).min(lc));
+            let one = la.constant(1.0);
+            let (ia, ib, ic) = (one / la, one / lb, one / lc);
+            let over = one / most;
+            let (mut a0, mut a1, mut a2) = (la * over, lb * over, lc * over);
+            let (mut b0, mut b1, mut b2) = (least * ia, least * ib, least * ic);
+            for _ in 0..sharpness {
+                (a0, a1, a2) = (a0 * a0, a1 * a1, a2 * a2);
+                (b0, b1, b2) = (b0 * b0, b1 * b1, b2 * b2);
+            }
+            let (a, b) = (a0 + a1 + a2, b0 + b1 + b2);
+            let mut root = a * b * (1.0 / 9.0);
+            for _ in 0..sharpness { root = root.sqrt(); }
+            let q = root * (most * (least.constant(1.0) / least));
+
+            // Shares of the two edges that move in both sums, and u = ∇L/L of these edges.
+            let shares = one / (a * b);
+            let (wa, wb) = (b * shares, a * shares);
+            let (wa0, wa1, wb0, wb1) = (a0 * wa, a1 * wa, b0 * wb, b1 * wb);
+            let (ta, tb) = (ia * -2.0, ib * -2.0);
+            let (u, v) = ([t.a[0] * ta, t.a[1] * ta], [t.b[0] * tb, t.b[1] * tb]);
+            let mean_a = [u[0] * wa0 + v[0] * wa1, u[1] * wa0 + v[1] * wa1];
+            let mean_b = [u[0] * wb0 + v[0] * wb1, u[1] * wb0 + v[1] * wb1];
+            let (gx, gy) = (mean_a[0] - mean_b[0], mean_a[1] - mean_b[1]);
+            // Hessian of the logarithm: the edges' own curvature, (2 - L u uᵀ)/L, and how their
+            // shares shift, k times the spread of u over the edges.
+            let k = f64::from(1u32 << sharpness);
+            let (net_a, net_b) = (wa0 - wb0, wa1 - wb1);
+            let (more_a, more_b) = ((wa0 + wb0) * k - net_a, (wa1 + wb1) * k - net_b);
+            let own = (net_a * ia + net_b * ib) * 2.0;
+            let xx = u[0] * u[0] * more_a + v[0] * v[0] * more_b
+                - (mean_a[0] * mean_a[0] + mean_b[0] * mean_b[0]) * k;
+            let xy = u[0] * u[1] * more_a + v[0] * v[1] * more_b
+                - (mean_a[0] * mean_a[1] + mean_b[0] * mean_b[1]) * k;
+            let yy = u[1] * u[1] * more_a + v[1] * v[1] * more_b
+                - (mean_a[1] * mean_a[1] + mean_b[1] * mean_b[1]) * k;
+            Dual {
+                value: q - 1.0,
+                gradient: [q * gx, q * gy],
+                hessian: [q * (xx + own + gx * gx), q * (xy + gx * gy), q * (yy + own + gy * gy)],
+            }
         }
     }
 
@@ -202,10 +297,18 @@ metrics! {
             stiffness: None,
         }
         excess(t) {
-            let q = t.doubled_area() / T::from(2.0 * t.mean_area) - T::from(1.0);
+            let q = t.doubled_area() * (0.5 / t.mean_area) - 1.0;
             q * q
         }
-        model(t, sharpness) { let _ = sharpness; Metric::Area.excess(t) }
+        model(t, _sharpness) { Metric::Area.excess(t) }
+        derivatives(t, _sharpness) {
+            let scale = 0.5 / t.mean_area;
+            let q = t.doubled_area() * scale - 1.0;
+            let [x, y] = t.area_gradient();
+            let dq = [x * scale, y * scale];
+            let twice = q * 2.0;
+            Dual { value: q * q, gradient: [twice * dq[0], twice * dq[1]], hessian: symmetric(dq, dq) }
+        }
     }
 
     /// Root mean square of the edge lengths, over that of the equilateral triangle of mean area.
@@ -224,9 +327,16 @@ metrics! {
             stiffness: Some(Stiffness::Uniform(2.0 / SQRT_3)),
         }
         excess(t) {
-            t.squared_length_sum() / T::from(12.0 * t.mean_area / 3f64.sqrt()) - T::from(1.0)
+            t.squared_length_sum() * (3f64.sqrt() / (12.0 * t.mean_area)) - 1.0
         }
-        model(t, sharpness) { let _ = sharpness; Metric::Rms.excess(t) }
+        model(t, _sharpness) { Metric::Rms.excess(t) }
+        derivatives(t, _sharpness) {
+            let scale = 3f64.sqrt() / (12.0 * t.mean_area);
+            let value = t.squared_length_sum() * scale - 1.0;
+            let [x, y] = t.length_sum_gradient();
+            let (constant, zero) = (value.constant(4.0 * scale), value.constant(0.0));
+            Dual { value, gradient: [x * scale, y * scale], hessian: [constant, zero, constant] }
+        }
     }
 
     /// Inverse mean ratio ‖A W⁻¹‖² / (2 det(A W⁻¹)), W equilateral.
@@ -247,15 +357,27 @@ metrics! {
         excess(t) {
             // T = A W⁻¹ = [a, (2b - a)/√3]. |T|² - 2 det T is a sum of squares, so q - 1 has no
             // cancellation, and q² - 1 = (q - 1)(q - 1 + 2).
-            let w = T::from(1.0 / 3f64.sqrt());
-            let two = T::from(2.0);
+            let w = 1.0 / 3f64.sqrt();
             let ([t00, t10], [bx, by]) = (t.a, t.b);
-            let (t01, t11) = ((two * bx - t00) * w, (two * by - t10) * w);
+            let (t01, t11) = ((bx * 2.0 - t00) * w, (by * 2.0 - t10) * w);
             let (u, v) = (t00 - t11, t01 + t10);
-            let less_one = (u * u + v * v) / (two * (t00 * t11 - t01 * t10));
-            less_one * (less_one + two)
+            let less_one = (u * u + v * v) / ((t00 * t11 - t01 * t10) * 2.0);
+            less_one * (less_one + 2.0)
         }
-        model(t, sharpness) { let _ = sharpness; Metric::Imr.excess(t) }
+        model(t, _sharpness) { Metric::Imr.excess(t) }
+        derivatives(t, _sharpness) {
+            // m = q - 1 = (u² + v²)/4w over the doubled area, with w = 1/√3.
+            let w = 1.0 / 3f64.sqrt();
+            let scale = 0.25 / w;
+            let ([ax, ay], [bx, by]) = (t.a, t.b);
+            let (u, v) = (ax - (by * 2.0 - ay) * w, (bx * 2.0 - ax) * w + ay);
+            let inverse = ax.constant(1.0) / t.doubled_area();
+            let m = (u * u + v * v) * scale * inverse;
+            // ∇u = (-1, w) and ∇v = (-w, -1), so u² + v² has 2(1 + w²) = 8/3 times the identity
+            // for its Hessian.
+            let numerator = [(u + v * w) * (-2.0 * scale), (u * w - v) * (2.0 * scale)];
+            t.quotient(m, inverse, numerator, 8.0 / 3.0 * scale).into_square(m * (m + 2.0), m + 1.0)
+        }
     }
 
     /// Aspect ratio √3 (L12² + L23² + L13²) / (12 S).
@@ -274,10 +396,18 @@ metrics! {
             stiffness: Some(Stiffness::BySize(4.0 / SQRT_3)),
         }
         excess(t) {
-            let q = t.squared_length_sum() * T::from(3f64.sqrt() / 6.0) / t.doubled_area();
-            (q - T::from(1.0)) * (q + T::from(1.0))
+            let q = t.squared_length_sum() * (3f64.sqrt() / 6.0) / t.doubled_area();
+            (q - 1.0) * (q + 1.0)
         }
-        model(t, sharpness) { let _ = sharpness; Metric::Ar.excess(t) }
+        model(t, _sharpness) { Metric::Ar.excess(t) }
+        derivatives(t, _sharpness) {
+            let scale = 3f64.sqrt() / 6.0;
+            let inverse = t.a[0].constant(1.0) / t.doubled_area();
+            let q = t.squared_length_sum() * scale * inverse;
+            let [x, y] = t.length_sum_gradient();
+            t.quotient(q, inverse, [x * scale, y * scale], 4.0 * scale)
+                .into_square((q - 1.0) * (q + 1.0), q)
+        }
     }
 }
 
@@ -304,10 +434,12 @@ impl Metric {
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex the edges of
     /// `corner` start from.
     #[inline(always)]
-    pub fn derivatives(self, corner: &Corner<f64>, sharpness: u32) -> Dual {
+    pub fn derivatives<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         // Moving the vertex by d changes both edges by -d.
-        let edge = |e: [f64; 2]| [Dual::variable(e[0], 0, -1.0), Dual::variable(e[1], 1, -1.0)];
-        let dual = Corner { a: edge(corner.a), b: edge(corner.b), mean_area: corner.mean_area };
+        let ([ax, ay], [bx, by]) = (corner.a, corner.b);
+        let a = [Dual::variable(ax, 0, -1.0), Dual::variable(ay, 1, -1.0)];
+        let b = [Dual::variable(bx, 0, -1.0), Dual::variable(by, 1, -1.0)];
+        let dual = Corner { a, b, mean_area: corner.mean_area };
         self.model(&dual, sharpness)
     }
 }

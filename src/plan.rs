@@ -6,7 +6,7 @@ use crate::scheme::Scheme;
 /// How a metric is differentiated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Derivatives {
-    /// Exactly: hand-written on the GPU, by dual numbers on the CPU.
+    /// Exactly, by formulas that tests hold against dual numbers.
     #[default]
     Analytic,
     /// By forward differences of the value, 16 evaluations an element, as Mesquite differentiates

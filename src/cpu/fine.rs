@@ -3,14 +3,18 @@
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-use super::newton::{Patch, Step, inverse_mean_ratio, shape_guard};
-use super::{mean_excess, sweep_once, vcycle};
+use super::newton::Step;
+use super::objective::{feasible_mean_excess, mean_excess};
+use super::{sweep, vcycle};
 use crate::engine::Objectives;
 use crate::gpu::GpuError;
-use crate::metric::{Corner, Metric, specialize};
+use crate::metric::Metric;
 use crate::multilevel::{FineLevel, Hierarchy, Proposal};
 use crate::plan::Plan;
 use crate::problem::Problem;
+
+/// Vertices that one task moves.
+const CHUNK: usize = 1 << 12;
 
 /// Positions in double precision, and where the last correction leads.
 pub(crate) struct CpuFine<'a> {
@@ -20,64 +24,55 @@ pub(crate) struct CpuFine<'a> {
     step: Step,
     positions: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
+    gradient: Vec<DVec2>,
     direction: Vec<Vec2>,
-    /// The positions last tried.
+    /// The positions last tried, and how far along the correction they are.
     trial: Vec<DVec2>,
+    trial_length: f64,
+    /// Room for a sweep to work in.
+    moved: Vec<DVec2>,
 }
 
 impl<'a> CpuFine<'a> {
     /// The mesh at `positions`, normalized and in the problem's order.
     pub(crate) fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
-        let step = Step {
-            omega: 1.0,
-            inner: plan.inner,
-            sharpness: plan.sharpness.last,
-            derivatives: plan.derivatives,
-        };
-        let (metric, tracked) = (plan.scheme.base(), plan.tracked());
-        let trial = positions.clone();
-        let direction = Vec::new();
-        Self { problem, metric, tracked, step, positions, hierarchy: None, direction, trial }
-    }
-
-    /// The gradient of Σ q² at each free vertex.
-    fn gradient(&self) -> Vec<DVec2> {
-        let (problem, positions) = (self.problem, &self.positions);
-        let start = problem.ring_start();
-        let sharpness = self.step.sharpness;
-        specialize!(self.metric, METRIC => {
-            let of = |v: usize| -> DVec2 {
-                let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-                let patch = Patch { ring, positions, mean_area: problem.mean_area() };
-                let corners = patch.corners(positions[v]);
-                corners.map(|c| DVec2::from(METRIC.derivatives(&c, sharpness).gradient)).sum()
-            };
-            (0..problem.free_count()).into_par_iter().with_min_len(256).map(of).collect()
-        })
+        let sharpness = plan.sharpness.last;
+        Self {
+            problem,
+            metric: plan.scheme.base(),
+            tracked: plan.tracked(),
+            step: Step { omega: 1.0, inner: plan.inner, sharpness, derivatives: plan.derivatives },
+            hierarchy: None,
+            gradient: Vec::new(),
+            direction: Vec::new(),
+            trial: positions.clone(),
+            trial_length: 0.0,
+            moved: Vec::new(),
+            positions,
+        }
     }
 
     fn try_length(&mut self, length: f64) -> Option<f64> {
-        let moved = self.trial.par_iter_mut().with_min_len(4096);
-        let from = self.positions.par_iter().zip(&self.direction);
-        moved.zip(from).for_each(|(to, (&at, d))| *to = at + d.as_dvec2() * length);
-        let (positions, trial) = (&self.positions, &self.trial);
-        let guard = shape_guard(self.metric);
-        let holds = |t: &[u32; 3]| {
-            let there = triangle(trial, t);
-            there.doubled_area() > 0.0
-                && (guard.is_infinite()
-                    || inverse_mean_ratio(&there)
-                        <= guard.max(inverse_mean_ratio(&triangle(positions, t))))
-        };
-        let feasible = self.problem.triangles().par_iter().with_min_len(4096).all(holds);
-        feasible.then(|| mean_excess(self.metric, self.problem, trial))
+        let from = self.positions.par_chunks(CHUNK).zip(self.direction.par_chunks(CHUNK));
+        self.trial.par_chunks_mut(CHUNK).zip(from).for_each(|(to, (from, along))| {
+            for ((to, from), along) in to.iter_mut().zip(from).zip(along) {
+                *to = *from + along.as_dvec2() * length;
+            }
+        });
+        self.trial_length = length;
+        feasible_mean_excess(self.metric, self.problem, &self.positions, &self.trial)
     }
-}
 
-/// A triangle for the shape guard, which no mean area matters to.
-fn triangle(positions: &[DVec2], t: &[u32; 3]) -> Corner<f64> {
-    let [p, q, r] = t.map(|v| positions[v as usize]);
-    Corner { a: (q - p).to_array(), b: (r - p).to_array(), mean_area: 1.0 }
+    /// The derivative of the mean excess along the correction.
+    fn slope(&self) -> f64 {
+        let parts = self.gradient.par_chunks(CHUNK).zip(self.direction.par_chunks(CHUNK));
+        let dot = |(g, d): (&[DVec2], &[Vec2])| -> f64 {
+            g.iter().zip(d).map(|(g, d)| g.dot(d.as_dvec2())).sum()
+        };
+        // Added up in order, whatever the threads.
+        let parts: Vec<f64> = parts.map(dot).collect();
+        parts.iter().sum::<f64>() / self.problem.triangles().len() as f64
+    }
 }
 
 impl FineLevel for CpuFine<'_> {
@@ -92,7 +87,7 @@ impl FineLevel for CpuFine<'_> {
 
     async fn sweep(&mut self, omega: f64) -> Result<(), GpuError> {
         let step = Step { omega, ..self.step };
-        sweep_once(self.metric, self.problem, &mut self.positions, &step);
+        sweep::sweep(self.metric, self.problem, &mut self.positions, &mut self.moved, &step);
         Ok(())
     }
 
@@ -107,14 +102,13 @@ impl FineLevel for CpuFine<'_> {
 
     async fn propose(&mut self, omega: f64, length: f64) -> Result<Proposal, GpuError> {
         self.sweep(omega).await?;
-        let gradient = self.gradient();
-        let coarse: Vec<Vec2> = gradient.iter().map(|g| g.as_vec2()).collect();
+        let Self { metric, problem, positions, gradient, .. } = self;
+        sweep::gradient(*metric, problem, positions, self.step.sharpness, gradient);
         self.direction = match &self.hierarchy {
-            Some(hierarchy) => vcycle::correction(hierarchy, self.problem, &coarse),
-            None => vec![Vec2::ZERO; coarse.len()],
+            Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
+            None => vec![Vec2::ZERO; gradient.len()],
         };
-        let along = gradient.iter().zip(&self.direction).map(|(g, d)| g.dot(d.as_dvec2()));
-        let slope = along.sum::<f64>() / self.problem.triangles().len() as f64;
+        let slope = self.slope();
         let here = mean_excess(self.metric, self.problem, &self.positions);
         let there = if slope < 0.0 { self.try_length(length) } else { None };
         Ok(Proposal { here, slope, there })
@@ -125,9 +119,10 @@ impl FineLevel for CpuFine<'_> {
     }
 
     async fn take(&mut self, length: f64) -> Result<(), GpuError> {
-        for (to, d) in self.positions.iter_mut().zip(&self.direction) {
-            *to += d.as_dvec2() * length;
+        if length != self.trial_length {
+            self.try_length(length);
         }
+        std::mem::swap(&mut self.positions, &mut self.trial);
         Ok(())
     }
 }

@@ -3,25 +3,30 @@
 //! Same colors, same steps and same stopping as the GPU engine, on all cores.
 
 mod fine;
+mod lanes;
 mod newton;
+mod objective;
+mod patch;
+mod sweep;
 mod vcycle;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::engine::{Engine, Objectives};
 use crate::gpu::GpuError;
-use crate::metric::{Corner, Metric, specialize};
 use crate::plan::{Plan, Stop, StopRule};
 use crate::problem::Problem;
 pub(crate) use fine::CpuFine;
-use newton::{Patch, Step};
+use newton::Step;
+pub(crate) use objective::mean_excess;
 
 /// A run on the CPU.
 pub struct CpuEngine<'a> {
     problem: &'a Problem,
     plan: Plan,
     positions: Vec<DVec2>,
+    /// Where the vertices of a color go.
+    moved: Vec<DVec2>,
     /// The best state; of a monotone scheme it is the last.
     best_positions: Option<Vec<DVec2>>,
     best_sweep: usize,
@@ -37,6 +42,7 @@ impl<'a> CpuEngine<'a> {
             problem,
             plan,
             positions,
+            moved: Vec::new(),
             best_positions,
             best_sweep: 0,
             base_history: Vec::new(),
@@ -52,7 +58,7 @@ impl<'a> CpuEngine<'a> {
             sharpness: self.plan.sharpness.of(sweep),
             derivatives: self.plan.derivatives,
         };
-        sweep_once(metric, self.problem, &mut self.positions, &step);
+        sweep::sweep(metric, self.problem, &mut self.positions, &mut self.moved, &step);
     }
 
     fn evaluate(&mut self) -> Objectives {
@@ -99,50 +105,4 @@ impl Engine for CpuEngine<'_> {
     fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
         Ok(self.best_positions.as_ref().unwrap_or(&self.positions).clone())
     }
-}
-
-/// One visit of every free vertex, color by color.
-fn sweep_once(metric: Metric, problem: &Problem, positions: &mut [DVec2], step: &Step) {
-    let mut moved = Vec::new();
-    for color in problem.colors() {
-        let color = color.start as usize..color.end as usize;
-        // Vertices of one color read each other's neighbors only, never each other.
-        specialize!(metric, METRIC => {
-            visit_all(METRIC, problem, positions, color.clone(), step, &mut moved);
-        });
-        positions[color].copy_from_slice(&moved);
-    }
-}
-
-#[inline(always)]
-fn visit_all(
-    metric: Metric,
-    problem: &Problem,
-    positions: &[DVec2],
-    color: std::ops::Range<usize>,
-    step: &Step,
-    moved: &mut Vec<DVec2>,
-) {
-    let visit = |v: usize| {
-        let start = problem.ring_start();
-        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-        let patch = Patch { ring, positions, mean_area: problem.mean_area() };
-        patch.visit(metric, positions[v], step)
-    };
-    color.into_par_iter().with_min_len(256).map(visit).collect_into_vec(moved);
-}
-
-/// Mean of q² - ideal² over all triangles, in an order of summation that does not depend on the
-/// number of threads.
-pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    let mean_area = problem.mean_area();
-    let sums: Vec<f64> = specialize!(metric, METRIC => {
-        let excess = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|v| positions[v as usize]);
-            METRIC.excess(&Corner { a: (q - p).to_array(), b: (r - p).to_array(), mean_area })
-        };
-        let sum = |chunk: &[[u32; 3]]| chunk.iter().map(excess).sum::<f64>();
-        problem.triangles().par_chunks(1024).map(sum).collect()
-    });
-    sums.iter().sum::<f64>() / problem.triangles().len() as f64
 }

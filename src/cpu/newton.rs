@@ -1,21 +1,12 @@
-//! One visit of a free vertex: a safeguarded Newton step on its patch, in double precision.
+//! Visits of free vertices: safeguarded Newton steps on their patches, four at a time.
 
-use glam::DVec2;
+use fearless_simd::prelude::*;
 
-use crate::dual::Dual;
-use crate::metric::{Corner, Metric};
+use crate::cpu::lanes::{Lanes, Mask, Points};
+use crate::cpu::patch::Patches;
+use crate::dual::{Dual, Real};
+use crate::metric::Metric;
 use crate::plan::{Derivatives, line_search};
-
-/// A free vertex with its one-ring.
-#[derive(Clone, Copy)]
-pub(crate) struct Patch<'a> {
-    /// Neighbors, counter-clockwise.
-    pub(crate) ring: &'a [u32],
-    /// All positions.
-    pub(crate) positions: &'a [DVec2],
-    /// Mean area of the mesh's triangles.
-    pub(crate) mean_area: f64,
-}
 
 /// How a visit steps.
 #[derive(Clone, Copy)]
@@ -26,99 +17,22 @@ pub(crate) struct Step {
     pub(crate) derivatives: Derivatives,
 }
 
-impl Patch<'_> {
-    /// The patch's triangles, seen from the vertex at `at`.
-    #[inline(always)]
-    pub(crate) fn corners(&self, at: DVec2) -> impl Iterator<Item = Corner<f64>> + '_ {
-        let edge = move |v: u32| (self.positions[v as usize] - at).to_array();
-        let next = self.ring.iter().skip(1).chain(self.ring.first());
-        self.ring.iter().zip(next).map(move |(&a, &b)| Corner {
-            a: edge(a),
-            b: edge(b),
-            mean_area: self.mean_area,
-        })
-    }
-
-    /// Where the vertex goes from `at`.
-    #[inline(always)]
-    pub(crate) fn visit(&self, metric: Metric, mut at: DVec2, step: &Step) -> DVec2 {
-        for _ in 0..step.inner {
-            match self.newton_step(metric, at, step) {
-                Some(to) => at = to,
-                None => break,
-            }
+/// Where the vertices go from `at`.
+#[inline(always)]
+pub(crate) fn visit<S: Simd>(
+    metric: Metric,
+    patches: &Patches<S>,
+    mut at: Points<S>,
+    step: &Step,
+) -> Points<S> {
+    let mut going = Mask::splat(at[0].simd, true);
+    for _ in 0..step.inner {
+        (at, going) = newton_step(metric, patches, at, going, step);
+        if going.all_false() {
+            break;
         }
-        at
     }
-
-    /// One Newton step with its line search; `None` if no step improves the patch.
-    #[inline(always)]
-    fn newton_step(&self, metric: Metric, at: DVec2, step: &Step) -> Option<DVec2> {
-        let properties = metric.properties();
-        let mut sum = Dual::default();
-        let mut limit = shape_guard(metric);
-        let difference = match step.derivatives {
-            Derivatives::Analytic => 0.0,
-            Derivatives::FiniteDifference => line_search::DIFFERENCE * self.least_height(at),
-        };
-        for corner in self.corners(at) {
-            if properties.shape_guard.is_finite() {
-                limit = limit.max(inverse_mean_ratio(&corner));
-            }
-            sum = sum
-                + match step.derivatives {
-                    Derivatives::Analytic => metric.derivatives(&corner, step.sharpness),
-                    Derivatives::FiniteDifference => {
-                        differences(metric, &corner, step.sharpness, difference)
-                    }
-                };
-        }
-        let (direction, slope) = descent(&sum, properties.eigenvalue_floor)?;
-        let squares = sum.value + self.ring.len() as f64 * metric.ideal_squared();
-
-        let mut length = step.omega;
-        for _ in 0..line_search::TRIALS {
-            let to = at + direction * length;
-            match self.objective(metric, to, step.sharpness, limit) {
-                None => length *= line_search::SHORTEN_INFEASIBLE,
-                Some(value) => {
-                    let wanted = line_search::SUFFICIENT_DECREASE * length * slope;
-                    if properties.quadratic
-                        || value <= sum.value + wanted + line_search::SLACK * squares
-                    {
-                        return Some(to);
-                    }
-                    length *= line_search::SHORTEN;
-                }
-            }
-        }
-        None
-    }
-
-    /// The patch's objective with the vertex at `at`; `None` if a triangle is inverted or breaks
-    /// the shape guard.
-    #[inline(always)]
-    fn objective(&self, metric: Metric, at: DVec2, sharpness: u32, limit: f64) -> Option<f64> {
-        let mut sum = 0.0;
-        for corner in self.corners(at) {
-            if corner.doubled_area() <= 0.0
-                || limit.is_finite() && inverse_mean_ratio(&corner) > limit
-            {
-                return None;
-            }
-            sum += metric.model(&corner, sharpness);
-        }
-        Some(sum)
-    }
-
-    /// The least distance of the vertex from the line through a ring edge.
-    fn least_height(&self, at: DVec2) -> f64 {
-        let height = |c: Corner<f64>| {
-            let base = DVec2::from(c.b) - DVec2::from(c.a);
-            c.doubled_area() / base.length()
-        };
-        self.corners(at).map(height).fold(f64::INFINITY, f64::min)
-    }
+    at
 }
 
 /// The shape guard as it is applied, less its reserve.
@@ -127,58 +41,74 @@ pub(crate) fn shape_guard(metric: Metric) -> f64 {
     metric.properties().shape_guard * (1.0 - line_search::GUARD_RESERVE)
 }
 
-/// The inverse mean ratio, for the shape guard.
+/// One Newton step with its line search by those of the vertices that are `going`: where they are
+/// then, and which of them found a step that improves their patch.
 #[inline(always)]
-pub(crate) fn inverse_mean_ratio(corner: &Corner<f64>) -> f64 {
-    Metric::Ar.quality(corner)
-}
-
-/// The direction -H⁻¹g, H made positive definite by absolute eigenvalues with a floor, and the slope
-/// g·d along it. `None` where the objective is flat or not finite.
-fn descent(at: &Dual, floor: f64) -> Option<(DVec2, f64)> {
-    let [xx, xy, yy] = at.hessian;
-    let scale = xx.abs().max(xy.abs()).max(yy.abs());
-    if !(scale > 0.0 && scale.is_finite()) {
-        return None;
-    }
-    let g = DVec2::from(at.gradient) / scale;
-    let (xx, xy, yy) = (xx / scale, xy / scale, yy / scale);
-    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = (half * half + xy * xy).sqrt();
-    let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
-    let least = floor * high.max(low);
-    let (high, low) = (high.max(least), low.max(least));
-    // H = mean + R, R² = radius²: the projector on the upper eigenvector is (1 + R/radius)/2.
-    let upper = if radius > 0.0 {
-        0.5 * (g + DVec2::new(half * g.x + xy * g.y, xy * g.x - half * g.y) / radius)
-    } else {
-        g
+fn newton_step<S: Simd>(
+    metric: Metric,
+    patches: &Patches<S>,
+    at: Points<S>,
+    going: Mask<S>,
+    step: &Step,
+) -> (Points<S>, Mask<S>) {
+    let properties = metric.properties();
+    let sum = match step.derivatives {
+        Derivatives::Analytic => patches.derivatives(metric, at, step.sharpness),
+        Derivatives::FiniteDifference => patches.differences(metric, at, step.sharpness),
     };
-    let direction = -(upper / high + (g - upper) / low);
-    let slope = direction.dot(g) * scale;
-    (slope < 0.0).then_some((direction, slope))
+    let mut limit = at[0].constant(shape_guard(metric));
+    if properties.shape_guard.is_finite() {
+        limit = Real::max(limit, patches.worst_shape(at));
+    }
+    let ([dx, dy], slope, descends) = descent(&sum, properties.eigenvalue_floor);
+    let squares = sum.value + patches.degree() as f64 * metric.ideal_squared();
+    let most = sum.value + squares * line_search::SLACK;
+    let wanted = slope * line_search::SUFFICIENT_DECREASE;
+
+    let mut length = at[0].constant(step.omega);
+    let mut searching = going & descends;
+    let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
+    for _ in 0..line_search::TRIALS {
+        let to = [at[0] + dx * length, at[1] + dy * length];
+        let (value, feasible) = patches.objective(metric, to, step.sharpness, limit);
+        let mut taken = searching & feasible;
+        if !properties.quadratic {
+            taken &= value.simd_le(most + wanted * length);
+        }
+        end = [taken.select(to[0], end[0]), taken.select(to[1], end[1])];
+        found |= taken;
+        searching &= !taken;
+        if searching.all_false() {
+            break;
+        }
+        let shorter = length * line_search::SHORTEN;
+        length = feasible.select(shorter, length * line_search::SHORTEN_INFEASIBLE);
+    }
+    (end, found)
 }
 
-/// Value, gradient and Hessian of the model by forward differences of width `h`.
+/// The direction -H⁻¹g, H made positive definite by absolute eigenvalues with a floor, the slope g·d
+/// along it, and where there is a descent: not where the objective is flat or not finite.
 #[inline(always)]
-fn differences(metric: Metric, corner: &Corner<f64>, sharpness: u32, h: f64) -> Dual {
-    let mut values = [0.0; 16];
-    for (value, [x, y]) in values.iter_mut().zip(std::hint::black_box(line_search::DISPLACEMENTS)) {
-        let d = [f64::from(x) * h, f64::from(y) * h];
-        let moved = |e: [f64; 2]| [e[0] - d[0], e[1] - d[1]];
-        let corner = Corner { a: moved(corner.a), b: moved(corner.b), ..*corner };
-        *value = metric.model(&corner, sharpness);
-    }
-    // Gradients here and one step along x and y, each from a value and its forward neighbors.
-    let gradient = |k: usize| [(values[k + 1] - values[k]) / h, (values[k + 2] - values[k]) / h];
-    let (here, right, up) = (gradient(0), gradient(4), gradient(8));
-    Dual {
-        value: values[0],
-        gradient: here,
-        hessian: [
-            (right[0] - here[0]) / h,
-            0.5 * ((right[1] - here[1]) + (up[0] - here[0])) / h,
-            (up[1] - here[1]) / h,
-        ],
-    }
+fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Mask<S>) {
+    let [xx, xy, yy] = at.hessian;
+    let scale = Real::max(Real::max(xx.abs(), xy.abs()), yy.abs());
+    let one = scale.constant(1.0);
+    let usual = scale.simd_gt(0.0) & scale.simd_lt(f64::INFINITY);
+    let unit = one / scale;
+    let (gx, gy) = (at.gradient[0] * unit, at.gradient[1] * unit);
+    let [xx, xy, yy] = [xx * unit, xy * unit, yy * unit];
+    let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
+    let radius = Real::sqrt(half * half + xy * xy);
+    let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
+    let least = Real::max(high, low) * floor;
+    let (high, low) = (one / Real::max(high, least), one / Real::max(low, least));
+    // H = mean + R, R² = radius²: the projector on the upper eigenvector is (1 + R/radius)/2.
+    let split = radius.simd_gt(0.0);
+    let inverse = split.select(one / radius, radius);
+    let ux = split.select((gx + (half * gx + xy * gy) * inverse) * 0.5, gx);
+    let uy = split.select((gy + (xy * gx - half * gy) * inverse) * 0.5, gy);
+    let (dx, dy) = (-(ux * high + (gx - ux) * low), -(uy * high + (gy - uy) * low));
+    let slope = (dx * gx + dy * gy) * scale;
+    ([dx, dy], slope, usual & slope.simd_lt(0.0))
 }

@@ -1,6 +1,6 @@
 //! Corrections from coarser levels, on the CPU.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
@@ -11,7 +11,11 @@ const GRAIN: usize = 512;
 
 /// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
 /// descent.
-pub(super) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
+pub(super) fn correction(
+    hierarchy: &Hierarchy,
+    problem: &Problem,
+    gradient: &[DVec2],
+) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
     let ring = |v: usize| {
@@ -19,10 +23,10 @@ pub(super) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let diagonal = hierarchy.inverse_diagonal();
-    let scaled = rows(gradient.len(), |v| gradient[v] * diagonal[v]);
+    let scaled = rows(gradient.len(), |v| gradient[v].as_vec2() * diagonal[v]);
     let smoothed = |v: usize| {
         let around: Vec2 = ring(v).map(|k| scaled[k] * hierarchy.weight(v, k)).sum();
-        gradient[v] * (1.0 - SMOOTHING) + around * SMOOTHING
+        gradient[v].as_vec2() * (1.0 - SMOOTHING) + around * SMOOTHING
     };
     let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
     let restricted = rows(first.operator.rows(), |aggregate| {
@@ -116,14 +120,13 @@ mod tests {
     }
 
     /// Something that looks like noise.
-    fn noise(count: usize, seed: f32) -> Vec<Vec2> {
-        (0..count)
-            .map(|k| Vec2::new((k as f32 * seed).sin(), (k as f32 * seed * 1.7).cos()))
-            .collect()
+    fn noise(count: usize, seed: f64) -> Vec<DVec2> {
+        let at = |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos());
+        (0..count).map(at).collect()
     }
 
-    fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
-        a.iter().zip(b).map(|(a, b)| f64::from(a.dot(*b))).sum()
+    fn dot(a: &[DVec2], b: &[Vec2]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a.dot(b.as_dvec2())).sum()
     }
 
     #[test]
@@ -154,39 +157,32 @@ mod tests {
 
     #[test]
     fn smooth_errors_are_corrected_nearly_whole() {
-        // The Laplacian of a wave over the whole square, which sweeps alone would take thousands for.
+        // A wave over the whole square, which sweeps alone would take thousands for.
         let problem = square();
         let hierarchy = hierarchy(&problem);
+        let positions = problem.positions();
+        let low = positions.iter().copied().reduce(DVec2::min).unwrap();
+        let high = positions.iter().copied().reduce(DVec2::max).unwrap();
+        let pi = std::f64::consts::PI;
+        let wave = |p: &DVec2| {
+            let at = (*p - low) / (high - low) * pi;
+            DVec2::splat(at.x.sin() * at.y.sin())
+        };
+        let wave: Vec<DVec2> = positions.iter().map(wave).collect();
+        let laplacian = |v: usize| -> DVec2 {
+            let ring = problem.ring_of(v as u32).iter().map(|&k| k as usize);
+            ring.map(|k| (wave[v] - wave[k]) * f64::from(hierarchy.weight(v, k))).sum()
+        };
         let free = problem.free_count();
-        let mean =
-            problem.positions().iter().sum::<glam::DVec2>() / problem.positions().len() as f64;
-        let (low, high) = problem
-            .positions()
-            .iter()
-            .fold((mean, mean), |(low, high), p| (low.min(*p), high.max(*p)));
-        let wave: Vec<Vec2> = problem
-            .positions()
-            .iter()
-            .map(|p| (*p - low) / (high - low))
-            .map(|p| {
-                Vec2::splat(
-                    ((p.x * std::f64::consts::PI).sin() * (p.y * std::f64::consts::PI).sin())
-                        as f32,
-                )
-            })
-            .collect();
-        let start = problem.ring_start();
-        let gradient = rows(free, |v| {
-            let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-            let part = |&k: &u32| (wave[v] - wave[k as usize]) * hierarchy.weight(v, k as usize);
-            ring.iter().map(part).sum()
-        });
+        let gradient: Vec<DVec2> = (0..free).map(laplacian).collect();
         let step = correction(&hierarchy, &problem, &gradient);
-        // Along the step, as far as a line search would go.
-        let length = -dot(&step, &wave[..free]) / dot(&step, &step);
-        let left: Vec<Vec2> =
-            wave[..free].iter().zip(&step).map(|(w, s)| *w + *s * length as f32).collect();
-        let share = (dot(&left, &left) / dot(&wave[..free], &wave[..free])).sqrt();
+        // As far along the step as a line search would go.
+        let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
+        let length = -dot(&wave[..free], &step) / squared;
+        let left =
+            wave.iter().zip(&step).map(|(w, s)| (*w + s.as_dvec2() * length).length_squared());
+        let whole: f64 = wave[..free].iter().map(|w| w.length_squared()).sum();
+        let share = (left.sum::<f64>() / whole).sqrt();
         assert!(share < 0.1, "{share} of the wave is left");
     }
 }

@@ -1,4 +1,4 @@
-//! The derivatives of the CPU engine against central differences of the value.
+//! Dual numbers against central differences of the value, and what the CPU engine takes against them.
 
 use crate::support::SplitMix64;
 use crate::triangles::*;
@@ -82,5 +82,52 @@ fn a_derivative_wrong_by_a_percent_has_no_order() {
             assert!(orders(metric, sharpness, wrong_gradient)[0] < 1.5, "{metric}");
             assert!(orders(metric, sharpness, wrong_hessian)[1] < 1.5, "{metric}");
         }
+    }
+}
+
+/// The largest difference between two sets of derivatives of one triangle, in units of the larger entries.
+fn distance(found: &Dual, exact: &Dual) -> f64 {
+    let far = |x: &[f64], y: &[f64]| {
+        let size = y.iter().fold(0f64, |most, y| most.max(y.abs()));
+        x.iter().zip(y).fold(0f64, |most, (x, y)| most.max((x - y).abs())) / size
+    };
+    let value = (found.value - exact.value).abs() / (1.0 + exact.value.abs());
+    value.max(far(&found.gradient, &exact.gradient)).max(far(&found.hessian, &exact.hessian))
+}
+
+/// Calls `check` with what the CPU engine takes for derivatives and with those of dual numbers, and the
+/// triangle's rounding.
+fn compare(metric: Metric, mut check: impl FnMut(Dual, Dual, f64)) {
+    let mut rng = SplitMix64::new(17);
+    for i in 0..2000 {
+        let ratio = 10f64.powf(rng.range(0.5, 4.0));
+        let t = if i % 2 == 0 { random(&mut rng, 50.0) } else { thin(&mut rng, ratio, i % 4 == 1) };
+        let t = scaled(&t, 10f64.powf(rng.range(-3.0, 3.0)));
+        let sharpness = if metric == Metric::Edge { i % 11 } else { 0 };
+        let rounding = 64.0 * f64::EPSILON * imr(&t) * 2f64.powi(sharpness as i32);
+        check(metric.expansion(&t, sharpness), metric.derivatives(&t, sharpness), rounding);
+    }
+}
+
+#[test]
+fn what_the_cpu_engine_takes_for_derivatives_is_what_dual_numbers_make_of_the_value() {
+    for &metric in Metric::ALL {
+        compare(metric, |found, exact, rounding| {
+            let off = distance(&found, &exact);
+            assert!(off < rounding, "{metric}: {found:?} for {exact:?}, {off:e} of {rounding:e}");
+        });
+    }
+}
+
+#[test]
+fn derivatives_wrong_by_a_millionth_are_not_those_of_dual_numbers() {
+    for &metric in Metric::ALL {
+        let mut told = 0;
+        compare(metric, |found, exact, rounding| {
+            let [xx, xy, yy] = found.hessian;
+            let wrong = Dual { hessian: [xx, xy * (1.0 + 1e-6), yy * (1.0 - 1e-6)], ..found };
+            told += u32::from(distance(&wrong, &exact) >= rounding);
+        });
+        assert!(told > 1500, "{metric}: {told}");
     }
 }

@@ -16,8 +16,10 @@ fn check(smoother: &Smoother, options: &Options, limit: f64) {
             let f = *history(&outcome, options.scheme.base()).last().unwrap();
             let left = (f - limit) / limit;
             assert!(left <= TRUST * tolerance, "{label}: {left:e} left");
-            // Nor is it kept by sweeping ten times as long as needed.
-            assert!(left >= tolerance / 20.0, "{label}: {left:e} left");
+            // Nor is it kept by sweeping ten times as long as needed. One corrected sweep gains a factor
+            // of up to ten.
+            let room = if options.is_multilevel() { 100.0 } else { 20.0 };
+            assert!(left >= tolerance / room, "{label}: {left:e} left");
         }
     }
 }

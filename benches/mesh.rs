@@ -1,0 +1,23 @@
+//! Meshes of any size within seconds.
+
+use crate::support::{SplitMix64, lattice, perturb_random, renumbered};
+use gpu_smooth::Mesh;
+
+/// A lattice of `side` times `side` cells, perturbed, with every fourth diagonal the other way, so that
+/// vertices have as different numbers of neighbors as in a real mesh, and as badly numbered as any.
+pub(crate) fn irregular(side: usize, seed: u64) -> Mesh {
+    let mut mesh = lattice(side, side);
+    let mut rng = SplitMix64::new(seed);
+    for pair in mesh.triangles.as_chunks_mut::<2>().0 {
+        if rng.below(4) == 0 {
+            // The four corners in order, from one end of the diagonal.
+            let [first, second] = *pair;
+            let apex = |t: [u32; 3], o: [u32; 3]| (0..3).find(|&i| !o.contains(&t[i])).unwrap();
+            let (i, j) = (apex(first, second), apex(second, first));
+            let (p, q, r) = (first[i], first[(i + 1) % 3], first[(i + 2) % 3]);
+            let s = second[j];
+            *pair = [[p, q, s], [p, s, r]];
+        }
+    }
+    renumbered(&perturb_random(&mesh, 0.8, seed), seed).0
+}

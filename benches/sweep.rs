@@ -1,0 +1,106 @@
+//! Vertex visits and objective evaluations per second: by metric, engine and size of the mesh.
+//!
+//! ```text
+//! cargo bench --bench sweep -- imr/cpu          # RAYON_NUM_THREADS=1 for one core
+//! ```
+//!
+//! The GPU's rows are missing where there is no adapter.
+
+mod mesh;
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use gpu_smooth::gpu::GpuEngine;
+use gpu_smooth::{
+    Coloring, CpuEngine, Engine, Gpu, Metric, Options, Plan, Problem, Sharpness, StopRule, Topology,
+};
+use std::fmt;
+use std::sync::OnceLock;
+
+fn main() {
+    divan::main();
+}
+
+/// Columns and rows of the lattices: ten thousand, 57 thousand and a million vertices.
+const SIDES: [usize; 3] = [99, 238, 999];
+
+fn problem(size: usize) -> &'static Problem {
+    static PROBLEMS: [OnceLock<Problem>; SIDES.len()] = [const { OnceLock::new() }; SIDES.len()];
+    PROBLEMS[size].get_or_init(|| {
+        let mesh = mesh::irregular(SIDES[size], 1);
+        let topology = Topology::new(&mesh).unwrap();
+        Problem::new(&mesh, &topology, &Coloring::new(&topology))
+    })
+}
+
+fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| Gpu::open(None).ok()).as_ref()
+}
+
+struct Case {
+    metric: Metric,
+    on_gpu: bool,
+    size: usize,
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let engine = if self.on_gpu { "gpu" } else { "cpu" };
+        let vertices = (SIDES[self.size] + 1).pow(2);
+        write!(f, "{}/{engine}/{vertices}", self.metric)
+    }
+}
+
+fn cases(engines: &[bool]) -> Vec<Case> {
+    let sizes = 0..SIDES.len();
+    let of = |&metric: &Metric| {
+        let sizes = sizes.clone();
+        let on = move |&on_gpu: &bool| sizes.clone().map(move |size| Case { metric, on_gpu, size });
+        engines.iter().flat_map(on)
+    };
+    Metric::ALL.iter().flat_map(of).collect()
+}
+
+impl Case {
+    fn engine(&self) -> Option<Box<dyn Engine>> {
+        let problem = problem(self.size);
+        let plan = Plan {
+            scheme: self.metric.into(),
+            omega: std::array::from_fn(|i| Metric::ALL[i].properties().omega),
+            plain_sweeps: 4,
+            inner: 1,
+            derivatives: Options::default().derivatives,
+            sharpness: Sharpness::FIXED,
+            stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
+            track_all: false,
+        };
+        if self.on_gpu {
+            let engine = GpuEngine::new(gpu()?, problem, problem.positions(), plan);
+            Some(Box::new(engine.unwrap()))
+        } else {
+            Some(Box::new(CpuEngine::new(problem, problem.positions().to_vec(), plan)))
+        }
+    }
+}
+
+/// One sweep with the objective after it, over-relaxed, from the sixth on.
+#[divan::bench(args = cases(&[false, true]), max_time = 2, sample_size = 1)]
+fn sweep(bencher: Bencher, case: &Case) {
+    let Some(mut engine) = case.engine() else { return };
+    engine.advance(5).unwrap();
+    bencher
+        .counter(ItemsCount::new(problem(case.size).free_count()))
+        .bench_local(|| engine.advance(1).unwrap());
+}
+
+/// The objective alone, in triangles.
+#[divan::bench(args = cases(&[false]), max_time = 0.5, sample_size = 1)]
+fn objective(bencher: Bencher, case: &Case) {
+    bencher
+        .counter(ItemsCount::new(problem(case.size).triangles().len()))
+        .with_inputs(|| case.engine().unwrap())
+        .bench_local_values(|mut engine| engine.advance(0).unwrap());
+}

@@ -1,0 +1,188 @@
+//! Four free vertices with their one-rings, side by side, and sums over their patches.
+
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
+use crate::dual::{Dual, Real};
+use crate::metric::{Corner, Metric};
+use crate::plan::line_search;
+use crate::problem::Problem;
+
+/// The one-rings of four free vertices with the same number of neighbors.
+#[derive(Clone, Copy)]
+pub(crate) struct Patches<'a, S: Simd> {
+    /// Positions of the neighbors, counter-clockwise, the first again at the end.
+    ring: &'a [Points<S>],
+    /// Mean area of the mesh's triangles.
+    mean_area: f64,
+}
+
+impl<'a, S: Simd> Patches<'a, S> {
+    /// Reads the positions around `vertices` into `ring`.
+    #[inline(always)]
+    pub(crate) fn gather(
+        simd: S,
+        problem: &Problem,
+        positions: &[DVec2],
+        vertices: [u32; LANES],
+        ring: &'a mut Vec<Points<S>>,
+    ) -> Self {
+        let [a, b, c, d] = vertices;
+        let a = problem.ring_of(a);
+        let degree = a.len();
+        let b = &problem.ring_of(b)[..degree];
+        let c = &problem.ring_of(c)[..degree];
+        let d = &problem.ring_of(d)[..degree];
+        ring.clear();
+        for i in 0..degree {
+            ring.push(points(simd, positions, [a[i], b[i], c[i], d[i]]));
+        }
+        ring.push(ring[0]);
+        Self { ring, mean_area: problem.mean_area() }
+    }
+
+    /// The neighbors of each vertex.
+    pub(crate) fn degree(&self) -> usize {
+        self.ring.len() - 1
+    }
+
+    /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`.
+    #[inline(always)]
+    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+        let (p, q) = (self.ring[i], self.ring[i + 1]);
+        let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
+        Corner { a, b, mean_area: self.mean_area }
+    }
+
+    /// The patches' objectives with their derivatives.
+    #[inline(always)]
+    pub(crate) fn derivatives(
+        &self,
+        metric: Metric,
+        at: Points<S>,
+        sharpness: u32,
+    ) -> Dual<Lanes<S>> {
+        let zero = at[0].constant(0.0);
+        let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
+        for i in 0..self.degree() {
+            let corner = self.corner(i, at);
+            sum = sum + metric.expansion(&corner, sharpness);
+        }
+        sum
+    }
+
+    /// The same by forward differences.
+    #[inline(always)]
+    pub(crate) fn differences(
+        &self,
+        metric: Metric,
+        at: Points<S>,
+        sharpness: u32,
+    ) -> Dual<Lanes<S>> {
+        let width = self.least_height(at) * line_search::DIFFERENCE;
+        let zero = at[0].constant(0.0);
+        let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
+        for i in 0..self.degree() {
+            let corner = self.corner(i, at);
+            sum = sum + differences(metric, &corner, sharpness, width);
+        }
+        sum
+    }
+
+    /// The largest inverse mean ratio of each patch, infinite if a triangle is inverted or flat.
+    #[inline(always)]
+    pub(crate) fn worst_shape(&self, at: Points<S>) -> Lanes<S> {
+        let mut worst = at[0].constant(0.0);
+        for i in 0..self.degree() {
+            let corner = self.corner(i, at);
+            let positive = corner.doubled_area().simd_gt(0.0);
+            let ratio = inverse_mean_ratio(&corner);
+            worst = Real::max(worst, positive.select(ratio, worst.constant(f64::INFINITY)));
+        }
+        worst
+    }
+
+    /// The patches' objectives, and which have no triangle that is inverted or breaks the shape guard
+    /// `limit`.
+    #[inline(always)]
+    pub(crate) fn objective(
+        &self,
+        metric: Metric,
+        at: Points<S>,
+        sharpness: u32,
+        limit: Lanes<S>,
+    ) -> (Lanes<S>, Mask<S>) {
+        let guarded = metric.properties().shape_guard.is_finite();
+        let mut sum = at[0].constant(0.0);
+        let mut feasible = Mask::splat(sum.simd, true);
+        for i in 0..self.degree() {
+            let corner = self.corner(i, at);
+            feasible &= corner.doubled_area().simd_gt(0.0);
+            if guarded {
+                feasible &= inverse_mean_ratio(&corner).simd_le(limit);
+            }
+            sum += metric.model(&corner, sharpness);
+        }
+        (sum, feasible)
+    }
+
+    /// The least distance of each vertex from the line through a ring edge.
+    #[inline(always)]
+    fn least_height(&self, at: Points<S>) -> Lanes<S> {
+        let mut least = at[0].constant(f64::INFINITY);
+        for i in 0..self.degree() {
+            let c = self.corner(i, at);
+            let [x, y] = [c.b[0] - c.a[0], c.b[1] - c.a[1]];
+            least = Real::min(least, c.doubled_area() / Real::sqrt(x * x + y * y));
+        }
+        least
+    }
+}
+
+/// The positions of some vertices, side by side.
+#[inline(always)]
+pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
+    let [a, b, c, d] = vertices;
+    let (a, b) = (positions[a as usize], positions[b as usize]);
+    let (c, d) = (positions[c as usize], positions[d as usize]);
+    [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
+}
+
+/// The inverse mean ratio where the area is positive, for the shape guard.
+#[inline(always)]
+fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
+    corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()
+}
+
+/// Value, gradient and Hessian of the model by forward differences of width `h`.
+#[inline(always)]
+fn differences<S: Simd>(
+    metric: Metric,
+    corner: &Corner<Lanes<S>>,
+    sharpness: u32,
+    h: Lanes<S>,
+) -> Dual<Lanes<S>> {
+    let mut values = [h; 16];
+    let displacements = std::hint::black_box(line_search::DISPLACEMENTS);
+    for k in 0..16 {
+        let [x, y] = displacements[k];
+        let (x, y) = (h * f64::from(x), h * f64::from(y));
+        let a = [corner.a[0] - x, corner.a[1] - y];
+        let b = [corner.b[0] - x, corner.b[1] - y];
+        values[k] = metric.model(&Corner { a, b, ..*corner }, sharpness);
+    }
+    // Gradients here and one step along x and y, each from a value and its forward neighbors.
+    let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];
+    let [right_x, right_y] = [(values[5] - values[4]) / h, (values[6] - values[4]) / h];
+    let [up_x, up_y] = [(values[9] - values[8]) / h, (values[10] - values[8]) / h];
+    Dual {
+        value: values[0],
+        gradient: [here_x, here_y],
+        hessian: [
+            (right_x - here_x) / h,
+            ((right_y - here_y) + (up_x - here_x)) * 0.5 / h,
+            (up_y - here_y) / h,
+        ],
+    }
+}

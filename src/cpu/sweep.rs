@@ -1,0 +1,116 @@
+//! What is done at every free vertex: a sweep, and the gradient.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::lanes::{LANES, Points};
+use super::newton::{self, Step};
+use super::patch::{self, Patches};
+use crate::metric::{Metric, specialize};
+use crate::problem::Problem;
+
+/// Vertices of one task.
+const CHUNK: usize = Problem::BLOCK;
+
+/// Positions that one task copies: fewer are not worth a second thread.
+const COPY: usize = 1 << 14;
+
+/// What is done at a vertex.
+enum Visit<'s> {
+    Step(&'s Step),
+    Gradient { sharpness: u32 },
+}
+
+/// One visit of every free vertex, color by color. `moved` is room to work in.
+pub(super) fn sweep(
+    metric: Metric,
+    problem: &Problem,
+    positions: &mut [DVec2],
+    moved: &mut Vec<DVec2>,
+    step: &Step,
+) {
+    for color in problem.colors() {
+        let first = color.start as usize;
+        moved.resize(color.len(), DVec2::ZERO);
+        // Vertices of one color read each other's neighbors only, never each other.
+        visit(metric, problem, positions, first, &Visit::Step(step), moved);
+        let positions = positions[first..][..color.len()].par_chunks_mut(COPY);
+        positions.zip(moved.par_chunks(COPY)).for_each(|(to, from)| to.copy_from_slice(from));
+    }
+}
+
+/// The gradient of Σ q² at each free vertex, into `found`.
+pub(super) fn gradient(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    sharpness: u32,
+    found: &mut Vec<DVec2>,
+) {
+    found.resize(problem.free_count(), DVec2::ZERO);
+    // Vertices of one degree stand together within a color.
+    for color in problem.colors() {
+        let found = &mut found[color.start as usize..color.end as usize];
+        let what = Visit::Gradient { sharpness };
+        visit(metric, problem, positions, color.start as usize, &what, found);
+    }
+}
+
+fn visit(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    first: usize,
+    what: &Visit<'_>,
+    found: &mut [DVec2],
+) {
+    let level = Level::new();
+    found.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, found)| {
+        let first = first + chunk * CHUNK;
+        specialize!(metric, METRIC => {
+            dispatch!(level, simd => {
+                visit_all(simd, METRIC, problem, positions, first, what, found);
+            });
+        });
+    });
+}
+
+/// Visits the vertices from `first` on and writes where they go, or the gradient there.
+#[inline(always)]
+fn visit_all<S: Simd>(
+    simd: S,
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    first: usize,
+    what: &Visit<'_>,
+    found: &mut [DVec2],
+) {
+    let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
+    let mut done = 0;
+    while done < found.len() {
+        let v = (first + done) as u32;
+        let degree = problem.ring_of(v).len();
+        let most = LANES.min(found.len() - done) as u32;
+        let mut count = 1;
+        while count < most && problem.ring_of(v + count).len() == degree {
+            count += 1;
+        }
+        // Lanes too many visit the last vertex again.
+        let last = v + count - 1;
+        let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
+        let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);
+        let at = patch::points(simd, positions, vertices);
+        let [x, y] = match what {
+            Visit::Step(step) => newton::visit(metric, &patches, at, step),
+            Visit::Gradient { sharpness } => patches.derivatives(metric, at, *sharpness).gradient,
+        };
+        let count = count as usize;
+        for (lane, found) in found[done..done + count].iter_mut().enumerate() {
+            *found = DVec2::new(x[lane], y[lane]);
+        }
+        done += count;
+    }
+}
