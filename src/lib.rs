@@ -88,6 +88,7 @@ pub mod gpu;
 mod mesh;
 mod metric;
 mod multilevel;
+mod opening;
 mod options;
 mod plan;
 mod prepare;

@@ -12,6 +12,7 @@ use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::multilevel::MultilevelEngine;
+use crate::opening::{self, Opened};
 use crate::options::{Desired, Goal, Options};
 use crate::plan::{Sharpness, Stop};
 use crate::prepare::prepare;
@@ -74,6 +75,9 @@ pub struct Outcome {
     pub sweeps: u32,
     /// Corrections from coarser levels taken after sweeps; see [`Method::Multilevel`](crate::Method).
     pub corrections: u32,
+    /// Sweeps that were done on the CPU, in double precision, though a device was asked for: the first ones, where triangles
+    /// are too flat for single precision.
+    pub opening_sweeps: u32,
     /// The sweep after which the returned state was had; 0 is the mesh as it was.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
@@ -212,6 +216,7 @@ impl<'a> Smoother<'a> {
             stop: end.stop,
             sweeps: end.history.len() as u32 - 1,
             corrections: end.corrections,
+            opening_sweeps: end.opening_sweeps,
             best_sweep: best_sweep as u32,
             history: end.history,
             goal,
@@ -330,6 +335,7 @@ struct End {
     history: Vec<Objectives>,
     positions: Vec<DVec2>,
     corrections: u32,
+    opening_sweeps: u32,
     stop: Stop,
 }
 
@@ -342,7 +348,11 @@ impl Run<'_, '_> {
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<End, SmoothError> {
         let base = options.scheme.base();
-        let mut engine = self.engine(options, target, from)?;
+        let (place, opened) = self.opened(options, target, from);
+        let done = opened.as_ref().map_or(0, Opened::sweeps);
+        let options = &Options { max_sweeps: options.max_sweeps - done, ..options.clone() };
+        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
+        let mut engine = self.engine(place, options, target, from)?;
         let mut history = Vec::new();
         let mut batch = 4;
         let stop = loop {
@@ -355,7 +365,7 @@ impl Run<'_, '_> {
             }
             let progress = Progress {
                 phase: self.phase,
-                sweep: history.len() as u32 - 1,
+                sweep: done + history.len() as u32 - 1,
                 f: history.last().and_then(|o| o.of(base)).unwrap_or(f64::NAN),
             };
             if observe(&progress).is_break() {
@@ -363,11 +373,40 @@ impl Run<'_, '_> {
             }
         };
         let corrections = engine.corrections();
-        Ok(End { history, positions: engine.best_positions().await?, corrections, stop })
+        let positions = engine.best_positions().await?;
+        let (history, positions) = match opened {
+            Some(opened) => opened.followed_by(base, history, positions),
+            None => (history, positions),
+        };
+        let opening_sweeps = match (self.place, place) {
+            (Place::Gpu(..), Place::Cpu) => history.len() as u32 - 1,
+            _ => done,
+        };
+        Ok(End { history, positions, corrections, opening_sweeps, stop })
+    }
+
+    /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on
+    /// the CPU that open it; or all of the run, if they cannot.
+    fn opened(
+        &self,
+        options: &Options,
+        target: Option<f64>,
+        from: &[DVec2],
+    ) -> (Place<'_>, Option<Opened>) {
+        match self.place {
+            Place::Gpu(..) if opening::is_needed(&self.smoother.problem, from) => {
+                match opening::open(&self.smoother.problem, from, options.plan(target)) {
+                    Some(opened) => (self.place, Some(opened)),
+                    None => (Place::Cpu, None),
+                }
+            }
+            _ => (self.place, None),
+        }
     }
 
     fn engine<'e>(
         &'e self,
+        place: Place<'e>,
         options: &Options,
         target: Option<f64>,
         from: &'e [DVec2],
@@ -375,7 +414,7 @@ impl Run<'_, '_> {
         let problem = &self.smoother.problem;
         let plan = options.plan(target);
         let multilevel = options.is_multilevel();
-        Ok(match self.place {
+        Ok(match place {
             Place::Cpu if multilevel => {
                 let fine = CpuFine::new(problem, from.to_vec(), &plan);
                 AnyEngine::CpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))

@@ -40,6 +40,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cpu",
         &["dual", "engine", "gpu", "mesh", "metric", "multilevel", "plan", "prepare", "problem"],
     ),
+    ("opening", &["cpu", "engine", "metric", "plan", "problem"]),
     ("prepare", &["coloring", "error", "mesh", "problem", "topology"]),
     (
         "gpu",
@@ -66,6 +67,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "mesh",
             "metric",
             "multilevel",
+            "opening",
             "options",
             "plan",
             "prepare",

@@ -50,6 +50,11 @@ impl<'a> CpuEngine<'a> {
         }
     }
 
+    /// The normalized positions after the last sweep.
+    pub(crate) fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
     fn sweep(&mut self, sweep: u32) {
         let metric = self.plan.scheme.metric(sweep);
         let step = Step {

@@ -13,8 +13,6 @@ use crate::problem::Problem;
 /// Corrections begin when a sweep alone takes less than this share off what f has above its ideal
 /// value: before, a few bad triangles would hold every correction back.
 const SWEEPS_PAY: f64 = 0.1;
-/// And after this many sweeps at the latest.
-const MOST_SWEEPS_BEFORE: usize = 10;
 /// Over-relaxation of sweeps before the corrections, but for the first, and of those between them.
 /// Measured from strongly perturbed and smoothly distorted starts of 2,000 to a million vertices.
 const OMEGA_BEFORE: f64 = 1.5;
@@ -27,8 +25,11 @@ const REBUILD_AFTER: u32 = 2;
 const REBUILD_IF: f64 = 0.15;
 /// A correction taken at a shorter length than this helps no more than one refused,
 const SHORT: f64 = 0.05;
-/// and after so many of them in a row the run goes on without.
+/// and after so many of them in a row there are sweeps alone again, this many at least,
 const MOST_REFUSED: u32 = 2;
+const SWEEPS_BETWEEN: usize = 5;
+/// and after so many attempts for good.
+const ATTEMPTS: u32 = 5;
 
 /// A window no history fills: the run is then not judged by its decay.
 const NO_ESTIMATE: usize = 1 << 30;
@@ -82,6 +83,8 @@ pub(crate) struct MultilevelEngine<'a, F> {
     /// Over-relaxation if corrections come to nothing.
     omega: f64,
     phase: Phase,
+    /// How often corrections began.
+    attempts: u32,
     history: Vec<f64>,
     corrections: u32,
     stop: Option<Stop>,
@@ -89,8 +92,8 @@ pub(crate) struct MultilevelEngine<'a, F> {
 
 #[derive(Clone, Copy)]
 enum Phase {
-    /// Sweeps alone do most.
-    Before,
+    /// Sweeps alone, as long as they pay and to this one at least.
+    Before { until: usize },
     /// Each sweep is followed by a correction.
     Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
     /// Sweeps alone, as no correction helps.
@@ -110,7 +113,8 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
             rule: plan.stop,
             track_all: plan.track_all,
             omega: metric.properties().omega,
-            phase: Phase::Before,
+            phase: Phase::Before { until: 1 },
+            attempts: 0,
             history: Vec::new(),
             corrections: 0,
             stop: None,
@@ -129,7 +133,7 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
                 break;
             }
             let objectives = match self.phase {
-                Phase::Before => self.sweep_before().await?,
+                Phase::Before { until } => self.sweep_before(until).await?,
                 Phase::Correcting { since, length, proposed, refused } => {
                     self.sweep_and_correct(since, length, proposed, refused).await?
                 }
@@ -158,15 +162,15 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
         self.fine.positions().await
     }
 
-    async fn sweep_before(&mut self) -> Result<Objectives, GpuError> {
-        let omega = if self.history.len() == 1 { 1.0 } else { OMEGA_BEFORE };
-        self.fine.sweep(omega).await?;
+    async fn sweep_before(&mut self, until: usize) -> Result<Objectives, GpuError> {
+        let done = self.history.len();
+        self.fine.sweep(if done == 1 { 1.0 } else { OMEGA_BEFORE }).await?;
         let objectives = self.fine.objectives().await?;
-        let last = self.excess(self.history.len() - 1);
+        let last = self.excess(done - 1);
         let now = objectives.of(self.metric).unwrap_or(f64::NAN) - self.metric.ideal_squared();
-        if last - now < SWEEPS_PAY * last || self.history.len() >= MOST_SWEEPS_BEFORE {
-            let since = self.history.len();
-            self.phase = Phase::Correcting { since, length: 1.0, proposed: 0, refused: 0 };
+        if done >= until && last - now < SWEEPS_PAY * last {
+            self.attempts += 1;
+            self.phase = Phase::Correcting { since: done, length: 1.0, proposed: 0, refused: 0 };
         }
         Ok(objectives)
     }
@@ -203,8 +207,10 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
             }
             None => (here, last_length, refused + 1),
         };
+        let done = self.history.len();
         self.phase = match refused {
-            MOST_REFUSED => Phase::Without { since: self.history.len() },
+            MOST_REFUSED if self.attempts == ATTEMPTS => Phase::Without { since: done },
+            MOST_REFUSED => Phase::Before { until: done + SWEEPS_BETWEEN },
             _ => Phase::Correcting { since, length, proposed: proposed + 1, refused },
         };
         if self.track_all {
@@ -226,7 +232,7 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
         // The decay is extrapolated from what the present phase has done alone. Corrected sweeps leave no slow
         // mode behind that only a longer window would see.
         let (since, window) = match self.phase {
-            Phase::Before => (0, NO_ESTIMATE),
+            Phase::Before { .. } => (0, NO_ESTIMATE),
             // A step that failed gains little, and says nothing on what is left.
             Phase::Correcting { since, refused: 1.., .. } => (since, NO_ESTIMATE),
             Phase::Correcting { since, .. } => (since, 1),

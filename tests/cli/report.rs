@@ -32,6 +32,7 @@ fn report_holds_the_documented_keys() {
                 "scheme",
                 "sweeps",
                 "corrections",
+                "opening_sweeps",
                 "best_sweep",
                 "stop",
                 "returned",

@@ -6,6 +6,7 @@ mod support;
 
 mod agreement;
 mod coloring;
+mod flat;
 mod global;
 mod goals;
 mod invariance;

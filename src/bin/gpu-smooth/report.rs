@@ -15,6 +15,8 @@ pub(crate) struct Report {
     pub(crate) sweeps: u32,
     /// Corrections from coarser levels, each after a sweep.
     pub(crate) corrections: u32,
+    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat for the GPU.
+    pub(crate) opening_sweeps: u32,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
     /// reached, converged, stalled or max-sweeps.
@@ -197,6 +199,11 @@ impl Report {
         };
         if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
+        }
+        if self.opening_sweeps > 0 {
+            let n = self.opening_sweeps;
+            let _ =
+                write!(text, "; the first {n} on the CPU, as triangles were too flat for the GPU");
         }
         if self.returned > 0 {
             let _ = write!(text, "; vertices put back for rounding: {}", self.returned);

@@ -64,6 +64,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             scheme: args.scheme.to_string(),
             sweeps: outcome.sweeps,
             corrections: outcome.corrections,
+            opening_sweeps: outcome.opening_sweeps,
             best_sweep: outcome.best_sweep,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),

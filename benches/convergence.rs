@@ -1,0 +1,78 @@
+//! What convergence costs, in plain sweeps: how many sweeps a run takes to come within a share of its limit,
+//! and how long that is, set-up of the coarse levels included, over the time of one plain sweep.
+//!
+//! `cargo bench --bench convergence -- [VERTICES...]`, 57,000 by default. Ratios, not times, are to be compared.
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
+
+/// Runs of which the median is taken.
+const REPEATS: usize = 5;
+/// Plain sweeps timed at once.
+const PLAIN: u32 = 20;
+
+fn main() {
+    let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
+    let sizes = if sizes.is_empty() { vec![57_000] } else { sizes };
+    let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
+    let mut backends = vec![("cpu".to_owned(), Backend::Cpu)];
+    match Gpu::open(None) {
+        Ok(gpu) => backends.push((gpu.adapter().name.clone(), Backend::Gpu(gpu))),
+        Err(error) => println!("no GPU: {error}"),
+    }
+    println!("sweeps to 95 %, 99 %, 1e-4 and 1e-6 of the limit; time to 1e-6 in plain sweeps");
+    for vertices in sizes {
+        let plate = support::triangulate(&outline, vertices).unwrap();
+        let starts = [
+            ("perturbed", support::perturb_random(&plate, 1.0, 1)),
+            ("distorted", support::distort_smooth(&plate, 1.0)),
+        ];
+        for (start, mesh) in &starts {
+            for (name, backend) in &backends {
+                for metric in [Metric::Imr, Metric::Rms] {
+                    for method in [Method::Multilevel, Method::Sweeps] {
+                        let row = measure(mesh, metric, method, backend);
+                        println!("{vertices:>8} {start} {metric:<4} {method:?} on {name}: {row}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> String {
+    let smoother = Smoother::new(mesh).unwrap();
+    let run = |options: &Options| -> Outcome {
+        smoother.run(options, backend, &mut |_: &_| ControlFlow::Continue(())).unwrap()
+    };
+    let median = |options: &Options| -> Duration {
+        let mut times: Vec<_> = (0..REPEATS).map(|_| run(options).smooth).collect();
+        times.sort();
+        times[REPEATS / 2]
+    };
+    let options = Options { scheme: metric.into(), method, ..Options::default() };
+    let base = |outcome: &Outcome| -> Vec<f64> {
+        outcome.history.iter().map(|o| o.of(metric).unwrap()).collect()
+    };
+    let exact = Options { method: Method::Multilevel, tolerance: 1e-10, ..options.clone() };
+    let limit = base(&run(&exact)).into_iter().fold(f64::INFINITY, f64::min);
+    let long = Options { tolerance: 0.0, max_sweeps: 400, ..options.clone() };
+    let long = if method == Method::Multilevel { exact } else { long };
+    let history = base(&run(&long));
+    let to = |f: f64| history.iter().position(|&reached| reached <= f);
+    let way = |share: f64| to(history[0] - share * (history[0] - limit));
+    let within = |share: f64| to(limit * (1.0 + share));
+    let text = |sweeps: Option<usize>| sweeps.map_or("-".to_owned(), |n| n.to_string());
+    let counts = [way(0.95), way(0.99), within(1e-4), within(1e-6)].map(text).join(" / ");
+    let Some(sweeps) = within(1e-6) else { return format!("{counts}; not reached") };
+    let plain = Options { tolerance: 0.0, max_sweeps: PLAIN, ..Options::paper(metric.into()) };
+    let plain = median(&plain).as_secs_f64() / f64::from(PLAIN);
+    let whole = Options { tolerance: 0.0, max_sweeps: sweeps as u32, ..options };
+    let whole = median(&whole).as_secs_f64();
+    format!("{counts}; {:.1} (plain sweep {:.2} ms)", whole / plain, plain * 1e3)
+}

@@ -1,0 +1,57 @@
+//! Triangles so flat that single precision cannot tell them from inverted ones.
+
+use crate::{backends, history, name, run, scheme, support, with_points};
+use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Smoother, Stop};
+
+/// A lattice of which some vertices lie this far from an edge opposite.
+fn flattened(height: f64) -> Mesh {
+    let mut mesh = support::lattice(24, 20);
+    let held = support::check::held(&mesh);
+    for v in (0..mesh.points.len()).filter(|v| !held[*v] && v % 37 == 5) {
+        // To the middle of the edge between the two neighbors on the right, nearly.
+        mesh.points[v][0] += 0.75 - height;
+        mesh.points[v][1] += 3f64.sqrt() / 4.0;
+    }
+    mesh
+}
+
+#[test]
+fn they_are_opened_in_double_precision() {
+    for height in [1e-6, 1e-9, 1e-12] {
+        let mesh = flattened(height);
+        assert!(support::is_ccw(&mesh) && support::worst_imr(&mesh) > 0.1 / height);
+        let smoother = Smoother::new(&mesh).unwrap();
+        for scheme in [Metric::Imr.into(), Metric::Rms.into(), scheme("edge+imr")] {
+            let options = Options { scheme, ..Options::default() };
+            let base = options.scheme.base();
+            let best = backends().each_ref().map(|backend| {
+                let outcome = run(&smoother, &options, backend);
+                let label = format!("{} at {height:e} on the {}", options.scheme, name(backend));
+                let f = history(&outcome, base);
+                assert!(f.iter().all(|f| f.is_finite()), "{label}: {f:?}");
+                let on_gpu = matches!(backend, Backend::Gpu(_));
+                assert_eq!(outcome.opening_sweeps > 0, on_gpu, "{label}");
+                assert!(outcome.opening_sweeps < outcome.sweeps, "{label}");
+                let after = with_points(&mesh, &outcome.points);
+                assert!(support::is_ccw(&after), "{label}");
+                let least = f.iter().copied().fold(f64::INFINITY, f64::min);
+                let found = smoother.quality(&outcome.points).f(base);
+                assert!((found / least - 1.0).abs() < 1e-8, "{label}: {found} for {least}");
+                least
+            });
+            assert!((best[1] / best[0] - 1.0).abs() < 1e-4, "{}: {best:?}", options.scheme);
+        }
+    }
+}
+
+#[test]
+fn a_run_that_ends_before_they_are_open_is_done_on_the_cpu() {
+    let mesh = flattened(1e-12);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for method in [Method::Auto, Method::Sweeps] {
+        let options = Options { max_sweeps: 1, method, ..Options::default() };
+        let [cpu, gpu] = backends().each_ref().map(|backend| run(&smoother, &options, backend));
+        assert_eq!((gpu.stop, gpu.sweeps, gpu.opening_sweeps), (Stop::MaxSweeps, 1, 1));
+        assert_eq!(cpu.points, gpu.points);
+    }
+}
