@@ -1,6 +1,7 @@
 //! What both engines are given: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -58,7 +59,7 @@ impl Problem {
 
         let free = colors.last().map_or(0, |range| range.end) as usize;
         let (ring_start, ring) = rings(topology, &vertices[..free], &number);
-        let triangles = triangles(topology, &vertices, &number);
+        let triangles = triangles(topology, vertices.len(), &number);
 
         let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
         let area = |t: &[u32; 3]| {
@@ -180,7 +181,6 @@ fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
 
 /// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
 fn rings(topology: &Topology, vertices: &[u32], number: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    const CHUNK: usize = 4096;
     let mut start = Vec::with_capacity(vertices.len() + 1);
     let mut end = 0;
     start.push(end);
@@ -188,46 +188,46 @@ fn rings(topology: &Topology, vertices: &[u32], number: &[u32]) -> (Vec<u32>, Ve
         end += topology.star(v).len() as u32;
         start.push(end);
     }
-    let mut ring = vec![0; end as usize];
-    let mut rest = ring.as_mut_slice();
-    let mut rows = Vec::with_capacity(vertices.len() / CHUNK + 1);
-    for (chunk, vertices) in vertices.chunks(CHUNK).enumerate() {
-        let first = chunk * CHUNK;
-        let (row, more) =
-            rest.split_at_mut((start[first + vertices.len()] - start[first]) as usize);
-        rows.push((vertices, row));
-        rest = more;
-    }
-    rows.into_par_iter().for_each(|(vertices, row)| {
-        let mut row = row.iter_mut();
-        let mut edges = Vec::new();
-        for &v in vertices {
-            topology.ring_edges(v, &mut edges);
-            for (&(from, _), to) in edges.iter().zip(&mut row) {
-                *to = number[from as usize];
+    let ring: Vec<AtomicU32> = (0..end).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+    // In the mesh's own order, where the triangles around a vertex are mostly near those around the
+    // vertex before it. Each writes its own row; they are atomic only because rows lie anywhere.
+    (0..number.len() as u32).into_par_iter().with_min_len(1 << 12).for_each_init(
+        Vec::new,
+        |edges, v| {
+            if topology.free()[v as usize] {
+                topology.ring_edges(v, edges);
+                let row = &ring[start[number[v as usize] as usize] as usize..][..edges.len()];
+                for (&(from, _), to) in edges.iter().zip(row) {
+                    to.store(number[from as usize], Ordering::Relaxed);
+                }
             }
-        }
-    });
-    (start, ring)
+        },
+    );
+    (start, ring.into_iter().map(AtomicU32::into_inner).collect())
 }
 
-/// All triangles by new numbers. Their order decides how well the objective's reads are cached: by the
-/// least corner it follows the vertices' curve, and is the same whatever the input's order.
-fn triangles(topology: &Topology, vertices: &[u32], number: &[u32]) -> Vec<[u32; 3]> {
-    let mut all = Vec::with_capacity(topology.triangles().len());
-    let rows = vertices.par_chunks(4096).map(|vertices| {
-        let mut row = Vec::with_capacity(2 * vertices.len() + 64);
-        for &v in vertices {
-            let (first, least) = (row.len(), number[v as usize]);
-            let star = topology.star(v).iter();
-            let renumbered =
-                star.map(|&t| topology.triangles()[t as usize].map(|v| number[v as usize]));
-            row.extend(renumbered.filter(|t| t.iter().all(|&v| v >= least)));
-            row[first..].sort_unstable();
-        }
-        row
-    });
-    rows.collect::<Vec<_>>().iter().for_each(|row| all.extend_from_slice(row));
+/// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
+/// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
+fn triangles(topology: &Topology, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
+    let renumbered = |t: &[u32; 3]| t.map(|v| number[v as usize]);
+    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
+    let mut end = vec![0u32; vertices];
+    for t in topology.triangles() {
+        end[least(&renumbered(t)) as usize] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut end {
+        sum += *end;
+        *end = sum;
+    }
+    let mut all = vec![[0; 3]; sum as usize];
+    for t in topology.triangles().iter().rev() {
+        let t = renumbered(t);
+        let end = &mut end[least(&t) as usize];
+        *end -= 1;
+        all[*end as usize] = t;
+    }
+    all.par_chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
     all
 }
 
