@@ -67,11 +67,11 @@ fn newton_step<S: Simd>(
         let (value, feasible) = patches.objective(metric, to, step.sharpness, limit);
         let mut taken = searching & feasible;
         if !properties.quadratic {
-            taken = taken & value.simd_le(most + wanted * length);
+            taken &= value.simd_le(most + wanted * length);
         }
         end = [taken.select(to[0], end[0]), taken.select(to[1], end[1])];
-        found = found | taken;
-        searching = searching & !taken;
+        found |= taken;
+        searching &= !taken;
         if searching.all_false() {
             break;
         }

@@ -42,7 +42,7 @@ fn excess<S: Simd>(
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
         let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-        sum = sum + metric.excess(&Corner { a, b, mean_area });
+        sum += metric.excess(&Corner { a, b, mean_area });
     }
     let mut last = 0.0;
     for t in rest {

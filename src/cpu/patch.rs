@@ -118,11 +118,11 @@ impl<'a, S: Simd> Patches<'a, S> {
         let mut feasible = Mask::splat(sum.simd, true);
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            feasible = feasible & corner.doubled_area().simd_gt(0.0);
+            feasible &= corner.doubled_area().simd_gt(0.0);
             if guarded {
-                feasible = feasible & inverse_mean_ratio(&corner).simd_le(limit);
+                feasible &= inverse_mean_ratio(&corner).simd_le(limit);
             }
-            sum = sum + metric.model(&corner, sharpness);
+            sum += metric.model(&corner, sharpness);
         }
         (sum, feasible)
     }
