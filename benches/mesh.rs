@@ -1,10 +1,11 @@
 //! Meshes of any size within seconds.
+#![allow(dead_code, reason = "each benchmark uses a part of it")]
 
 use crate::support::{SplitMix64, lattice, perturb_random, renumbered};
 use gpu_smooth::Mesh;
 
 /// A lattice of `side` times `side` cells, perturbed, with every fourth diagonal the other way, so that
-/// vertices have as different numbers of neighbors as in a real mesh, and as badly numbered as any.
+/// vertices have as different numbers of neighbors as in a real mesh.
 pub(crate) fn irregular(side: usize, seed: u64) -> Mesh {
     let mut mesh = lattice(side, side);
     let mut rng = SplitMix64::new(seed);
@@ -19,5 +20,10 @@ pub(crate) fn irregular(side: usize, seed: u64) -> Mesh {
             *pair = [[p, q, s], [p, s, r]];
         }
     }
-    renumbered(&perturb_random(&mesh, 0.8, seed), seed).0
+    perturb_random(&mesh, 0.8, seed)
+}
+
+/// The same, numbered as badly as can be.
+pub(crate) fn mixed(side: usize, seed: u64) -> Mesh {
+    renumbered(&irregular(side, seed), seed).0
 }

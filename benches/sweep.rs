@@ -29,7 +29,7 @@ const SIDES: [usize; 3] = [99, 238, 999];
 fn problem(size: usize) -> &'static Problem {
     static PROBLEMS: [OnceLock<Problem>; SIDES.len()] = [const { OnceLock::new() }; SIDES.len()];
     PROBLEMS[size].get_or_init(|| {
-        let mesh = mesh::irregular(SIDES[size], 1);
+        let mesh = mesh::mixed(SIDES[size], 1);
         let topology = Topology::new(&mesh).unwrap();
         Problem::new(&mesh, &topology, &Coloring::new(&topology))
     })

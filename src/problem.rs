@@ -1,6 +1,7 @@
 //! What both engines are given: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -57,33 +58,15 @@ impl Problem {
         }
 
         let free = colors.last().map_or(0, |range| range.end) as usize;
-        let rings: Vec<Vec<u32>> = vertices[..free]
-            .par_iter()
-            .map(|&v| topology.ring(v).into_iter().map(|u| number[u as usize]).collect())
-            .collect();
-        let mut ring_start = Vec::with_capacity(free + 1);
-        let mut ring = Vec::with_capacity(free * 6);
-        ring_start.push(0);
-        for row in rings {
-            ring.extend_from_slice(&row);
-            ring_start.push(ring.len() as u32);
-        }
-
-        let mut triangles: Vec<[u32; 3]> =
-            topology.triangles().iter().map(|t| t.map(|v| number[v as usize])).collect();
-        // The order decides how well the objective's reads are cached. Keyed by the least corner
-        // it follows the vertices' curve, and is the same whatever the input's order.
-        triangles.par_sort_unstable_by_key(|t| {
-            let least = t.iter().copied().min().unwrap_or(0);
-            (least, *t)
-        });
+        let (ring_start, ring) = rings(topology, &vertices[..free], &number);
+        let triangles = triangles(topology, vertices.len(), &number);
 
         let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
         let area = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| positions[v as usize]);
             0.5 * (q - p).perp_dot(r - p)
         };
-        let mean_area = triangles.iter().map(area).sum::<f64>() / triangles.len() as f64;
+        let mean_area = sum(&triangles, area) / triangles.len() as f64;
         Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
     }
 
@@ -162,12 +145,7 @@ impl Problem {
 
 /// Center of the bounding box, and the power of two that brings the mean area into [0.5, 2).
 fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
-    let used = topology.triangles().as_flattened().iter().map(|&v| mesh.points[v as usize]);
-    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for point in used.map(DVec2::from) {
-        low = low.min(point);
-        high = high.max(point);
-    }
+    let (low, high) = bounds(mesh, topology);
     // Halved before they are added: the sum of two large coordinates may overflow.
     let center = low * 0.5 + high * 0.5;
     // Areas are taken in units of the bounding box, where their squares cannot overflow or vanish.
@@ -176,19 +154,83 @@ fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
         let [p, q, r] = t.map(|v| (DVec2::from(mesh.points[v as usize]) - center) / extent);
         0.5 * (q - p).perp_dot(r - p)
     };
-    let sum: f64 = topology.triangles().iter().map(relative).sum();
-    let length = (sum / topology.triangles().len() as f64).sqrt() * extent;
+    let length =
+        (sum(topology.triangles(), relative) / topology.triangles().len() as f64).sqrt() * extent;
     (center, (-length.log2().round()).exp2())
+}
+
+/// The bounding box of the vertices in use.
+fn bounds(mesh: &Mesh, topology: &Topology) -> (DVec2, DVec2) {
+    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let of = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|v| DVec2::from(mesh.points[v as usize]));
+        (p.min(q).min(r), p.max(q).max(r))
+    };
+    let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
+    topology.triangles().par_iter().map(of).reduce(|| none, both)
+}
+
+/// The sum of a number of each triangle, in an order that does not depend on the number of threads.
+fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
+    let parts = triangles.par_chunks(4096).map(|part| part.iter().map(&of).sum());
+    parts.collect::<Vec<f64>>().iter().sum()
+}
+
+/// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
+fn rings(topology: &Topology, vertices: &[u32], number: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let mut start = Vec::with_capacity(vertices.len() + 1);
+    let mut end = 0;
+    start.push(end);
+    for &v in vertices {
+        end += topology.star(v).len() as u32;
+        start.push(end);
+    }
+    let ring: Vec<AtomicU32> = (0..end).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+    // In the mesh's own order, where the triangles around a vertex are mostly near those around the
+    // vertex before it. Each writes its own row; they are atomic only because rows lie anywhere.
+    (0..number.len() as u32).into_par_iter().with_min_len(1 << 12).for_each_init(
+        Vec::new,
+        |edges, v| {
+            if topology.free()[v as usize] {
+                topology.ring_edges(v, edges);
+                let row = &ring[start[number[v as usize] as usize] as usize..][..edges.len()];
+                for (&(from, _), to) in edges.iter().zip(row) {
+                    to.store(number[from as usize], Ordering::Relaxed);
+                }
+            }
+        },
+    );
+    (start, ring.into_iter().map(AtomicU32::into_inner).collect())
+}
+
+/// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
+/// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
+fn triangles(topology: &Topology, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
+    let renumbered = |t: &[u32; 3]| t.map(|v| number[v as usize]);
+    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
+    let mut end = vec![0u32; vertices];
+    for t in topology.triangles() {
+        end[least(&renumbered(t)) as usize] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut end {
+        sum += *end;
+        *end = sum;
+    }
+    let mut all = vec![[0; 3]; sum as usize];
+    for t in topology.triangles().iter().rev() {
+        let t = renumbered(t);
+        let end = &mut end[least(&t) as usize];
+        *end -= 1;
+        all[*end as usize] = t;
+    }
+    all.par_chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
+    all
 }
 
 /// The vertices in use, in the order [`Problem`] promises.
 fn order(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Vec<u32> {
-    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for &v in topology.triangles().as_flattened() {
-        let point = DVec2::from(mesh.points[v as usize]);
-        low = low.min(point);
-        high = high.max(point);
-    }
+    let (low, high) = bounds(mesh, topology);
     let cells = f64::from(u32::MAX) / (high - low).max_element();
     let mut keyed: Vec<(u32, u64, u32)> = (0..mesh.points.len() as u32)
         .into_par_iter()

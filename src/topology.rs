@@ -64,13 +64,15 @@ impl Topology {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let stars = Stars::new(points.len(), triangles);
-        let across = neighbors(triangles, &stars)?;
-        let triangles = wind(points, triangles, &across);
-
-        let mut free: Vec<bool> = (0..points.len() as u32)
-            .into_par_iter()
-            .map(|v| !stars.of(v).is_empty() && ring_of(&triangles, &stars, v).is_some())
-            .collect();
+        let mut free = vec![false; points.len()];
+        // What most meshes are, all consistent and counter-clockwise, is seen from the stars alone.
+        let triangles = if are_positive(points, triangles) && close(triangles, &stars, &mut free) {
+            triangles.clone()
+        } else {
+            let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
+            close(&wound, &stars, &mut free);
+            wound
+        };
         for &v in fixed {
             free[v as usize] = false;
         }
@@ -114,7 +116,17 @@ impl Topology {
     /// second corner of its first triangle. Each neighbor makes a
     /// triangle of the patch with the vertex and the neighbor after it.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
-        ring_of(&self.triangles, &self.stars, free_vertex).unwrap_or_default()
+        let mut edges = Vec::new();
+        self.ring_edges(free_vertex, &mut edges);
+        edges.into_iter().map(|(from, _)| from).collect()
+    }
+
+    /// The same as edges of the ring from each neighbor to the next, into memory that is used again.
+    pub(crate) fn ring_edges(&self, free_vertex: u32, edges: &mut Vec<(u32, u32)>) {
+        outer_edges(&self.triangles, &self.stars, free_vertex, edges);
+        if !chain(edges) {
+            edges.clear();
+        }
     }
 }
 
@@ -126,10 +138,17 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
         return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
     }
-    if let Some(vertex) = points.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+    if let Some(vertex) =
+        points.par_iter().position_first(|p| !(p[0].is_finite() && p[1].is_finite()))
+    {
         return Err(MeshError::NotFinite { vertex: vertex as u32 });
     }
-    for (t, corners) in triangles.iter().enumerate() {
+    let is_bad = |t: &[u32; 3]| {
+        let inside = t.iter().all(|&v| (v as usize) < points.len());
+        !inside || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
+    };
+    if let Some(t) = triangles.par_iter().position_first(is_bad) {
+        let corners = &triangles[t];
         for (i, &vertex) in corners.iter().enumerate() {
             if vertex as usize >= points.len() {
                 let vertices = points.len();
@@ -141,8 +160,10 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
         }
     }
     // Vertices in no triangle may be anywhere.
-    let used = triangles.as_flattened().iter().flat_map(|&v| points[v as usize]);
-    let largest = used.fold(0.0, |most: f64, x| most.max(x.abs()));
+    let size = |t: &[u32; 3]| {
+        t.iter().flat_map(|&v| points[v as usize]).fold(0.0, |most: f64, x| most.max(x.abs()))
+    };
+    let largest = triangles.par_iter().map(size).reduce(|| 0.0, f64::max);
     if !(1e-100..=1e100).contains(&largest) {
         return Err(MeshError::OutOfRange { size: largest });
     }
@@ -225,25 +246,74 @@ fn wind(points: &[[f64; 2]], triangles: &[[u32; 3]], across: &[[u32; 3]]) -> Vec
     wound
 }
 
-/// The neighbors of a vertex in cyclic order; `None` unless its triangles close one cycle.
-fn ring_of(triangles: &[[u32; 3]], stars: &Stars, vertex: u32) -> Option<Vec<u32>> {
-    let star = stars.of(vertex);
-    let outer = |t: u32| {
-        let corners = triangles[t as usize];
-        let i = corners.iter().position(|&v| v == vertex).unwrap_or(0);
-        (corners[(i + 1) % 3], corners[(i + 2) % 3])
-    };
-    let first = outer(*star.first()?).0;
-    let mut ring = Vec::with_capacity(star.len());
-    let mut at = first;
-    for _ in star {
-        ring.push(at);
-        at = star.iter().map(|&t| outer(t)).find(|&(from, _)| from == at)?.1;
-        if at == first {
-            break;
+/// Whether every triangle is counter-clockwise, to rounding.
+fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
+    triangles.par_iter().with_min_len(1 << 12).all(|t| validity::doubled_area(points, t) > 0.0)
+}
+
+/// Notes in `closed` around which vertices the triangles close one cycle. False, with notes
+/// of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
+/// two triangles meet.
+fn close(triangles: &[[u32; 3]], stars: &Stars, closed: &mut [bool]) -> bool {
+    const CHUNK: usize = 1 << 12;
+    closed
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .map(|(chunk, closed)| {
+            let mut edges = Vec::new();
+            let mut consistent = true;
+            for (vertex, closed) in (chunk * CHUNK..).zip(closed) {
+                outer_edges(triangles, stars, vertex as u32, &mut edges);
+                *closed = chain(&mut edges);
+                // Those of a cycle are all different.
+                consistent &= *closed || are_different(&edges);
+            }
+            consistent
+        })
+        .reduce(|| true, |a, b| a && b)
+}
+
+/// The edges of a vertex's triangles that do not touch it, in the order of the triangles.
+#[inline]
+fn outer_edges(triangles: &[[u32; 3]], stars: &Stars, vertex: u32, edges: &mut Vec<(u32, u32)>) {
+    edges.clear();
+    edges.extend(stars.of(vertex).iter().map(|&t| {
+        let [a, b, c] = triangles[t as usize];
+        if a == vertex {
+            (b, c)
+        } else if b == vertex {
+            (c, a)
+        } else {
+            (a, b)
+        }
+    }));
+}
+
+/// Sorts edges into one cycle of three or more, each from where the one before it ends; false if they
+/// make none.
+fn chain(edges: &mut [(u32, u32)]) -> bool {
+    if edges.len() < 3 {
+        return false;
+    }
+    let first = edges[0].0;
+    for next in 1..edges.len() {
+        let at = edges[next - 1].1;
+        let Some(found) = edges[next..].iter().position(|&(from, _)| from == at) else {
+            return false;
+        };
+        edges.swap(next, next + found);
+        let again = edges[next + 1..].iter().any(|&(from, _)| from == at);
+        if again || at == first {
+            return false;
         }
     }
-    (at == first && ring.len() == star.len() && star.len() >= 3).then_some(ring)
+    edges[edges.len() - 1].1 == first
+}
+
+/// Whether no two edges start at one vertex, nor end at one.
+fn are_different(edges: &[(u32, u32)]) -> bool {
+    let alike = |a: &(u32, u32), b: &(u32, u32)| a.0 == b.0 || a.1 == b.1;
+    edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)))
 }
 
 #[cfg(test)]
@@ -324,9 +394,13 @@ mod tests {
     fn a_vertex_joining_two_fans_stays() {
         // Two closed fans around one vertex cannot lie flat without overlap, but their topology
         // must not make a ring of either half.
-        let stars_of = |triangles: &[[u32; 3]]| Stars::new(7, triangles);
+        let ring_of = |triangles: &[[u32; 3]]| {
+            let mut edges = Vec::new();
+            outer_edges(triangles, &Stars::new(7, triangles), 0, &mut edges);
+            chain(&mut edges).then(|| edges.iter().map(|e| e.0).collect::<Vec<_>>())
+        };
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
-        assert_eq!(ring_of(&triangles, &stars_of(&triangles), 0), None);
-        assert_eq!(ring_of(&triangles[..3], &stars_of(&triangles[..3]), 0), Some(vec![1, 2, 3]));
+        assert_eq!(ring_of(&triangles), None);
+        assert_eq!(ring_of(&triangles[..3]), Some(vec![1, 2, 3]));
     }
 }
