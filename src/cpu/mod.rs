@@ -47,7 +47,7 @@ impl<'a> CpuEngine<'a> {
             omega: self.plan.omega(metric, sweep),
             inner: self.plan.inner,
             sharpness: self.plan.sharpness.of(sweep),
-            derivatives: self.plan.derivatives,
+            derivatives: self.plan.derivatives[metric as usize],
         };
         let mut moved = Vec::new();
         for color in self.problem.colors() {

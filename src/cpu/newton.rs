@@ -44,7 +44,15 @@ impl Patch<'_> {
     pub(crate) fn visit(&self, metric: Metric, mut at: DVec2, step: &Step) -> DVec2 {
         for _ in 0..step.inner {
             match self.newton_step(metric, at, step) {
-                Some(to) => at = to,
+                Some(to) => {
+                    let moved = to.distance_squared(at);
+                    let edge = self.positions[self.ring[0] as usize].distance_squared(at);
+                    at = to;
+                    let exact = step.derivatives == Derivatives::Analytic;
+                    if exact && moved < line_search::SETTLED * line_search::SETTLED * edge {
+                        break;
+                    }
+                }
                 None => break,
             }
         }

@@ -165,6 +165,7 @@ const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
 const GUARDED: bool = {guarded};
 const SHAPE_GUARD: f32 = {guard:?}f;
+const SETTLED: f32 = {settled:?}f;
 fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
 ",
         index = metric as u32,
@@ -173,6 +174,10 @@ fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
         quadratic = properties.quadratic,
         guarded = guard.is_finite(),
         guard = if guard.is_finite() { guard } else { 0.0 },
+        settled = match derivatives {
+            Derivatives::Analytic => line_search::SETTLED,
+            Derivatives::FiniteDifference => 0.0,
+        },
     );
     match derivatives {
         Derivatives::Analytic => {
