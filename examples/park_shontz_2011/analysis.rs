@@ -143,6 +143,17 @@ impl Data {
         })
     }
 
+    /// The first run, with the median times of all: the states are the same in each.
+    pub(crate) fn typical(&self, view: View, domain: &str, scheme: &str) -> Option<RunRecord> {
+        let all: Vec<_> = self.runs_of(view, domain, scheme).collect();
+        let mut run = (*all.first()?).clone();
+        for (sweep, sample) in run.history.iter_mut().enumerate() {
+            let seconds = all.iter().filter_map(|run| Some(run.history.get(sweep)?.seconds));
+            sample.seconds = median(seconds.collect()).unwrap_or(sample.seconds);
+        }
+        Some(run)
+    }
+
     /// Domains that have runs in a view, in the paper's order.
     pub(crate) fn domains(&self, view: View) -> Vec<&'static str> {
         let has = |name: &&str| self.runs_of(view, name, "edge").next().is_some();
@@ -169,6 +180,16 @@ impl Data {
             Reach::Passed { sweeps, seconds } => Some(seconds / f64::from(sweeps.max(1))),
             Reach::Missed { .. } => None,
         }
+    }
+
+    /// Seconds per sweep over all whole rounds of a scheme, however far they led.
+    pub(crate) fn pace(&self, view: View, domain: &str, scheme: &str) -> Option<f64> {
+        let period = scheme.split('+').count();
+        let of = |run: &RunRecord| {
+            let sweeps = (run.history.len() - 1) / period * period;
+            (sweeps > 0).then(|| run.history[sweeps].seconds / sweeps as f64)
+        };
+        median(self.runs_of(view, domain, scheme).filter_map(of).collect())
     }
 
     pub(crate) fn places(&self) -> Vec<Place> {

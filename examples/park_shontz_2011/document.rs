@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// A part of the report. Text may hold `code` and **strong**.
+/// A part of the report. Text may hold `code`, **strong** and *emphasis*.
 pub(crate) enum Block {
     Heading(u8, String),
     Text(String),
@@ -120,10 +120,10 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// `code` and **strong**.
+/// `code`, **strong** and *emphasis*.
 fn inline(text: &str) -> String {
     let mut out = escaped(text);
-    for (mark, tag) in [("`", "code"), ("**", "strong")] {
+    for (mark, tag) in [("`", "code"), ("**", "strong"), ("*", "em")] {
         let parts: Vec<_> = out.split(mark).map(str::to_owned).collect();
         out = parts[0].clone();
         for (i, part) in (1..).zip(&parts[1..]) {

@@ -25,6 +25,7 @@ pub(crate) fn doubts() -> Vec<String> {
     list.extend(aspect_ratio());
     list.extend(area_and_ar());
     list.extend(text_of_area());
+    list.extend(two_quadratics());
     list
 }
 
@@ -110,6 +111,18 @@ fn area_and_ar() -> Option<String> {
          Table 4 with sweeps in equal number, an AR sweep on airplane must take 2 × {both} − {area} = {ar:.3} s, {} \
          less than one of AREA.",
         percent(1.0 - ar / area)
+    ))
+}
+
+/// RMS and AREA should cost about the same.
+fn two_quadratics() -> Option<String> {
+    let i = DOMAINS.iter().position(|d| d.name == "airplane")?;
+    let (rms, area) = (row(SECONDS_PER_SWEEP, "rms")?[i], row(SECONDS_PER_SWEEP, "area")?[i]);
+    Some(format!(
+        "**RMS slow, AREA fast.** In one vertex both objectives are quadratic, one Newton step is exact, and neither \
+         has special derivatives; yet by Table 5 a sweep on airplane takes {rms} s and {area} s, {:.0} times as long. \
+         The paper does not say why.",
+        rms / area
     ))
 }
 

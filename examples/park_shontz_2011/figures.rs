@@ -51,8 +51,8 @@ pub(crate) fn draw_all(data: &Data) -> Result<Vec<Figure>> {
         if !rows.is_empty() {
             let judge = base(schemes[0]).to_uppercase();
             let caption = format!(
-                "Figure {number}: {what}: f by {judge} after each sweep against time, one run each on the \
-                 CPU from the random start. The dashed line is where 95 % of the way is gone."
+                "Figure {number}: {what}: f by {judge} after each sweep against time, the median of \
+                 repeated runs on the CPU from the random start. The dashed line is where 95 % of the way is gone."
             );
             figures.push(Figure { number, caption, svg: convergence(data, &rows, &schemes)? });
         }
@@ -154,7 +154,7 @@ fn panel_of_histories(
     let judge = base(schemes[0]);
     let curves: Vec<_> = schemes
         .iter()
-        .filter_map(|scheme| Some((scheme, data.runs_of(view, domain, scheme).next()?)))
+        .filter_map(|scheme| Some((scheme, data.typical(view, domain, scheme)?)))
         .collect();
     let Some((_, first)) = curves.first() else { return Ok(()) };
     let target = first.history[0].f - view.fraction * (first.history[0].f - first.desired);

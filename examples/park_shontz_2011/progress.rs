@@ -30,11 +30,13 @@ fn guess(batch: &Batch) -> f64 {
         Size::Coarse => 1.0,
         Size::Full => 40.0,
     };
-    let start = match batch.start {
-        Start::Random => 1.0,
-        Start::Smooth => 2.0,
+    let sweeps = match batch.start {
+        Start::Random if batch.fraction <= 0.95 => 4.0,
+        Start::Random => 16.0,
+        Start::Smooth => 50.0,
     };
-    size * start * f64::from(batch.inner)
+    let differences = if batch.setting == Setting::Published { 6.0 } else { 1.0 };
+    size * sweeps * differences * f64::from(batch.inner)
 }
 
 impl Progress {

@@ -94,7 +94,7 @@ fn each_metric_of_a_scheme_is_differentiated_in_its_own_way() {
         let f = |name: &str, derivatives| {
             let plan = Plan { derivatives, ..plan(scheme(name), 2) };
             let base = plan.scheme.base();
-            let log = engine(&backend, &problem, plan).advance(2).unwrap();
+            let log = engine(backend, &problem, plan).advance(2).unwrap();
             log.iter().map(|o| o.of(base).unwrap()).collect::<Vec<_>>()
         };
         let [exact, edges, all] = [

@@ -1,18 +1,12 @@
 //! The examples do what they are examples of.
 
 #[allow(dead_code)]
-#[path = "../../examples/embed/main.rs"]
+#[path = "../examples/embed/main.rs"]
 mod embed;
 
 #[allow(dead_code)]
-#[path = "../../examples/moving_boundary/main.rs"]
+#[path = "../examples/moving_boundary/main.rs"]
 mod moving_boundary;
-
-#[allow(dead_code)]
-#[path = "../../examples/park_shontz_2011/main.rs"]
-mod park_shontz;
-
-mod paper;
 
 use std::path::Path;
 

@@ -1,13 +1,17 @@
 //! Park and Shontz's experiments end to end, on few meshes: what the report says is what the data files say.
 
+#[allow(dead_code)]
+#[path = "../examples/park_shontz_2011/main.rs"]
+mod park_shontz;
+
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 use gpu_smooth::Gpu;
 
-use crate::park_shontz::study::{Place, Study};
-use crate::park_shontz::{Request, gather, report};
+use park_shontz::study::{Place, Study};
+use park_shontz::{Request, gather, report};
 
 /// Rows of a CSV file by column name.
 fn csv(path: &Path) -> Vec<HashMap<String, String>> {
