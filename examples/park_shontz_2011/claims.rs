@@ -5,7 +5,7 @@ use super::document::Table;
 use super::export::FRACTIONS;
 use super::published::{SECONDS_PER_SWEEP, row};
 use super::store::{BINS, DistributionRecord};
-use super::study::{Place, Setting};
+use super::study::{Place, Setting, Size};
 use super::tables::{NONE, percent, setting_name, share};
 
 /// How far the median may lie from the published range and still reproduce it.
@@ -27,7 +27,8 @@ pub(crate) struct Measure {
 
 impl Claim {
     /// Reproduced, not reproduced, or only under what.
-    pub(crate) fn verdict(&self) -> String {
+    /// `size` is that of the tables: where others stand in, it is said.
+    pub(crate) fn verdict(&self, size: Size) -> String {
         let at_paper = |setting| {
             let mut of =
                 self.measures.iter().filter(|(v, _)| v.setting == setting && v.fraction == 0.95);
@@ -44,9 +45,9 @@ impl Claim {
         } else if at_paper(Setting::Published) && at_paper(Setting::Analytic) {
             let fails: Vec<_> =
                 self.measures.iter().filter(|(_, m)| !m.holds).map(|(v, _)| *v).collect();
-            format!("**reproduced** at the paper's 95 %; not under: {}", conditions(&fails))
+            format!("**reproduced** at the paper's 95 %; not under: {}", conditions(&fails, size))
         } else {
-            format!("**reproduced only under**: {}", conditions(&holds))
+            format!("**reproduced only under**: {}", conditions(&holds, size))
         }
     }
 
@@ -60,7 +61,7 @@ impl Claim {
 }
 
 /// "as published (cpu 95.0 %, 99.0 %)" and so on.
-fn conditions(views: &[View]) -> String {
+fn conditions(views: &[View], size: Size) -> String {
     let mut parts: Vec<(String, Vec<String>)> = Vec::new();
     for view in views {
         let name = format!(
@@ -68,7 +69,8 @@ fn conditions(views: &[View]) -> String {
             setting_name(view.setting),
             view.place.to_string().to_uppercase()
         );
-        let share = share(view.fraction);
+        let coarse = if view.size == size { "" } else { " on coarse meshes" };
+        let share = share(view.fraction) + coarse;
         match parts.iter_mut().find(|(known, _)| *known == name) {
             Some((_, shares)) => shares.push(share),
             None => parts.push((name, vec![share])),
@@ -239,7 +241,7 @@ pub(crate) fn table(data: &Data, claims: &[Claim]) -> Table {
                 claim.at(Setting::Published, place, 0.95),
                 claim.at(Setting::Analytic, place, 0.95),
                 claim.at(Setting::Analytic, place, 0.999),
-                claim.verdict(),
+                claim.verdict(data.header.study.size),
             ]
         })
         .collect();
