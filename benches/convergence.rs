@@ -3,6 +3,8 @@
 //!
 //! `cargo bench --bench convergence -- [VERTICES...]`, 57,000 by default. Ratios, not times, are to be compared.
 
+#![allow(clippy::print_stdout)]
+
 #[path = "../tests/support/mod.rs"]
 mod support;
 

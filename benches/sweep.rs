@@ -72,7 +72,7 @@ impl Case {
             omega: std::array::from_fn(|i| Metric::ALL[i].properties().omega),
             plain_sweeps: 4,
             inner: 1,
-            derivatives: Options::default().derivatives,
+            derivatives: [Options::default().derivatives; Metric::ALL.len()],
             sharpness: Sharpness::FIXED,
             stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
             track_all: false,

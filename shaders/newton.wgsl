@@ -112,6 +112,9 @@ fn sweep(
         }
         p.at = advanced(p.at, d / p.unit);
         moved = true;
+        if length(d) < SETTLED {
+            break;
+        }
     }
     if moved {
         positions[vertex] = p.at;

@@ -42,7 +42,8 @@ pub struct Options {
     pub omega: Option<f64>,
     /// Sweeps before over-relaxation starts.
     pub plain_sweeps: u32,
-    /// Newton steps per visit of a vertex.
+    /// The most Newton steps per visit of a vertex. With analytic derivatives a visit ends sooner once
+    /// its steps have become short.
     pub inner: u32,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
@@ -149,7 +150,7 @@ impl Options {
             omega: by_metric,
             plain_sweeps: self.plain_sweeps,
             inner: self.inner.max(1),
-            derivatives: self.derivatives,
+            derivatives: [self.derivatives; Metric::ALL.len()],
             sharpness: self.sharpness,
             stop: StopRule {
                 target,

@@ -144,10 +144,10 @@ pub struct Plan {
     pub omega: [f64; Metric::ALL.len()],
     /// Sweeps before over-relaxation starts.
     pub plain_sweeps: u32,
-    /// Newton steps per visit of a vertex.
+    /// The most Newton steps per visit of a vertex.
     pub inner: u32,
-    /// How metrics are differentiated.
-    pub derivatives: Derivatives,
+    /// How each metric is differentiated, in the order of [`Metric::ALL`].
+    pub derivatives: [Derivatives; Metric::ALL.len()],
     /// The exponent of EDGE's p-norm.
     pub sharpness: Sharpness,
     /// When to end.
@@ -165,7 +165,8 @@ impl Plan {
     /// Whether every sweep lowers the base objective, so that the last state is the best. Differences
     /// promise nothing: their minimum is a little off.
     pub fn is_monotone(&self) -> bool {
-        self.scheme.is_monotone() && self.derivatives == Derivatives::Analytic
+        let base = self.scheme.base();
+        self.scheme.is_monotone() && self.derivatives[base as usize] == Derivatives::Analytic
     }
 
     /// The metrics whose objective is evaluated after each sweep.
@@ -190,6 +191,10 @@ pub(crate) mod line_search {
     /// Share of the shape guard kept in reserve, so that a triangle let through in single precision is
     /// within the guard in exact arithmetic as well.
     pub(crate) const GUARD_RESERVE: f64 = 1e-3;
+    /// A visit of several steps ends with one shorter than this share of an edge of the patch. Not so by
+    /// differences: their gradient does not vanish where the objective is least, and Mesquite, which
+    /// they imitate, goes on to the last step it is granted.
+    pub(crate) const SETTLED: f64 = 1e-4;
     /// Step of forward differences, relative to the vertex's least height over a ring edge. Large
     /// enough for the second differences to survive single precision.
     pub(crate) const DIFFERENCE: f64 = 1e-2;

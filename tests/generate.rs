@@ -101,6 +101,44 @@ fn triangulated_plate_meets_its_bounds() {
     }
 }
 
+/// The domains of `examples/park_shontz_2011`: name, holes, and vertices of the paper's mesh.
+const DOMAINS: [(&str, i64, usize); 6] = [
+    ("airplane", 0, 72205),
+    ("duck", 1, 62372),
+    ("fish", 1, 57575),
+    ("hand", 0, 68807),
+    ("mechanic", 7, 69904),
+    ("twoholes", 2, 56088),
+];
+
+#[test]
+fn domains_meet_their_bounds() {
+    for (name, holes, paper) in DOMAINS {
+        let path = format!("{}/meshes/{name}.outline", env!("CARGO_MANIFEST_DIR"));
+        let outline = Outline::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+        for vertices in [1000, 1500, 3000, paper] {
+            let mesh = support::triangulate(&outline, vertices).unwrap();
+            assert!(support::is_ccw(&mesh) && support::is_valid(&mesh), "{name}");
+            assert_eq!(euler(&mesh), 1 - holes, "{name}");
+            let off = mesh.points.len() as f64 / vertices as f64 - 1.0;
+            assert!(off.abs() < 0.01, "{name}: {} vertices", mesh.points.len());
+            let angle = support::min_angle(&mesh);
+            assert!(angle > support::generate::ANGLE_LIMIT - 1e-6, "{name} {vertices}: {angle}");
+            if vertices == paper {
+                continue;
+            }
+            assert_eq!(mesh, support::triangulate(&outline, vertices).unwrap(), "the second time");
+            for worse in
+                [support::perturb_random(&mesh, 1.0, 1), support::distort_smooth(&mesh, 0.9)]
+            {
+                assert!(support::is_ccw(&worse) && support::is_valid(&worse), "{name}");
+                assert_held_still(&mesh, &worse);
+                assert!(support::f_imr(&worse) > 1.1 * support::f_imr(&mesh), "{name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn lines_and_lone_vertices_are_fixed() {
     let mesh = filled(
@@ -305,13 +343,18 @@ fn meshes_keep_their_bytes() {
 
 /// If this fails after an update of spade, see `meshes/README.md`.
 #[test]
-fn committed_plate_is_what_its_command_makes() {
-    let [node, ele] = [include_str!("../meshes/plate.node"), include_str!("../meshes/plate.ele")];
-    let command = node.lines().next().unwrap();
-    let args = command.strip_prefix("# cargo run --release --example make_mesh -- ").unwrap();
-    let args: Vec<_> = args.split_whitespace().map(String::from).collect();
-    let made = Recipe::parse(&args).unwrap().texts().unwrap();
-    assert!(made == [node, ele], "`{command}` makes another mesh");
+fn committed_meshes_are_what_their_commands_make() {
+    for name in DOMAINS.map(|(name, ..)| name).into_iter().chain(["plate"]) {
+        let [node, ele] = ["node", "ele"].map(|ending| {
+            let path = format!("{}/meshes/{name}.{ending}", env!("CARGO_MANIFEST_DIR"));
+            std::fs::read_to_string(path).unwrap()
+        });
+        let command = node.lines().next().unwrap().to_owned();
+        let args = command.strip_prefix("# cargo run --release --example make_mesh -- ").unwrap();
+        let args: Vec<_> = args.split_whitespace().map(String::from).collect();
+        let made = Recipe::parse(&args).unwrap().texts().unwrap();
+        assert!(made == [node, ele], "`{command}` makes another mesh");
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::engine::Objectives;
 use crate::gpu::GpuError;
 use crate::metric::Metric;
 use crate::multilevel::{FineLevel, Hierarchy, Proposal};
-use crate::plan::Plan;
+use crate::plan::{Derivatives, Plan};
 use crate::problem::Problem;
 
 /// Vertices that one task moves.
@@ -41,7 +41,12 @@ impl<'a> CpuFine<'a> {
             problem,
             metric: plan.scheme.base(),
             tracked: plan.tracked(),
-            step: Step { omega: 1.0, inner: plan.inner, sharpness, derivatives: plan.derivatives },
+            step: Step {
+                omega: 1.0,
+                inner: plan.inner,
+                sharpness,
+                derivatives: Derivatives::Analytic,
+            },
             hierarchy: None,
             gradient: Vec::new(),
             direction: Vec::new(),

@@ -61,7 +61,7 @@ impl<'a> CpuEngine<'a> {
             omega: self.plan.omega(metric, sweep),
             inner: self.plan.inner,
             sharpness: self.plan.sharpness.of(sweep),
-            derivatives: self.plan.derivatives,
+            derivatives: self.plan.derivatives[metric as usize],
         };
         sweep::sweep(metric, self.problem, &mut self.positions, &mut self.moved, &step);
     }

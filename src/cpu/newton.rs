@@ -27,12 +27,24 @@ pub(crate) fn visit<S: Simd>(
 ) -> Points<S> {
     let mut going = Mask::splat(at[0].simd, true);
     for _ in 0..step.inner {
+        let from = at;
         (at, going) = newton_step(metric, patches, at, going, step);
+        if step.inner > 1 && step.derivatives == Derivatives::Analytic {
+            going &= !settled(patches, from, at);
+        }
         if going.all_false() {
             break;
         }
     }
     at
+}
+
+/// Which vertices took a step too short to be followed by another.
+#[inline(always)]
+fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mask<S> {
+    let (x, y) = (to[0] - from[0], to[1] - from[1]);
+    let least = line_search::SETTLED * line_search::SETTLED;
+    (x * x + y * y).simd_lt(patches.squared_edge(from) * least)
 }
 
 /// The shape guard as it is applied, less its reserve.

@@ -47,6 +47,13 @@ impl<'a, S: Simd> Patches<'a, S> {
         self.ring.len() - 1
     }
 
+    /// The squared length of an edge at each vertex.
+    #[inline(always)]
+    pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
+        let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
+        x * x + y * y
+    }
+
     /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`.
     #[inline(always)]
     fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {

@@ -95,7 +95,10 @@ impl Run {
         let mut sweeps: Vec<(Metric, Pipeline)> = Vec::new();
         for &metric in plan.scheme.metrics() {
             if sweeps.iter().all(|&(known, _)| known != metric) {
-                sweeps.push((metric, pipeline(Kernel::Sweep(metric, plan.derivatives))?));
+                sweeps.push((
+                    metric,
+                    pipeline(Kernel::Sweep(metric, plan.derivatives[metric as usize]))?,
+                ));
             }
         }
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;

@@ -88,7 +88,8 @@ pub enum Interface {
 impl Kernel {
     /// Every kernel that a plan and what belongs to it may need, on an application's device or in a run.
     pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
-        let sweeps = plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives));
+        let sweeps =
+            plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives[m as usize]));
         let mut kernels: Vec<_> = sweeps.collect();
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
@@ -257,6 +258,7 @@ const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
 const GUARDED: bool = {guarded};
 const SHAPE_GUARD: f32 = {guard:?}f;
+const SETTLED: f32 = {settled:?}f;
 fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
 fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
 ",
@@ -266,6 +268,10 @@ fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
         quadratic = properties.quadratic,
         guarded = guard.is_finite(),
         guard = if guard.is_finite() { guard } else { 0.0 },
+        settled = match derivatives {
+            Derivatives::Analytic => line_search::SETTLED,
+            Derivatives::FiniteDifference => 0.0,
+        },
     );
     match derivatives {
         Derivatives::Analytic => {

@@ -24,7 +24,7 @@ fn a_sweep_by_differences_is_a_little_off() {
                 omega: [1.0; Metric::ALL.len()],
                 plain_sweeps: 0,
                 inner: 1,
-                derivatives,
+                derivatives: [derivatives; Metric::ALL.len()],
                 sharpness: Sharpness::FIXED,
                 stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,

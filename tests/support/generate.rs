@@ -1,6 +1,6 @@
 //! Meshes from nothing: a lattice, a graded ring, and what an outline encloses.
 
-use super::check::{area, boundary, is_ccw, is_valid};
+use super::check::{area, boundary, is_ccw, is_valid, min_angle};
 use super::outline::Outline;
 use super::trig::on_circle;
 use gpu_smooth::Mesh;
@@ -77,12 +77,23 @@ pub fn graded(around: usize, ratio: f64) -> Mesh {
 /// of a size that makes the number of vertices `vertices` within 1 %. The corners of the outline come
 /// first, in its order. The same for the same version of spade, wherever it runs.
 pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
+    let mesh = triangulate_within(outline, vertices, false)?;
+    if min_angle(&mesh) > ANGLE_LIMIT - 1e-6 {
+        return Ok(mesh);
+    }
+    // spade splits no edge that makes a sharp angle with the convex hull, and leaves bad triangles at it.
+    let boxed = triangulate_within(outline, vertices, true)?;
+    Ok(if min_angle(&boxed) > min_angle(&mesh) { boxed } else { mesh })
+}
+
+/// With the outline in a box, if so wished, to have the convex hull far from it.
+fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result<Mesh, String> {
     let (domain, target) = (outline.area(), vertices as f64);
     // As many as a typical mesh has; then by what came out, between sizes that were too small and too large.
     let (mut size, mut low, mut high) = (domain / (1.2 * target), 0.0, f64::INFINITY);
     let mut closest: Option<(f64, Mesh)> = None;
     for _ in 0..24 {
-        let refined = refine(outline, size, 2 * vertices + 10_000)?;
+        let refined = refine(outline, size, 2 * vertices + 10_000, boxed)?;
         let count = refined.as_ref().map_or(2.0 * target, |mesh| mesh.points.len() as f64);
         let off = (count / target - 1.0).abs();
         if let Some(mesh) = refined
@@ -114,7 +125,7 @@ pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
 }
 
 /// Triangles of at most this area; nothing if it takes more than `limit` vertices.
-fn refine(outline: &Outline, size: f64, limit: usize) -> Result<Option<Mesh>, String> {
+fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Option<Mesh>, String> {
     let mut cdt = Cdt::new();
     let closed = outline.loops.iter().map(|ring| (ring, true));
     for (points, closed) in closed.chain(outline.lines.iter().map(|line| (line, false))) {
@@ -133,7 +144,7 @@ fn refine(outline: &Outline, size: f64, limit: usize) -> Result<Option<Mesh>, St
     // spade takes every constraint edge for a border between inside and outside. With lines inside it
     // must refine everything; a box around keeps the outline from making sharp angles with the hull.
     let borders_only = outline.lines.is_empty();
-    if !borders_only {
+    if !borders_only || boxed {
         for p in surrounding_box(outline) {
             insert(&mut cdt, p)?;
         }

@@ -1,7 +1,9 @@
 //! The same sweeps on both engines, and the same sweeps however they are asked for.
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
-use gpu_smooth::{Metric, Plan, Problem, Sharpness, Stop, StopRule};
+use gpu_smooth::{
+    CpuEngine, Derivatives, Engine, Metric, Plan, Problem, Sharpness, Stop, StopRule,
+};
 
 /// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU in units of how
 /// far it went.
@@ -52,7 +54,8 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
     let sharpness = Sharpness { first: 1, every: 3, last: 4 };
     let own = |name: &str| Plan { sharpness, plain_sweeps: 3, ..plan(scheme(name), 12) };
     let twice = Plan { inner: 2, ..own("imr") };
-    for plan in [own("imr"), own("rms"), own("edge"), own("edge+imr+imr"), twice] {
+    let settled = Plan { inner: 50, ..own("imr") };
+    for plan in [own("imr"), own("rms"), own("edge"), own("edge+imr+imr"), twice, settled] {
         let [cpu, gpu] = backends().each_ref().map(|backend| {
             let log = engine(backend, &problem, plan.clone()).advance(12).unwrap();
             log.iter().map(|o| o.of(plan.scheme.base()).unwrap()).collect::<Vec<_>>()
@@ -63,6 +66,46 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
             let scheme = &plan.scheme;
             assert!((gpu / cpu - 1.0).abs() < 1e-5, "{scheme}, sweep {sweep}: {gpu} for {cpu}");
         }
+    }
+}
+
+#[test]
+fn a_visit_ends_once_its_steps_are_short() {
+    let problem = mild();
+    let after = |inner| {
+        let mut engine = CpuEngine::new(
+            &problem,
+            problem.positions().to_vec(),
+            Plan { inner, ..plan(Metric::Imr.into(), 1) },
+        );
+        engine.advance(1).unwrap();
+        engine.best_positions().unwrap()
+    };
+    assert_ne!(after(2), after(30));
+    assert_eq!(after(30), after(1000));
+}
+
+#[test]
+fn each_metric_of_a_scheme_is_differentiated_in_its_own_way() {
+    let problem = mild();
+    let mut edge_only = [Derivatives::Analytic; Metric::ALL.len()];
+    edge_only[Metric::Edge as usize] = Derivatives::FiniteDifference;
+    for backend in backends() {
+        let f = |name: &str, derivatives| {
+            let plan = Plan { derivatives, ..plan(scheme(name), 2) };
+            let base = plan.scheme.base();
+            let log = engine(backend, &problem, plan).advance(2).unwrap();
+            log.iter().map(|o| o.of(base).unwrap()).collect::<Vec<_>>()
+        };
+        let [exact, edges, all] = [
+            [Derivatives::Analytic; Metric::ALL.len()],
+            edge_only,
+            [Derivatives::FiniteDifference; Metric::ALL.len()],
+        ]
+        .map(|derivatives| f("imr+edge", derivatives));
+        assert_eq!(edges[1], exact[1], "imr exactly");
+        assert_ne!(edges[2], exact[2], "edge by differences");
+        assert_ne!(all[1], exact[1]);
     }
 }
 

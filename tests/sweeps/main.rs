@@ -109,7 +109,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
             .unwrap(),
         plain_sweeps: 4,
         inner: 1,
-        derivatives: Derivatives::Analytic,
+        derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: Sharpness::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,

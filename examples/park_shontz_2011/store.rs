@@ -1,0 +1,185 @@
+//! The data: one record a line, appended as soon as it is had, so that a stopped study goes on where it was.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::study::{Case, Size, Start, Study};
+
+/// What the study was run with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Header {
+    pub(crate) study: Study,
+    pub(crate) version: String,
+    pub(crate) cores: usize,
+    pub(crate) processor: String,
+    /// Adapter and driver, if there is a GPU.
+    pub(crate) adapter: Option<String>,
+}
+
+/// A mesh, as it was triangulated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct MeshRecord {
+    pub(crate) domain: String,
+    pub(crate) size: Size,
+    pub(crate) vertices: usize,
+    pub(crate) elements: usize,
+    pub(crate) boundary: usize,
+    pub(crate) min_angle: f64,
+}
+
+/// The desired f of a metric on a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DesiredRecord {
+    pub(crate) domain: String,
+    pub(crate) size: Size,
+    pub(crate) metric: String,
+    pub(crate) f: f64,
+    pub(crate) origin: String,
+}
+
+/// After a sweep; the first of a run is before any.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sample {
+    /// Since the first sweep began.
+    pub(crate) seconds: f64,
+    /// By the base metric.
+    pub(crate) f: f64,
+    /// By EDGE and by AREA, where a figure needs them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) edge: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) area: Option<f64>,
+}
+
+/// A run and its history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RunRecord {
+    #[serde(flatten)]
+    pub(crate) case: Case,
+    pub(crate) desired: f64,
+    pub(crate) stop: String,
+    /// With all that belongs to it, for the estimate of the time left.
+    pub(crate) wall_seconds: f64,
+    pub(crate) history: Vec<Sample>,
+    /// Where the run had converged, for Figures 4 and 5.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) distributions: Vec<DistributionRecord>,
+}
+
+/// How many elements have which quality, of 1 at best.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DistributionRecord {
+    pub(crate) domain: String,
+    pub(crate) start: Start,
+    /// Empty before smoothing.
+    pub(crate) scheme: String,
+    /// Shortest over longest edge, or mean ratio.
+    pub(crate) quality: String,
+    pub(crate) mean: f64,
+    /// Of [`BINS`] equal parts of 0 to 1.
+    pub(crate) counts: Vec<usize>,
+}
+
+/// Bins of a distribution.
+pub(crate) const BINS: usize = 100;
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "record", rename_all = "kebab-case")]
+pub(crate) enum Record {
+    Header(Header),
+    Mesh(MeshRecord),
+    Desired(DesiredRecord),
+    Run(RunRecord),
+}
+
+/// All records of a study, and the file they are appended to.
+pub(crate) struct Store {
+    file: File,
+    pub(crate) records: Vec<Record>,
+}
+
+fn path(folder: &Path) -> PathBuf {
+    folder.join("data/records.jsonl")
+}
+
+/// Reads what is there; a last line that a stop has cut off does not count.
+pub(crate) fn read(folder: &Path) -> Result<Vec<Record>, String> {
+    let path = path(folder);
+    let Ok(text) = fs::read_to_string(&path) else { return Ok(Vec::new()) };
+    let complete = text.rfind('\n').map_or("", |end| &text[..end]);
+    (1..)
+        .zip(complete.lines())
+        .map(|(i, line)| {
+            serde_json::from_str(line).map_err(|e| format!("{}:{i}: {e}", path.display()))
+        })
+        .collect()
+}
+
+impl Store {
+    /// Opens a folder, to go on with what is in it if it is the same study.
+    pub(crate) fn open(folder: &Path, header: &Header) -> Result<Self, String> {
+        let records = read(folder)?;
+        match records.first() {
+            None => {}
+            Some(Record::Header(there)) if there == header => {}
+            Some(_) => {
+                return Err(format!(
+                    "{} holds another study, of another mode, version or machine: remove it or name \
+                     another folder",
+                    folder.display()
+                ));
+            }
+        }
+        let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
+        fs::create_dir_all(folder.join("data")).map_err(failed)?;
+        // Again as a whole, without the line that was cut off.
+        let mut text = String::new();
+        for record in &records {
+            text += &line(record)?;
+        }
+        fs::write(path(folder), text).map_err(failed)?;
+        let file = OpenOptions::new().append(true).open(path(folder)).map_err(failed)?;
+        let mut store = Self { file, records };
+        if store.records.is_empty() {
+            store.add(Record::Header(header.clone()))?;
+        }
+        Ok(store)
+    }
+
+    pub(crate) fn add(&mut self, record: Record) -> Result<(), String> {
+        let line = line(&record)?;
+        self.file.write_all(line.as_bytes()).map_err(|e| format!("records.jsonl: {e}"))?;
+        self.records.push(record);
+        Ok(())
+    }
+
+    pub(crate) fn mesh(&self, domain: &str, size: Size) -> Option<&MeshRecord> {
+        self.records.iter().find_map(|record| match record {
+            Record::Mesh(mesh) if mesh.domain == domain && mesh.size == size => Some(mesh),
+            _ => None,
+        })
+    }
+
+    pub(crate) fn desired(&self, domain: &str, size: Size, metric: &str) -> Option<&DesiredRecord> {
+        self.records.iter().find_map(|record| match record {
+            Record::Desired(d) if d.domain == domain && d.size == size && d.metric == metric => {
+                Some(d)
+            }
+            _ => None,
+        })
+    }
+
+    pub(crate) fn runs(&self) -> impl Iterator<Item = &RunRecord> {
+        self.records.iter().filter_map(|record| match record {
+            Record::Run(run) => Some(run),
+            _ => None,
+        })
+    }
+}
+
+fn line(record: &Record) -> Result<String, String> {
+    serde_json::to_string(record).map(|text| text + "\n").map_err(|e| e.to_string())
+}
