@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn the_inverse_times_the_matrix_is_one() {
         let n = 12;
-        let matrix = Sparse::from_rows(n, n, |row, sum| {
+        let matrix = Sparse::from_rows(n, |row, sum| {
             for column in 0..n {
                 let apart = row.abs_diff(column);
                 sum.add(

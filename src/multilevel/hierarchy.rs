@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::aggregate::{Aggregates, NONE};
 use super::dense;
-use super::sparse::Sparse;
+use super::sparse::{RowSum, Sparse};
 use crate::metric::Stiffness;
 use crate::problem::Problem;
 
@@ -93,31 +93,35 @@ impl Hierarchy {
     fn first_coarse_operator(&self, problem: &Problem) -> Sparse {
         let free = problem.free_count();
         let of = &self.aggregates.of;
-        let prolongation = Sparse::from_rows(free, self.aggregates.count, |v, sum| {
+        let free_neighbors =
+            |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
+        let prolongation = Sparse::from_rows(free, |v, sum| {
             if of[v] != NONE {
                 sum.add(of[v], 1.0 - SMOOTHING);
             }
             let share = SMOOTHING * self.inverse_diagonal[v];
-            for k in
-                neighbors(problem, v).map(|k| k as usize).filter(|&k| k < free && of[k] != NONE)
-            {
+            for k in free_neighbors(v).filter(|&k| of[k] != NONE) {
                 sum.add(of[k], share * self.weight(v, k));
             }
         });
-        let restriction = prolongation.transposed(self.aggregates.count);
-        Sparse::from_rows(self.aggregates.count, self.aggregates.count, |row, sum| {
-            for (v, left) in restriction.row(row) {
-                for (column, right) in prolongation.row(v) {
-                    sum.add(column as u32, left / self.inverse_diagonal[v] * right);
-                }
-                for k in neighbors(problem, v).map(|k| k as usize).filter(|&k| k < free) {
-                    let left = -left * self.weight(v, k);
-                    for (column, right) in prolongation.row(k) {
-                        sum.add(column as u32, left * right);
-                    }
+        let column = |aggregate: usize, sum: &mut RowSum| {
+            let range =
+                self.member_start[aggregate] as usize..self.member_start[aggregate + 1] as usize;
+            for &member in &self.member[range] {
+                sum.add(member, 1.0 - SMOOTHING);
+                for k in free_neighbors(member as usize) {
+                    let share = SMOOTHING * self.inverse_diagonal[k];
+                    sum.add(k as u32, share * self.weight(k, member as usize));
                 }
             }
-        })
+        };
+        let row = |v: usize, factor: f32, sum: &mut RowSum| {
+            sum.add(v as u32, factor / self.inverse_diagonal[v]);
+            for k in free_neighbors(v) {
+                sum.add(k as u32, -factor * self.weight(v, k));
+            }
+        };
+        Sparse::galerkin(&prolongation, self.aggregates.count, column, row)
     }
 
     /// Weight of the edge from a free vertex to a neighbor.
@@ -186,22 +190,21 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
             levels.push(Level { operator, inverse_diagonal, coarser: Coarser::Nothing });
             return levels;
         }
-        let prolongation = Sparse::from_rows(n, groups.count, |i, sum| {
+        let prolongation = Sparse::from_rows(n, |i, sum| {
             for (k, value) in operator.row(i).filter(|&(k, _)| groups.of[k] != NONE) {
                 let own = if k == i { 1.0 } else { 0.0 };
                 sum.add(groups.of[k], own - SMOOTHING * inverse_diagonal[i] * value);
             }
         });
         let restriction = prolongation.transposed(groups.count);
-        let coarse = Sparse::from_rows(groups.count, groups.count, |row, sum| {
-            for (i, left) in restriction.row(row) {
-                for (k, middle) in operator.row(i) {
-                    for (column, right) in prolongation.row(k) {
-                        sum.add(column as u32, left * middle * right);
-                    }
-                }
-            }
-        });
+        let coarse = Sparse::galerkin(
+            &prolongation,
+            groups.count,
+            |group, sum| restriction.row(group).for_each(|(i, value)| sum.add(i as u32, value)),
+            |i, factor, sum| {
+                operator.row(i).for_each(|(k, value)| sum.add(k as u32, factor * value));
+            },
+        );
         levels.push(Level {
             operator,
             inverse_diagonal,

@@ -12,19 +12,47 @@ pub(crate) struct Sparse {
 
 impl Sparse {
     /// Builds a matrix row by row, in parallel. `fill` adds the entries of a row to the sum it is given.
-    pub(super) fn from_rows(
-        rows: usize,
+    pub(super) fn from_rows(rows: usize, fill: impl Fn(usize, &mut RowSum) + Sync) -> Self {
+        Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
+    }
+
+    /// Galerkin's product Pᵀ A P by rows. `column` adds a column of P to a sum, `row` a multiple of a row of A.
+    pub(super) fn galerkin(
+        prolongation: &Self,
         columns: usize,
-        fill: impl Fn(usize, &mut RowSum) + Sync,
+        column: impl Fn(usize, &mut RowSum) + Sync,
+        row: impl Fn(usize, f32, &mut RowSum) + Sync,
+    ) -> Self {
+        // The support of a column is small: nothing larger than a row is ever stored.
+        Self::from_rows_with(columns, <(RowSum, RowSum)>::default, |coarse, (of_p, of_ap), sum| {
+            column(coarse, of_p);
+            for &(k, value) in of_p.entries() {
+                row(k as usize, value, of_ap);
+            }
+            for &(k, value) in of_ap.entries() {
+                for (column, share) in prolongation.row(k as usize) {
+                    sum.add(column as u32, value * share);
+                }
+            }
+            of_p.clear();
+            of_ap.clear();
+        })
+    }
+
+    /// As [`Self::from_rows`], with scratch that the rows of a part share.
+    fn from_rows_with<S>(
+        rows: usize,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(usize, &mut S, &mut RowSum) + Sync,
     ) -> Self {
         let chunk = rows.div_ceil(4 * rayon::current_num_threads()).max(64);
         let parts: Vec<Sparse> = (0..rows.div_ceil(chunk))
             .into_par_iter()
             .map(|part| {
-                let mut sum = RowSum::new(columns);
+                let (mut scratch, mut sum) = (scratch(), RowSum::default());
                 let mut matrix = Sparse::default();
                 for row in part * chunk..rows.min((part + 1) * chunk) {
-                    fill(row, &mut sum);
+                    fill(row, &mut scratch, &mut sum);
                     sum.drain_into(&mut matrix);
                 }
                 matrix
@@ -98,39 +126,70 @@ impl Sparse {
     }
 }
 
-/// The entries of one row while they are being summed up.
+/// A sparse vector while it is being summed up: its entries in the order they came, and a hash table of where
+/// they are. Rows have some tens of entries, so both stay in the nearest cache whatever the size of the mesh.
+#[derive(Default)]
 pub(super) struct RowSum {
-    /// Where each column stands in `entries`, if it does.
-    place: Vec<u32>,
     entries: Vec<(u32, f32)>,
+    /// One more than the place of an entry; 0 where there is none. Its length is a power of two.
+    table: Vec<u32>,
 }
 
-const NOWHERE: u32 = u32::MAX;
-
 impl RowSum {
-    fn new(columns: usize) -> Self {
-        Self { place: vec![NOWHERE; columns], entries: Vec::with_capacity(64) }
-    }
-
     /// Adds to the entry of a column.
     #[inline]
     pub(super) fn add(&mut self, column: u32, value: f32) {
-        let place = &mut self.place[column as usize];
-        if *place == NOWHERE {
-            *place = self.entries.len() as u32;
-            self.entries.push((column, value));
-        } else {
-            self.entries[*place as usize].1 += value;
+        if 2 * self.entries.len() >= self.table.len() {
+            self.grow();
+        }
+        let slot = self.slot(column);
+        match self.table[slot] {
+            0 => {
+                self.entries.push((column, value));
+                self.table[slot] = self.entries.len() as u32;
+            }
+            place => self.entries[place as usize - 1].1 += value,
+        }
+    }
+
+    /// The entries so far.
+    pub(super) fn entries(&self) -> &[(u32, f32)] {
+        &self.entries
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.entries.clear();
+        self.table.fill(0);
+    }
+
+    /// Where the table has the column, or would.
+    #[inline]
+    fn slot(&self, column: u32) -> usize {
+        let mask = self.table.len() - 1;
+        let mut slot = (column.wrapping_mul(0x9e37_79b1) >> 16) as usize & mask;
+        while let place @ 1.. = self.table[slot]
+            && self.entries[place as usize - 1].0 != column
+        {
+            slot = (slot + 1) & mask;
+        }
+        slot
+    }
+
+    fn grow(&mut self) {
+        let length = (2 * self.table.len()).max(128);
+        self.table.clear();
+        self.table.resize(length, 0);
+        for place in 0..self.entries.len() {
+            let slot = self.slot(self.entries[place].0);
+            self.table[slot] = place as u32 + 1;
         }
     }
 
     fn drain_into(&mut self, matrix: &mut Sparse) {
-        for (column, value) in self.entries.drain(..) {
-            self.place[column as usize] = NOWHERE;
-            matrix.column.push(column);
-            matrix.value.push(value);
-        }
+        matrix.column.extend(self.entries.iter().map(|&(column, _)| column));
+        matrix.value.extend(self.entries.iter().map(|&(_, value)| value));
         matrix.start.push(matrix.column.len() as u32);
+        self.clear();
     }
 }
 
@@ -148,7 +207,7 @@ mod tests {
 
     /// A thousand rows, enough for several chunks, with entries added in two parts.
     fn sample() -> Sparse {
-        Sparse::from_rows(1000, 70, |row, sum| {
+        Sparse::from_rows(1000, |row, sum| {
             for k in 0..row % 5 {
                 sum.add(((row * 7 + k * 13) % 70) as u32, 1.0 + k as f32);
                 sum.add((row * 7 % 70) as u32, row as f32);
