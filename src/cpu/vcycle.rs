@@ -1,6 +1,6 @@
 //! Corrections from coarser levels, on the CPU.
 
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Vec2, Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
@@ -22,25 +22,32 @@ pub(super) fn correction(
         let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
-    let diagonal = hierarchy.inverse_diagonal();
-    let scaled = rows(gradient.len(), |v| gradient[v].as_vec2() * diagonal[v]);
-    let smoothed = |v: usize| {
-        let around: Vec2 = ring(v).map(|k| scaled[k] * hierarchy.weight(v, k)).sum();
-        gradient[v].as_vec2() * (1.0 - SMOOTHING) + around * SMOOTHING
+    let (sizes, stiffness) = hierarchy.sizes();
+    let around = |v: usize, values: &[Vec3]| -> Vec2 {
+        let sum =
+            |sum: Vec2, k: usize| sum + values[k].xy() * (stiffness / (sizes[v] + values[k].z));
+        ring(v).fold(Vec2::ZERO, sum)
     };
+    let diagonal = hierarchy.inverse_diagonal();
+    let scaled = rows(gradient.len(), |v| (gradient[v].as_vec2() * diagonal[v]).extend(sizes[v]));
+    let smoothed = rows(gradient.len(), |v| {
+        gradient[v].as_vec2() * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
+    });
     let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
     let restricted = rows(first.operator.rows(), |aggregate| {
         let members = &members[starts[aggregate] as usize..starts[aggregate + 1] as usize];
-        -members.iter().map(|&v| smoothed(v as usize)).sum::<Vec2>()
+        -members.iter().map(|&v| smoothed[v as usize]).sum::<Vec2>()
     });
     let coarse = solve(hierarchy.levels(), &restricted);
-    let at = |v: usize| match hierarchy.aggregate_of()[v] {
-        NONE => Vec2::ZERO,
-        aggregate => coarse[aggregate as usize],
-    };
+    let handed = rows(gradient.len(), |v| {
+        let value = match hierarchy.aggregate_of()[v] {
+            NONE => Vec2::ZERO,
+            aggregate => coarse[aggregate as usize],
+        };
+        value.extend(sizes[v])
+    });
     rows(gradient.len(), |v| {
-        let around: Vec2 = ring(v).map(|k| at(k) * hierarchy.weight(v, k)).sum();
-        at(v) * (1.0 - SMOOTHING) + around * (SMOOTHING * diagonal[v])
+        handed[v].xy() * (1.0 - SMOOTHING) + around(v, &handed) * (SMOOTHING * diagonal[v])
     })
 }
 
@@ -53,9 +60,9 @@ fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
             let row = |i: usize| inverse[i * n..(i + 1) * n].iter().zip(right);
             rows(n, |i| row(i).map(|(&a, &b)| b * a).sum())
         }
-        Coarser::Nothing => smooth(level, vec![Vec2::ZERO; n], right),
+        Coarser::Nothing => smooth(level, None, right),
         Coarser::Level { prolongation, restriction } => {
-            let mut x = smooth(level, vec![Vec2::ZERO; n], right);
+            let mut x = smooth(level, None, right);
             let residual = residual(level, &x, right);
             let restricted = rows(restriction.rows(), |i| times(restriction, i, &residual));
             let coarse = solve(below, &restricted);
@@ -63,7 +70,7 @@ fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
                 .with_min_len(GRAIN)
                 .enumerate()
                 .for_each(|(i, x)| *x += times(prolongation, i, &coarse));
-            smooth(level, x, right)
+            smooth(level, Some(x), right)
         }
     }
 }
@@ -72,18 +79,29 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
     rows(right.len(), |i| right[i] - times(&level.operator, i, x))
 }
 
-/// Two steps of Chebyshev's iteration.
-fn smooth(level: &Level, mut x: Vec<Vec2>, right: &[Vec2]) -> Vec<Vec2> {
+/// Two steps of Chebyshev's iteration from `x`, or from zero.
+fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {
         x.par_iter_mut().with_min_len(GRAIN).zip(d).for_each(|(x, &d)| *x += d);
     };
     let scale = &level.inverse_diagonal;
-    let r = residual(level, &x, right);
-    let d = rows(x.len(), |i| r[i] * (first * scale[i]));
-    add(&mut x, &d);
-    let r = residual(level, &x, right);
-    let d = rows(x.len(), |i| d[i] * again + r[i] * (now * scale[i]));
+    let step = |i: usize, residual: Vec2| residual * (first * scale[i]);
+    let (mut x, d) = match x {
+        Some(mut x) => {
+            let d = rows(x.len(), |i| step(i, right[i] - times(&level.operator, i, &x)));
+            add(&mut x, &d);
+            (x, d)
+        }
+        None => {
+            let d = rows(right.len(), |i| step(i, right[i]));
+            (d.clone(), d)
+        }
+    };
+    let d = rows(x.len(), |i| {
+        let residual = right[i] - times(&level.operator, i, &x);
+        d[i] * again + residual * (now * scale[i])
+    });
     add(&mut x, &d);
     x
 }
@@ -92,7 +110,7 @@ fn times(matrix: &Sparse, row: usize, x: &[Vec2]) -> Vec2 {
     matrix.row(row).map(|(column, value)| x[column] * value).sum()
 }
 
-fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync + Send) -> Vec<Vec2> {
+fn rows<T: Send>(count: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     (0..count).into_par_iter().with_min_len(GRAIN).map(row).collect()
 }
 

@@ -26,10 +26,10 @@ impl Sparse {
         // The support of a column is small: nothing larger than a row is ever stored.
         Self::from_rows_with(columns, <(RowSum, RowSum)>::default, |coarse, (of_p, of_ap), sum| {
             column(coarse, of_p);
-            for &(k, value) in of_p.entries() {
+            for (k, value) in of_p.entries() {
                 row(k as usize, value, of_ap);
             }
-            for &(k, value) in of_ap.entries() {
+            for (k, value) in of_ap.entries() {
                 for (column, share) in prolongation.row(k as usize) {
                     sum.add(column as u32, value * share);
                 }
@@ -126,68 +126,73 @@ impl Sparse {
     }
 }
 
-/// A sparse vector while it is being summed up: its entries in the order they came, and a hash table of where
-/// they are. Rows have some tens of entries, so both stay in the nearest cache whatever the size of the mesh.
-#[derive(Default)]
+/// A sparse vector while it is being summed up, as a hash table. Rows have some tens of entries, so it stays in
+/// the nearest cache whatever the size of the mesh.
 pub(super) struct RowSum {
-    entries: Vec<(u32, f32)>,
-    /// One more than the place of an entry; 0 where there is none. Its length is a power of two.
-    table: Vec<u32>,
+    /// Column and value of each slot, their number a power of two; [`FREE`] is no column.
+    slots: Vec<(u32, f32)>,
+    /// The slots taken, in the order they were.
+    taken: Vec<u32>,
+    /// Bits of a hash that are not a slot's.
+    shift: u32,
+}
+
+const FREE: u32 = u32::MAX;
+
+impl Default for RowSum {
+    fn default() -> Self {
+        Self::with_bits(7)
+    }
 }
 
 impl RowSum {
+    fn with_bits(bits: u32) -> Self {
+        let slots = vec![(FREE, 0.0); 1 << bits];
+        Self { taken: Vec::with_capacity(slots.len()), slots, shift: 32 - bits }
+    }
+
     /// Adds to the entry of a column.
     #[inline]
     pub(super) fn add(&mut self, column: u32, value: f32) {
-        if 2 * self.entries.len() >= self.table.len() {
-            self.grow();
-        }
-        let slot = self.slot(column);
-        match self.table[slot] {
-            0 => {
-                self.entries.push((column, value));
-                self.table[slot] = self.entries.len() as u32;
+        let mask = self.slots.len() - 1;
+        let mut at = (column.wrapping_mul(0x9e37_79b1) >> self.shift) as usize;
+        loop {
+            let slot = &mut self.slots[at & mask];
+            if slot.0 == column {
+                slot.1 += value;
+                return;
             }
-            place => self.entries[place as usize - 1].1 += value,
+            if slot.0 == FREE {
+                *slot = (column, value);
+                self.taken.push((at & mask) as u32);
+                if 2 * self.taken.len() > mask {
+                    self.grow();
+                }
+                return;
+            }
+            at += 1;
         }
     }
 
-    /// The entries so far.
-    pub(super) fn entries(&self) -> &[(u32, f32)] {
-        &self.entries
+    /// The entries so far, in the order their columns came.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (u32, f32)> + '_ {
+        self.taken.iter().map(|&slot| self.slots[slot as usize])
     }
 
-    pub(super) fn clear(&mut self) {
-        self.entries.clear();
-        self.table.fill(0);
-    }
-
-    /// Where the table has the column, or would.
-    #[inline]
-    fn slot(&self, column: u32) -> usize {
-        let mask = self.table.len() - 1;
-        let mut slot = (column.wrapping_mul(0x9e37_79b1) >> 16) as usize & mask;
-        while let place @ 1.. = self.table[slot]
-            && self.entries[place as usize - 1].0 != column
-        {
-            slot = (slot + 1) & mask;
-        }
-        slot
+    fn clear(&mut self) {
+        self.taken.iter().for_each(|&slot| self.slots[slot as usize].0 = FREE);
+        self.taken.clear();
     }
 
     fn grow(&mut self) {
-        let length = (2 * self.table.len()).max(128);
-        self.table.clear();
-        self.table.resize(length, 0);
-        for place in 0..self.entries.len() {
-            let slot = self.slot(self.entries[place].0);
-            self.table[slot] = place as u32 + 1;
-        }
+        let mut larger = Self::with_bits(32 - self.shift + 1);
+        self.entries().for_each(|(column, value)| larger.add(column, value));
+        *self = larger;
     }
 
     fn drain_into(&mut self, matrix: &mut Sparse) {
-        matrix.column.extend(self.entries.iter().map(|&(column, _)| column));
-        matrix.value.extend(self.entries.iter().map(|&(_, value)| value));
+        matrix.column.extend(self.entries().map(|(column, _)| column));
+        matrix.value.extend(self.entries().map(|(_, value)| value));
         matrix.start.push(matrix.column.len() as u32);
         self.clear();
     }
