@@ -13,9 +13,7 @@ mod support;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use gpu_smooth::gpu::GpuEngine;
-use gpu_smooth::{
-    Coloring, CpuEngine, Engine, Gpu, Metric, Options, Plan, Problem, Sharpness, StopRule, Topology,
-};
+use gpu_smooth::{Coloring, CpuEngine, Engine, Gpu, Metric, Options, Problem, Topology};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -67,16 +65,13 @@ fn cases(engines: &[bool]) -> Vec<Case> {
 impl Case {
     fn engine(&self) -> Option<Box<dyn Engine>> {
         let problem = problem(self.size);
-        let plan = Plan {
+        let options = Options {
             scheme: self.metric.into(),
-            omega: std::array::from_fn(|i| Metric::ALL[i].properties().omega),
-            plain_sweeps: 4,
-            inner: 1,
-            derivatives: [Options::default().derivatives; Metric::ALL.len()],
-            sharpness: Sharpness::FIXED,
-            stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
-            track_all: false,
+            tolerance: 0.0,
+            max_sweeps: u32::MAX,
+            ..Options::default()
         };
+        let plan = options.plan();
         if self.on_gpu {
             let engine = GpuEngine::new(gpu()?, problem, problem.positions(), plan);
             Some(Box::new(engine.unwrap()))

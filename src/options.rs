@@ -137,8 +137,14 @@ impl Options {
         }
     }
 
-    /// Everything the engines need, with the run ending below `target` if there is one.
-    pub(crate) fn plan(&self, target: Option<f64>) -> Plan {
+    /// What the engines are to do by these options, for those who drive an [`Engine`](crate::Engine) themselves. Of
+    /// [`goal`](Self::goal) and [`method`](Self::method) nothing is taken over: the one needs a run before, the other levels.
+    pub fn plan(&self) -> Plan {
+        self.plan_to(None)
+    }
+
+    /// The same, with the run ending below `target` if there is one.
+    pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
         let alternates = self.scheme.metrics().iter().any(|&m| m != self.scheme.base());
         let own = |metric: Metric| if alternates { 1.0 } else { metric.properties().omega };
         let mut by_metric = [1.0; Metric::ALL.len()];

@@ -193,7 +193,7 @@ impl<'a> Smoother<'a> {
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
         let run = Run { smoother: self, place, phase: Phase::Smoothing };
-        let monotone = options.plan(target).is_monotone();
+        let monotone = options.plan_to(target).is_monotone();
         let end = run.sweep(options, target, self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
@@ -395,7 +395,7 @@ impl Run<'_, '_> {
     ) -> (Place<'_>, Option<Opened>) {
         match self.place {
             Place::Gpu(..) if opening::is_needed(&self.smoother.problem, from) => {
-                match opening::open(&self.smoother.problem, from, options.plan(target)) {
+                match opening::open(&self.smoother.problem, from, options.plan_to(target)) {
                     Some(opened) => (self.place, Some(opened)),
                     None => (Place::Cpu, None),
                 }
@@ -412,7 +412,7 @@ impl Run<'_, '_> {
         from: &'e [DVec2],
     ) -> Result<AnyEngine<'e>, GpuError> {
         let problem = &self.smoother.problem;
-        let plan = options.plan(target);
+        let plan = options.plan_to(target);
         let multilevel = options.is_multilevel();
         Ok(match place {
             Place::Cpu if multilevel => {

@@ -189,7 +189,7 @@ impl Gpu {
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
     pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
         options.check()?;
-        let mut kernels = Kernel::needed_by(&options.plan(None));
+        let mut kernels = Kernel::needed_by(&options.plan());
         if options.is_multilevel() {
             kernels.extend(Kernel::of_levels(options.scheme.base()));
         }

@@ -34,7 +34,7 @@ impl Sweeps {
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         options.check()?;
         let stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
-        let plan = Plan { stop, ..options.plan(None) };
+        let plan = Plan { stop, ..options.plan() };
         let run = Arc::new(Run::new(&mesh.gpu, &mesh.problem, &mesh.buffers, plan, false)?);
         let triangles = mesh.problem.triangles().len();
         Ok(Self { gpu: mesh.gpu.clone(), run, triangles, done: 0 })

@@ -6,6 +6,7 @@ mod support;
 
 mod adapters;
 mod arguments;
+mod bench;
 mod files;
 mod options;
 mod output;

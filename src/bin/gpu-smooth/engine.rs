@@ -19,11 +19,23 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<(Backend, Option<String>), Strin
         Err(error) if is_optional(args) => {
             Ok((Backend::Cpu, Some(format!("{error}: smoothing on the CPU"))))
         }
-        Err(GpuError::NoAdapter { wanted: Some(name), available }) if !available.is_empty() => {
-            Err(format!("no GPU adapter has '{name}' in its name. There are: {available}"))
+        Err(error) => Err(refusal(error)),
+    }
+}
+
+/// Opens an adapter, for a command that needs one.
+pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, String> {
+    Gpu::open(name).map_err(refusal)
+}
+
+/// Why there is no adapter, and what to do.
+fn refusal(error: GpuError) -> String {
+    match error {
+        GpuError::NoAdapter { wanted: Some(name), available } if !available.is_empty() => {
+            format!("no GPU adapter has '{name}' in its name. There are: {available}")
         }
-        Err(GpuError::NoAdapter { .. }) => Err(format!("no GPU adapter was found. {INSTALL}")),
-        Err(error) => Err(format!("{error}. {INSTALL}")),
+        GpuError::NoAdapter { .. } => format!("no GPU adapter was found. {INSTALL}"),
+        error => format!("{error}. {INSTALL}"),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The `gpu-smooth` command: reads a mesh, smooths it, writes it back with nothing else changed.
 
+mod bench;
 mod cli;
 mod engine;
 mod explain;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
         Some(Command::Quality(args)) => tell::quality(args),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
+        Some(Command::Bench(args)) => bench::run(args),
         None => smooth::run(&cli.smooth),
     };
     match done {

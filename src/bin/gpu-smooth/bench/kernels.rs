@@ -1,0 +1,57 @@
+//! The time each kernel takes, by the device's own clock.
+
+use gpu_smooth::gpu::{Kernel, Timestamps};
+use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, SmoothError, Sweeps, wgpu};
+
+/// Sweeps before those that are timed, and these.
+const BEFORE: u32 = 6;
+const TIMED: u32 = 5;
+
+/// What one kernel takes of a sweep.
+pub(crate) struct KernelTime {
+    pub(crate) kernel: Kernel,
+    /// How often it is dispatched.
+    pub(crate) passes: u32,
+    pub(crate) seconds: f64,
+}
+
+/// The kernels of a sweep with the objective after it, in the order they run; `None` if the device has no clock.
+pub(crate) fn time(
+    gpu: &Gpu,
+    mesh: &Mesh,
+    options: &Options,
+) -> Result<Option<Vec<KernelTime>>, SmoothError> {
+    let Ok(mut timestamps) = Timestamps::new(gpu) else { return Ok(None) };
+    let device_mesh = DeviceMesh::new(gpu, mesh)?;
+    let mut sweeps = Sweeps::new(&device_mesh, options)?;
+    let values = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("objectives"),
+        size: size_of::<gpu_smooth::gpu::ObjectiveValues>() as u64,
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    });
+    let objective = sweeps.bind_objective(&values, 0)?;
+    let mut encoder =
+        gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    sweeps.encode(&mut encoder, BEFORE);
+    let mut timed = timestamps.time(&mut encoder);
+    for _ in 0..TIMED {
+        sweeps.encode(&mut timed, 1);
+        objective.encode(&mut timed);
+    }
+    let spans = timed.resolve()?;
+    gpu.queue().submit([encoder.finish()]);
+    let mut kernels: Vec<KernelTime> = Vec::new();
+    for span in spans.read()? {
+        let seconds = span.nanoseconds * 1e-9 / f64::from(TIMED);
+        match kernels.iter_mut().find(|known| known.kernel == span.kernel) {
+            Some(known) => {
+                known.passes += 1;
+                known.seconds += seconds;
+            }
+            None => kernels.push(KernelTime { kernel: span.kernel, passes: 1, seconds }),
+        }
+    }
+    kernels.iter_mut().for_each(|known| known.passes /= TIMED);
+    Ok(Some(kernels))
+}

@@ -1,0 +1,156 @@
+//! `gpu-smooth bench`: how fast this machine smooths.
+
+mod kernels;
+mod lattice;
+mod rates;
+mod report;
+mod sweeps;
+
+use gpu_smooth::gpu::{GpuEngine, Kernel};
+use gpu_smooth::{Coloring, CpuEngine, Engine, Gpu, Mesh, Options, Problem, SmoothError, Topology};
+
+use crate::cli::{BenchArgs, EngineChoice};
+use crate::smooth::read;
+use crate::tell;
+use crate::{engine, explain};
+use report::{KernelRow, Row};
+
+/// An engine, and the bytes a second it reads and writes in copying.
+struct Place {
+    gpu: Option<Gpu>,
+    name: String,
+    copy_rate: f64,
+}
+
+/// What is measured, and the error in the user's terms.
+type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
+
+pub(crate) fn run(args: &BenchArgs) -> Result<(), String> {
+    let file = args.mesh.as_deref().map(read).transpose()?;
+    let places = places(args)?;
+    let mut rows = Vec::new();
+    if !args.json {
+        tell::say(&report::head(args, &places));
+    }
+    if let Some(file) = &file {
+        let explain = |error| match error {
+            SmoothError::Mesh(error) => explain::mesh_error(file, &error),
+            error => error.to_string(),
+        };
+        measure_all(args, file.mesh(), &places, &explain, &mut rows)?;
+    } else {
+        for &vertices in &args.vertices {
+            let mesh = lattice::lattice(vertices);
+            measure_all(args, &mesh, &places, &|error| error.to_string(), &mut rows)?;
+        }
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&rows).map_err(|error| error.to_string())?;
+        tell::say(&text);
+    } else {
+        tell::say(&report::kernels(&rows));
+    }
+    Ok(())
+}
+
+fn measure_all(
+    args: &BenchArgs,
+    mesh: &Mesh,
+    places: &[Place],
+    explain: &Explain<'_>,
+    rows: &mut Vec<Row>,
+) -> Result<(), String> {
+    let topology = Topology::new(mesh).map_err(|error| explain(error.into()))?;
+    if topology.free_count() == 0 {
+        return Err("the mesh has no free vertex: there is nothing to measure".into());
+    }
+    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
+    for place in places {
+        match measure(args, mesh, &problem, place) {
+            Ok(row) => {
+                if !args.json {
+                    tell::say(&row.line());
+                }
+                rows.push(row);
+            }
+            // One engine's limit need not keep the other from being measured.
+            Err(SmoothError::Gpu(error)) if places.len() > 1 => {
+                tell::note(false, &format!("{}: {error}", place.name));
+            }
+            Err(error) => return Err(explain(error)),
+        }
+    }
+    Ok(())
+}
+
+fn measure(
+    args: &BenchArgs,
+    mesh: &Mesh,
+    problem: &Problem,
+    place: &Place,
+) -> Result<Row, SmoothError> {
+    let options = Options {
+        scheme: args.scheme.clone(),
+        tolerance: 0.0,
+        max_sweeps: u32::MAX,
+        ..Options::default()
+    };
+    let plan = options.plan();
+    let (seconds, kernels) = match &place.gpu {
+        None => {
+            let mut engine = CpuEngine::new(problem, problem.positions().to_vec(), plan);
+            (sweeps::time(&mut engine, args.seconds)?, None)
+        }
+        Some(gpu) => {
+            let mut engine: Box<dyn Engine> =
+                Box::new(GpuEngine::new(gpu, problem, problem.positions(), plan)?);
+            let seconds = sweeps::time(&mut *engine, args.seconds)?;
+            drop(engine);
+            (seconds, kernels::time(gpu, mesh, &options)?)
+        }
+    };
+    let (sweep, objective) = (sweeps::sweep_bytes(problem), sweeps::objective_bytes(problem));
+    let kernel_row = |known: kernels::KernelTime| {
+        let bytes = match known.kernel {
+            Kernel::Sweep(..) => Some(sweep),
+            Kernel::Objective(..) => Some(objective),
+            _ => None,
+        };
+        KernelRow::new(&known, bytes, place.copy_rate)
+    };
+    Ok(Row {
+        engine: place.name.clone(),
+        scheme: args.scheme.to_string(),
+        vertices: mesh.points.len(),
+        triangles: mesh.triangles.len(),
+        free: problem.free_count(),
+        colors: problem.colors().len(),
+        seconds_per_sweep: seconds,
+        vertex_updates_per_second: problem.free_count() as f64 / seconds,
+        bytes_per_second: (sweep + objective) as f64 / seconds,
+        share_of_copy_rate: (sweep + objective) as f64 / seconds / place.copy_rate,
+        kernels: kernels.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
+    })
+}
+
+/// The engines to measure: those asked for, or all there are.
+fn places(args: &BenchArgs) -> Result<Vec<Place>, String> {
+    let mut places = Vec::new();
+    if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
+        let threads = rayon::current_num_threads();
+        let name = format!("cpu, {threads} threads");
+        places.push(Place { gpu: None, name, copy_rate: rates::on_cpu() });
+    }
+    if args.engine != EngineChoice::Cpu {
+        match engine::open_adapter(args.adapter.as_deref()) {
+            Ok(gpu) => places.push(Place {
+                name: gpu.adapter().name.clone(),
+                copy_rate: rates::on_gpu(&gpu),
+                gpu: Some(gpu),
+            }),
+            Err(error) if places.is_empty() => return Err(error),
+            Err(error) => tell::note(args.json, &error),
+        }
+    }
+    Ok(places)
+}

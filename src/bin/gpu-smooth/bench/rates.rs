@@ -1,0 +1,83 @@
+//! How fast memory is copied, for what is measured to be compared with.
+
+use std::time::{Duration, Instant};
+
+use gpu_smooth::{Gpu, wgpu};
+use rayon::prelude::*;
+
+/// Bytes copied at once: more than caches hold.
+const BYTES: u64 = 128 << 20;
+/// Copies of which the fastest counts, and copies in one submission.
+const REPEATS: u32 = 5;
+const SUBMITTED: u32 = 4;
+
+/// Bytes read and written per second by all cores together.
+pub(crate) fn on_cpu() -> f64 {
+    let from = vec![1u8; BYTES as usize];
+    let mut to = vec![2u8; BYTES as usize];
+    fastest(1, || {
+        to.par_chunks_mut(1 << 20)
+            .zip(from.par_chunks(1 << 20))
+            .for_each(|(to, from)| to.copy_from_slice(from));
+    })
+}
+
+/// Bytes read and written per second by a kernel that only copies.
+pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
+    let device = gpu.device();
+    let bound = device.limits().max_storage_buffer_binding_size;
+    let bytes = BYTES.min(bound) & !15;
+    let buffer = |usage| {
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("copy"),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        })
+    };
+    let (from, to) = (buffer(wgpu::BufferUsages::STORAGE), buffer(wgpu::BufferUsages::STORAGE));
+    let module = device.create_shader_module(wgpu::include_wgsl!("copy.wgsl"));
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("copy"),
+        layout: None,
+        module: &module,
+        entry_point: Some("copy"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let buffers = [&from, &to];
+    let entries = [0, 1].map(|binding| wgpu::BindGroupEntry {
+        binding,
+        resource: buffers[binding as usize].as_entire_binding(),
+    });
+    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("copy"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    });
+    let groups = (bytes / 16).div_ceil(256).min(65_535) as u32;
+    let copy = || {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for _ in 0..SUBMITTED {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.dispatch_workgroups(groups, 1, 1);
+        }
+        gpu.queue().submit([encoder.finish()]);
+        // A device that is lost copies nothing, and what is measured after this says so.
+        device.poll(wgpu::PollType::wait_indefinitely()).ok();
+    };
+    fastest(SUBMITTED, copy) * bytes as f64 / BYTES as f64
+}
+
+/// Bytes per second of the fastest of some calls, each of which copies so often.
+fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
+    let time = || {
+        let start = Instant::now();
+        copy();
+        start.elapsed()
+    };
+    let best = std::iter::repeat_with(time).take(REPEATS as usize + 1).min();
+    2.0 * BYTES as f64 * f64::from(copies) / best.unwrap_or(Duration::MAX).as_secs_f64()
+}

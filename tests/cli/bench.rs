@@ -1,0 +1,65 @@
+//! `gpu-smooth bench` measures what it says; how fast that is, no test judges.
+
+use serde_json::Value;
+
+use super::{assert_holds, small};
+
+/// The rows printed as JSON.
+fn rows(text: &str) -> Vec<Value> {
+    serde_json::from_str::<Value>(text).unwrap().as_array().unwrap().clone()
+}
+
+#[test]
+fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
+    let folder = small();
+    let args = "bench --vertices 400,900 --scheme edge+imr --seconds 0 --json";
+    let rows = rows(&folder.line(args).clean().out);
+    let sizes: Vec<_> = rows.iter().map(|row| row["vertices"].as_u64().unwrap()).collect();
+    assert_eq!(sizes, [400, 400, 900, 900]);
+    for (row, side) in rows.iter().zip([20.0, 20.0, 30.0, 30.0]) {
+        let number = |key: &str| row[key].as_f64().unwrap();
+        assert_eq!(row["scheme"], "edge+imr");
+        assert_eq!(number("free"), (side - 2.0) * (side - 2.0));
+        let updates = number("free") / number("seconds_per_sweep");
+        assert!((number("vertex_updates_per_second") / updates - 1.0).abs() < 1e-9);
+        // Of an inner vertex at least: itself read and written, six neighbors, and two triangles.
+        assert!(number("bytes_per_second") > updates * (32.0 + 24.0 + 24.0));
+        assert!(number("share_of_copy_rate") > 0.0);
+    }
+    assert!(rows[0]["engine"].as_str().unwrap().starts_with("cpu, "), "{}", rows[0]);
+    assert!(rows[0]["kernels"].is_null());
+    let kernels: Vec<_> = rows[1]["kernels"].as_array().unwrap().iter().collect();
+    let names: Vec<_> = kernels.iter().map(|kernel| kernel["kernel"].as_str().unwrap()).collect();
+    for name in ["sweep edge", "sweep imr", "objective"] {
+        assert!(names.contains(&name), "{name} in {names:?}");
+    }
+    assert!(kernels.iter().all(|kernel| kernel["seconds_per_sweep"].as_f64().unwrap() > 0.0));
+}
+
+#[test]
+fn a_mesh_of_ones_own_is_measured_and_told_as_text() {
+    let folder = small();
+    let vertices = folder.mesh("in").points.len().to_string();
+    let run = folder.line("bench in --engine cpu --seconds 0").clean();
+    assert_holds(&run.out, &["copies", "A sweep by imr", "M updates/s", "cpu, ", &vertices]);
+    assert!(!run.out.contains("kernel"), "{}", run.out);
+    let run = folder.line("bench in --engine gpu --seconds 0").clean();
+    assert_holds(&run.out, &["sweep imr", "by its clock", "whole, without the clock"]);
+    assert!(!run.out.contains("cpu, "), "{}", run.out);
+}
+
+#[test]
+fn what_cannot_be_measured_is_refused() {
+    let folder = small();
+    folder.line("bench nowhere").refused(&["nowhere"]);
+    folder.line("bench --adapter nonsense").refused(&["'nonsense'", "There are: "]);
+    for args in [
+        "bench --vertices 8",
+        "bench --vertices 1e4",
+        "bench in --vertices 100",
+        "bench --seconds -1",
+    ] {
+        let run = folder.line(args);
+        assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{args}: {}", run.err);
+    }
+}
