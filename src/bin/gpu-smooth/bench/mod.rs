@@ -73,8 +73,8 @@ fn measure_all(
                 }
                 rows.push(row);
             }
-            // One engine's limit need not keep the other from being measured.
-            Err(SmoothError::Gpu(error)) if places.len() > 1 => {
+            // What one adapter cannot do need not keep the rest from being measured.
+            Err(SmoothError::Gpu(error)) if places.len() > 1 || !rows.is_empty() => {
                 tell::note(false, &format!("{}: {error}", place.name));
             }
             Err(error) => return Err(explain(error)),
