@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::multilevel::MultilevelEngine;
 use crate::opening::{self, Opened};
-use crate::options::{Desired, Goal, Options};
+use crate::options::{Desired, Goal, Method, Options};
 use crate::plan::{Sharpness, Stop};
 use crate::prepare::prepare;
 use crate::problem::Problem;
@@ -78,6 +78,9 @@ pub struct Outcome {
     /// Sweeps that were done on the CPU, in double precision, though a device was asked for: the first ones, where triangles
     /// are too flat for single precision.
     pub opening_sweeps: u32,
+    /// Whether [`Method::Auto`](crate::Method) did without these corrections, as the device does not hold the coarser
+    /// levels of a mesh of this size.
+    pub levels_left_out: bool,
     /// The sweep after which the returned state was had; 0 is the mesh as it was.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
@@ -217,6 +220,7 @@ impl<'a> Smoother<'a> {
             sweeps: end.history.len() as u32 - 1,
             corrections: end.corrections,
             opening_sweeps: end.opening_sweeps,
+            levels_left_out: end.levels_left_out,
             best_sweep: best_sweep as u32,
             history: end.history,
             goal,
@@ -336,6 +340,7 @@ struct End {
     positions: Vec<DVec2>,
     corrections: u32,
     opening_sweeps: u32,
+    levels_left_out: bool,
     stop: Stop,
 }
 
@@ -350,7 +355,12 @@ impl Run<'_, '_> {
         let base = options.scheme.base();
         let (place, opened) = self.opened(options, target, from);
         let done = opened.as_ref().map_or(0, Opened::sweeps);
-        let options = &Options { max_sweeps: options.max_sweeps - done, ..options.clone() };
+        let levels_left_out = self.leaves_levels_out(place, options)?;
+        let options = &Options {
+            max_sweeps: options.max_sweeps - done,
+            method: if levels_left_out { Method::Sweeps } else { options.method },
+            ..options.clone()
+        };
         let from = opened.as_ref().map_or(from, |opened| &opened.positions);
         let mut engine = self.engine(place, options, target, from)?;
         let mut history = Vec::new();
@@ -382,7 +392,20 @@ impl Run<'_, '_> {
             (Place::Gpu(..), Place::Cpu) => history.len() as u32 - 1,
             _ => done,
         };
-        Ok(End { history, positions, corrections, opening_sweeps, stop })
+        Ok(End { history, positions, corrections, opening_sweeps, levels_left_out, stop })
+    }
+
+    /// Whether a device is to do without corrections from coarser levels, as it does not hold these.
+    fn leaves_levels_out(&self, place: Place<'_>, options: &Options) -> Result<bool, GpuError> {
+        match place {
+            Place::Gpu(gpu, _) if options.is_multilevel() => {
+                match gpu.check_levels(&self.smoother.problem) {
+                    Err(GpuError::Limit { .. }) if options.method == Method::Auto => Ok(true),
+                    checked => checked.map(|()| false),
+                }
+            }
+            _ => Ok(false),
+        }
     }
 
     /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on

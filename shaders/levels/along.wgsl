@@ -34,9 +34,9 @@ fn along(
     var sums: array<vec2<f32>, 4>;
     for (var t = id.x; t < params.triangles; t += stride) {
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
-        let p = positions[corners.x];
-        let a = edge(p, positions[corners.y]);
-        let b = edge(p, positions[corners.z]);
+        let p = position(corners.x);
+        let a = edge(p, position(corners.y));
+        let b = edge(p, position(corners.z));
         let d = moved(corners.x);
         let here = Corner(a, b, params.mean_area);
         let there =

@@ -30,6 +30,11 @@ struct LevelOp {
 @group(0) @binding(7) var<storage, read> values: array<f32>;
 @group(0) @binding(8) var<storage, read_write> vectors: array<vec2<f32>>;
 
+// Where in `ring` the neighbors of a vertex start, from its ring start.
+fn ring_place(start: u32) -> u32 {
+    return start & ~HELD;
+}
+
 // The product of a row of the matrix with x.
 fn row_times_x(row: u32) -> vec2<f32> {
     var sum = vec2(0.0);

@@ -2,8 +2,8 @@
 
 fn smoothed(v: u32) -> vec2<f32> {
     var around = vec2(0.0);
-    let end = ring_start[v + 1u] & ~HELD;
-    for (var i = ring_start[v] & ~HELD; i < end; i++) {
+    let end = ring_place(ring_start[v + 1u]);
+    for (var i = ring_place(ring_start[v]); i < end; i++) {
         let k = ring[i];
         if k < op.free {
             around += vectors[op.x + k] * (values[op.diagonal + k] * edge_weight(v, k));

@@ -9,5 +9,5 @@ fn take(
     if v >= op.rows {
         return;
     }
-    positions[v] = advanced(positions[v], op.a * vectors[op.x + v]);
+    set_position(v, advanced(position(v), op.a * vectors[op.x + v]));
 }

@@ -1,10 +1,14 @@
 //! A mesh on the device.
 
+use std::ops::Range;
+
 use glam::DVec2;
 use wgpu::BufferUsages as Usage;
 
 use super::device::{Gpu, GpuError, scoped};
 use super::layout::split;
+use super::parts::{Parts, of_part};
+use super::size::{NUMBER, POSITION, TRIANGLE};
 use crate::problem::Problem;
 
 /// The buffers that live as long as a mesh stays on the device.
@@ -13,65 +17,14 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
-}
-
-/// How large a mesh is, for [`Gpu::required_limits`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeshSize {
-    /// Number of vertices.
-    pub vertices: usize,
-    /// Number of triangles.
-    pub triangles: usize,
-}
-
-impl MeshSize {
-    /// The bytes of each buffer that grows with the mesh. Of the one-rings, which hold each corner
-    /// of a triangle at most once, the bound.
-    fn buffers(self) -> [(&'static str, u64); 3] {
-        let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
-        [
-            ("the buffer of vertex positions", vertices * size_of::<[f32; 4]>() as u64),
-            ("the buffer of triangles", triangles * size_of::<[u32; 3]>() as u64),
-            ("the buffer of one-rings", triangles * 3 * size_of::<u32>() as u64),
-        ]
-    }
-
-    /// The largest buffer.
-    pub(crate) fn largest(self) -> u64 {
-        self.buffers().into_iter().map(|(_, bytes)| bytes).fold(0, u64::max)
-    }
-
-    /// Fails if a buffer does not fit the limits: checked before anything is allocated, as a limit met
-    /// halfway helps nobody.
-    pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
-        self.buffers().into_iter().try_for_each(|(what, needed)| {
-            check_binding(limits, || format!("{what} ({} vertices)", self.vertices), needed)
-        })
-    }
-}
-
-/// Fails if a buffer of `needed` bytes cannot be made or bound.
-pub(crate) fn check_binding(
-    limits: &wgpu::Limits,
-    what: impl Fn() -> String,
-    needed: u64,
-) -> Result<(), GpuError> {
-    for (limit, available) in [
-        ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
-        ("max_buffer_size", limits.max_buffer_size),
-    ] {
-        if needed > available {
-            return Err(GpuError::Limit { what: what(), needed, limit, available });
-        }
-    }
-    Ok(())
+    /// How they are bound.
+    pub(crate) parts: Parts,
 }
 
 impl MeshBuffers {
     /// Uploads a problem with its vertices at `positions`.
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
-        let size = MeshSize { vertices: positions.len(), triangles: problem.triangles().len() };
-        size.check(&gpu.device.limits())?;
+        let parts = Parts::new(problem, &gpu.device.limits())?;
         let positions: Vec<[f32; 4]> = positions.iter().map(|&p| split(p)).collect();
         scoped(&gpu.device, || Self {
             positions: filled(gpu, "positions", &positions, Usage::STORAGE | Usage::COPY_SRC),
@@ -83,8 +36,55 @@ impl MeshBuffers {
             ),
             ring: filled(gpu, "one-rings", problem.ring(), Usage::STORAGE),
             triangles: filled(gpu, "triangles", problem.triangles(), Usage::STORAGE),
+            parts,
         })
     }
+
+    /// The positions, as one binding, and what is beyond it.
+    pub(crate) fn bind_positions(
+        &self,
+    ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
+        match self.parts.split {
+            None => (self.positions.as_entire_binding(), None),
+            Some(split) => {
+                let end = self.positions.size();
+                let split = u64::from(split) * POSITION;
+                (bytes(&self.positions, 0..split), Some(bytes(&self.positions, split..end)))
+            }
+        }
+    }
+
+    /// The one-rings of a part.
+    pub(crate) fn bind_ring(&self, part: usize) -> wgpu::BindingResource<'_> {
+        rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
+    }
+
+    /// The triangles of a part.
+    pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
+        rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
+    }
+}
+
+/// A uniform that stands at a dynamic offset.
+pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    bytes(buffer, 0..size_of::<T>() as u64)
+}
+
+/// Some rows of a buffer, each of `size` bytes.
+pub(crate) fn rows<'b>(
+    buffer: &'b wgpu::Buffer,
+    range: &Range<u32>,
+    size: u64,
+) -> wgpu::BindingResource<'b> {
+    bytes(buffer, u64::from(range.start) * size..u64::from(range.end) * size)
+}
+
+fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+        buffer,
+        offset: range.start,
+        size: wgpu::BufferSize::new(range.end - range.start),
+    })
 }
 
 /// A buffer holding `contents`. To be called in an error scope.

@@ -86,9 +86,8 @@ impl DeviceMesh {
     /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`,
     /// [`GpuError::Limit`] if the device cannot bind as much.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
-        let (positions, numbers) = (&self.buffers.positions, &self.numbers);
-        let Self { gpu, problem, vertex_count, .. } = self;
-        BoundVertices::new(gpu, problem, *vertex_count, positions, numbers, vertices)
+        let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
+        BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
     }
 
     /// Reads the positions back, in the mesh's order and units; blocks until the device has done all

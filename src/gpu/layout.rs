@@ -41,14 +41,16 @@ pub(crate) struct Params {
     pub(crate) padding: u32,
 }
 
-/// `SweepColor` in shaders/common.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+/// `Part` in shaders/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct SweepColor {
+pub(crate) struct Part {
     pub(crate) first: u32,
     pub(crate) count: u32,
     pub(crate) omega: f32,
     pub(crate) sharpness: u32,
+    pub(crate) ring_base: u32,
+    pub(crate) padding: [u32; 3],
 }
 
 /// `LevelOp` in shaders/levels/common.wgsl.
@@ -174,7 +176,7 @@ mod tests {
                 mean_area,
             }
         );
-        mirrors!(run, SweepColor { first, count, omega, sharpness });
+        mirrors!(run, Part { first, count, omega, sharpness, ring_base });
         mirrors!(
             &Kernel::Apply,
             LevelOp { rows, free, starts, columns, entries, diagonal, x, right, step, out, a, b }
@@ -193,7 +195,7 @@ mod tests {
     fn a_uniform_holds_only_what_16_byte_rows_allow() {
         // In a uniform an array's elements must be multiples of 16 bytes apart.
         assert_eq!(offset_of!(Publish, ideal_squared) % 16, 0);
-        assert!(size_of::<SweepColor>() <= 256, "within the least dynamic offset alignment");
+        assert!(size_of::<Part>() <= 256, "within the least dynamic offset alignment");
     }
 
     #[test]

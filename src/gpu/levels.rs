@@ -2,13 +2,14 @@
 
 use wgpu::BufferUsages as Usage;
 
-use super::buffers::{MeshBuffers, check_binding, filled, zeroed};
+use super::buffers::{MeshBuffers, filled, uniform, zeroed};
 use super::device::{Gpu, GpuError, scoped};
 use super::kernel::Pipeline;
 use super::layout::{LevelOp, WORKGROUP};
 use super::passes::Passes;
-use super::run::{dispatch, objective_groups};
-use super::shaders::{Interface, Kernel};
+use super::run::dispatch;
+use super::shaders::{Interface, Kernel, Positions};
+use super::size::{NUMBER, POSITION, TRIANGLE, check_limit, objective_invocations};
 use crate::metric::Metric;
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 use crate::problem::Problem;
@@ -88,7 +89,7 @@ impl Layout<'_> {
     }
 
     fn step(&mut self, kernel: Kernel, groups: Groups, op: LevelOp) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel)?;
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, Positions::Whole)?;
         let number = self.listed;
         self.listed += 1;
         Ok(Dispatch { pipeline, op, number, groups })
@@ -170,6 +171,24 @@ impl Layout<'_> {
     }
 }
 
+impl Gpu {
+    /// Says, before anything is allocated, whether the device corrects sweeps on a mesh from coarser levels: only where
+    /// it binds all of the mesh at once.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if not.
+    pub(crate) fn check_levels(&self, problem: &Problem) -> Result<(), GpuError> {
+        let limits = self.device.limits();
+        let rings = problem.ring().len() as u64 * NUMBER;
+        let triangles = problem.triangles().len() as u64 * TRIANGLE;
+        let positions = problem.positions().len() as u64 * POSITION;
+        let what = || "a mesh that is corrected from coarser levels".to_owned();
+        let bound = limits.max_storage_buffer_binding_size;
+        let needed = rings.max(triangles).max(positions);
+        check_limit("max_storage_buffer_binding_size", bound, &what, needed)
+    }
+}
+
 impl Levels {
     /// Uploads a hierarchy and makes the pipelines it needs. `params` are those of the run on `mesh`.
     ///
@@ -188,8 +207,8 @@ impl Levels {
             Layout { gpu, structure: Vec::new(), values: Vec::new(), vectors: GRADIENT, listed: 0 };
         let gradient = layout.vector(free as usize);
         let direction = layout.vector(free as usize);
-        let groups = objective_groups(problem);
-        let partials = groups * WORKGROUP;
+        let partials = objective_invocations(problem.triangles().len());
+        let groups = partials / WORKGROUP;
         let sums = layout.vector(4 * partials as usize);
 
         let (sizes, doubled_stiffness) = hierarchy.sizes();
@@ -237,7 +256,11 @@ impl Levels {
             ("the structure of the coarse levels", layout.structure.len() as u64 * 4),
             ("the matrices of the coarse levels", layout.values.len() as u64 * 4),
         ] {
-            check_binding(&gpu.device.limits(), || what.to_owned(), needed)?;
+            let limits = gpu.device.limits();
+            let what = || what.to_owned();
+            let bound = limits.max_storage_buffer_binding_size;
+            check_limit("max_storage_buffer_binding_size", bound, &what, needed)?;
+            check_limit("max_buffer_size", limits.max_buffer_size, &what, needed)?;
         }
         let (ops, vectors, bind_group) = scoped(&gpu.device, || {
             let ops = filled(gpu, "level steps", &uniforms, Usage::UNIFORM | Usage::COPY_DST);
@@ -245,14 +268,9 @@ impl Levels {
             let values = filled(gpu, "level values", &layout.values, Usage::STORAGE);
             let usage = Usage::STORAGE | Usage::COPY_SRC;
             let vectors = zeroed(gpu, "level vectors", vector_bytes, usage);
-            let op = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &ops,
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<LevelOp>() as u64),
-            });
             let resources = [
                 params.as_entire_binding(),
-                op,
+                uniform::<LevelOp>(&ops),
                 mesh.positions.as_entire_binding(),
                 mesh.ring_start.as_entire_binding(),
                 mesh.ring.as_entire_binding(),
@@ -261,7 +279,8 @@ impl Levels {
                 values.as_entire_binding(),
                 vectors.as_entire_binding(),
             ];
-            let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Levels, &resources);
+            let bind_group =
+                gpu.pipelines.bind(&gpu.device, Interface::Levels, Positions::Whole, &resources);
             (ops, vectors, bind_group)
         })?;
         Ok(Self { bind_group, ops, stride, correction, along, total, take, vectors })

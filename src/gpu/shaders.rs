@@ -8,6 +8,8 @@ use crate::multilevel::{NONE, SMOOTHING};
 use crate::plan::{Derivatives, NOISE, Plan, Stop, line_search};
 
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
+const POSITIONS: &str = include_str!("../../shaders/positions.wgsl");
+const POSITIONS_IN_TWO: &str = include_str!("../../shaders/positions_in_two.wgsl");
 const PAIRS: &str = include_str!("../../shaders/pairs.wgsl");
 const PARAMS: &str = include_str!("../../shaders/params.wgsl");
 const CONTROL: &str = include_str!("../../shaders/control.wgsl");
@@ -85,6 +87,31 @@ pub enum Interface {
     Levels,
 }
 
+impl Interface {
+    pub(crate) const ALL: [Self; 4] =
+        [Interface::Run, Interface::Exchange, Interface::Publish, Interface::Levels];
+}
+
+/// How kernels see the positions of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Positions {
+    /// As one binding.
+    Whole,
+    /// As two, where a device binds less than the buffer at once.
+    InTwo,
+}
+
+impl Positions {
+    pub(crate) const ALL: [Self; 2] = [Positions::Whole, Positions::InTwo];
+
+    /// Those of so many vertices.
+    pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
+        let bytes = vertices as u64 * size_of::<[f32; 4]>() as u64;
+        let fits = bytes <= limits.max_storage_buffer_binding_size;
+        if fits { Positions::Whole } else { Positions::InTwo }
+    }
+}
+
 impl Kernel {
     /// Every kernel that a plan and what belongs to it may need, on an application's device or in a run.
     pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
@@ -158,15 +185,29 @@ impl Kernel {
 
     /// The complete WGSL module.
     pub fn wgsl(&self) -> String {
+        self.composed(Positions::Whole)
+    }
+
+    /// The same for a mesh whose positions are more than the device binds at once.
+    pub fn wgsl_for_large_meshes(&self) -> String {
+        self.composed(Positions::InTwo)
+    }
+
+    pub(crate) fn composed(&self, positions: Positions) -> String {
         let mut source = constants();
-        match self.interface() {
-            Interface::Run => {
-                [PARAMS, COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
-            }
-            Interface::Exchange => [PAIRS, EXCHANGE].iter().for_each(|part| source.push_str(part)),
-            Interface::Publish => source.push_str(CONTROL),
-            Interface::Levels => {
-                [PARAMS, LEVELS, PAIRS, PATCH].iter().for_each(|part| source.push_str(part))
+        let (parts, beyond): (&[&str], _) = match self.interface() {
+            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some(9)),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some(4)),
+            Interface::Publish => (&[CONTROL], None),
+            Interface::Levels => (&[PARAMS, LEVELS, PAIRS, PATCH], Some(9)),
+        };
+        parts.iter().for_each(|part| source.push_str(part));
+        match (beyond, positions) {
+            (None, _) => {}
+            (Some(_), Positions::Whole) => source.push_str(POSITIONS),
+            (Some(binding), Positions::InTwo) => {
+                let _ = writeln!(source, "const BEYOND: u32 = {binding}u;");
+                source.push_str(POSITIONS_IN_TWO);
             }
         }
         match self {

@@ -65,6 +65,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             sweeps: outcome.sweeps,
             corrections: outcome.corrections,
             opening_sweeps: outcome.opening_sweeps,
+            levels_left_out: outcome.levels_left_out,
             best_sweep: outcome.best_sweep,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),
