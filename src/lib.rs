@@ -76,8 +76,7 @@
 //! Triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
 //! 2³² vertices. On a GPU, buffers that are larger than a device binds at once are bound part by part, which
 //! changes no bit of the result; but positions, which every kernel sees whole, take two bindings at the most: where
-//! 128 MiB are the limit, 16 million vertices. Corrections from coarser levels take all of the mesh in one, five
-//! million there. [`Gpu::check_size`] tells before anything is done.
+//! 128 MiB are the limit, 16 million vertices. [`Gpu::check_size`] tells before anything is done.
 
 mod boundary;
 mod clamp;

@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::cpu::{CpuEngine, CpuFine, mean_excess};
 use crate::engine::{Engine, Objectives};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, Waiting};
+use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, MeshSize, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::multilevel::MultilevelEngine;
@@ -78,8 +78,8 @@ pub struct Outcome {
     /// Sweeps that were done on the CPU, in double precision, though a device was asked for: the first ones, where triangles
     /// are too flat for single precision.
     pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`](crate::Method) did without these corrections, as the device does not hold the coarser
-    /// levels of a mesh of this size.
+    /// Whether [`Method::Auto`](crate::Method) did without these corrections, as the device does not bind what the
+    /// coarser levels of the mesh take.
     pub levels_left_out: bool,
     /// The sweep after which the returned state was had; 0 is the mesh as it was.
     pub best_sweep: u32,
@@ -132,6 +132,12 @@ impl<'a> Smoother<'a> {
         self.prepare
     }
 
+    /// How large the mesh is, less the vertices that no triangle uses.
+    pub fn size(&self) -> MeshSize {
+        let triangles = self.problem.triangles().len();
+        MeshSize { vertices: self.problem.positions().len(), triangles }
+    }
+
     /// Statistics of the mesh with its vertices at `points`.
     pub fn quality(&self, points: &[[f64; 2]]) -> Quality {
         Quality::of(points, &self.topology)
@@ -148,7 +154,8 @@ impl<'a> Smoother<'a> {
     /// it, the best state so far being returned all the same.
     ///
     /// # Errors
-    /// [`SmoothError`] if an option makes no sense or the device fails.
+    /// [`SmoothError`] if an option makes no sense or the device fails; [`GpuError::Limit`] before anything is done if the
+    /// mesh does not fit it.
     pub fn run(
         &self,
         options: &Options,
@@ -187,6 +194,9 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
+        if let Place::Gpu(gpu, _) = place {
+            gpu.check_size(self.size())?;
+        }
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         let goal = match options.goal {
@@ -326,6 +336,15 @@ impl AnyEngine<'_> {
             AnyEngine::GpuMultilevel(engine) => engine.corrections(),
         }
     }
+
+    /// Why there are no corrections, if there was to be some.
+    fn left_out(&self) -> Option<&GpuError> {
+        match self {
+            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => None,
+            AnyEngine::CpuMultilevel(engine) => engine.left_out(),
+            AnyEngine::GpuMultilevel(engine) => engine.left_out(),
+        }
+    }
 }
 
 /// Sweeps from some positions to the end.
@@ -355,12 +374,7 @@ impl Run<'_, '_> {
         let base = options.scheme.base();
         let (place, opened) = self.opened(options, target, from);
         let done = opened.as_ref().map_or(0, Opened::sweeps);
-        let levels_left_out = self.leaves_levels_out(place, options)?;
-        let options = &Options {
-            max_sweeps: options.max_sweeps - done,
-            method: if levels_left_out { Method::Sweeps } else { options.method },
-            ..options.clone()
-        };
+        let options = &Options { max_sweeps: options.max_sweeps - done, ..options.clone() };
         let from = opened.as_ref().map_or(from, |opened| &opened.positions);
         let mut engine = self.engine(place, options, target, from)?;
         let mut history = Vec::new();
@@ -370,6 +384,9 @@ impl Run<'_, '_> {
             let log = engine.advance(batch).await?;
             batch = next_batch(batch, start.elapsed());
             history.extend_from_slice(&log);
+            if let (Method::Multilevel, Some(error)) = (options.method, engine.left_out()) {
+                return Err(error.clone().into());
+            }
             if let Some(stop) = engine.stop() {
                 break stop;
             }
@@ -383,6 +400,7 @@ impl Run<'_, '_> {
             }
         };
         let corrections = engine.corrections();
+        let levels_left_out = engine.left_out().is_some();
         let positions = engine.best_positions().await?;
         let (history, positions) = match opened {
             Some(opened) => opened.followed_by(base, history, positions),
@@ -393,19 +411,6 @@ impl Run<'_, '_> {
             _ => done,
         };
         Ok(End { history, positions, corrections, opening_sweeps, levels_left_out, stop })
-    }
-
-    /// Whether a device is to do without corrections from coarser levels, as it does not hold these.
-    fn leaves_levels_out(&self, place: Place<'_>, options: &Options) -> Result<bool, GpuError> {
-        match place {
-            Place::Gpu(gpu, _) if options.is_multilevel() => {
-                match gpu.check_levels(&self.smoother.problem) {
-                    Err(GpuError::Limit { .. }) if options.method == Method::Auto => Ok(true),
-                    checked => checked.map(|()| false),
-                }
-            }
-            _ => Ok(false),
-        }
     }
 
     /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on

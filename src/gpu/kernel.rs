@@ -8,10 +8,10 @@ use super::shaders::{Interface, Kernel, Positions};
 
 /// The bindings of group 0, in order. Tests hold them against the WGSL.
 fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
-    let has_positions = interface != Interface::Publish;
-    let beyond = has_positions && positions == Positions::InTwo;
     let mut bindings = bindings_of_whole(interface).to_vec();
-    bindings.extend(beyond.then_some(Binding::ReadWrite));
+    if interface.sees(positions) == Positions::InTwo {
+        bindings.push(Binding::ReadWrite);
+    }
     bindings
 }
 
@@ -33,17 +33,29 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
         ],
         Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
         Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
-        Interface::Levels => &[
+        Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
             ReadWrite,
             ReadOnly,
             ReadOnly,
             ReadOnly,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+        ],
+        Interface::Transfer => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadOnly,
+            ReadOnly,
             ReadOnly,
             ReadOnly,
             ReadWrite,
+            ReadWrite,
+            ReadWrite,
         ],
+        Interface::Coarse => &[UNIFORM, Uniform { dynamic: true }, ReadOnly, ReadOnly, ReadWrite],
     }
 }
 
@@ -120,6 +132,7 @@ impl Layout {
 impl Pipelines {
     /// To be called in an error scope.
     fn layout(&self, device: &wgpu::Device, interface: Interface, positions: Positions) -> &Layout {
+        let positions = interface.sees(positions);
         self.layouts[interface as usize][positions as usize]
             .get_or_init(|| Layout::new(device, interface, positions))
     }
@@ -152,6 +165,7 @@ impl Pipelines {
         kernel: &Kernel,
         positions: Positions,
     ) -> Result<Pipeline, GpuError> {
+        let positions = kernel.interface().sees(positions);
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(raw) = made.get(&(kernel.clone(), positions)) {
             return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });

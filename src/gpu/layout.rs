@@ -58,7 +58,9 @@ pub(crate) struct Part {
 #[repr(C)]
 pub(crate) struct LevelOp {
     pub(crate) rows: u32,
+    pub(crate) first: u32,
     pub(crate) free: u32,
+    pub(crate) ring_base: u32,
     pub(crate) starts: u32,
     pub(crate) columns: u32,
     pub(crate) entries: u32,
@@ -69,6 +71,7 @@ pub(crate) struct LevelOp {
     pub(crate) out: u32,
     pub(crate) a: f32,
     pub(crate) b: f32,
+    pub(crate) padding: [u32; 2],
 }
 
 /// `Control` in shaders/control.wgsl.
@@ -179,7 +182,22 @@ mod tests {
         mirrors!(run, Part { first, count, omega, sharpness, ring_base });
         mirrors!(
             &Kernel::Apply,
-            LevelOp { rows, free, starts, columns, entries, diagonal, x, right, step, out, a, b }
+            LevelOp {
+                rows,
+                first,
+                free,
+                ring_base,
+                starts,
+                columns,
+                entries,
+                diagonal,
+                x,
+                right,
+                step,
+                out,
+                a,
+                b
+            }
         );
         for kernel in [run, &Kernel::Publish] {
             mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });

@@ -19,6 +19,7 @@ mod layout;
 mod levels;
 mod limits;
 mod objective;
+mod pages;
 mod parts;
 mod passes;
 mod readback;

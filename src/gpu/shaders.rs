@@ -26,8 +26,11 @@ const EXPORT: &str = include_str!("../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../shaders/publish.wgsl");
 
 const LEVELS: &str = include_str!("../../shaders/levels/common.wgsl");
-const LAPLACIAN: &str = include_str!("../../shaders/levels/laplacian.wgsl");
+const FINE: &str = include_str!("../../shaders/levels/fine.wgsl");
+const TRANSFER: &str = include_str!("../../shaders/levels/transfer.wgsl");
+const COARSE: &str = include_str!("../../shaders/levels/coarse.wgsl");
 const GRADIENT: &str = include_str!("../../shaders/levels/gradient.wgsl");
+const SMOOTH: &str = include_str!("../../shaders/levels/smooth.wgsl");
 const HAND_DOWN: &str = include_str!("../../shaders/levels/hand_down.wgsl");
 const HAND_UP: &str = include_str!("../../shaders/levels/hand_up.wgsl");
 const APPLY: &str = include_str!("../../shaders/levels/apply.wgsl");
@@ -56,6 +59,8 @@ pub enum Kernel {
     Publish,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
+    /// The same, smoothed.
+    SmoothGradient,
     /// From the free vertices to the aggregates of the first coarse level.
     HandDown,
     /// And back.
@@ -83,13 +88,31 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
-    /// A mesh and the levels below it: `shaders/levels/common.wgsl`.
-    Levels,
+    /// A mesh that is corrected: `shaders/levels/fine.wgsl`.
+    Fine,
+    /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
+    Transfer,
+    /// The coarse levels: `shaders/levels/coarse.wgsl`.
+    Coarse,
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 4] =
-        [Interface::Run, Interface::Exchange, Interface::Publish, Interface::Levels];
+    pub(crate) const ALL: [Self; 6] = [
+        Interface::Run,
+        Interface::Exchange,
+        Interface::Publish,
+        Interface::Fine,
+        Interface::Transfer,
+        Interface::Coarse,
+    ];
+
+    /// How its kernels see the positions: as one if not at all.
+    pub(crate) fn sees(self, positions: Positions) -> Positions {
+        match self {
+            Interface::Run | Interface::Exchange | Interface::Fine => positions,
+            Interface::Publish | Interface::Transfer | Interface::Coarse => Positions::Whole,
+        }
+    }
 }
 
 /// How kernels see the positions of a mesh.
@@ -127,6 +150,7 @@ impl Kernel {
     pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
         let of_metric = [Kernel::Gradient(metric), Kernel::Along(metric)];
         let others = [
+            Kernel::SmoothGradient,
             Kernel::HandDown,
             Kernel::HandUp,
             Kernel::Apply,
@@ -148,7 +172,8 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
-            Kernel::Gradient(_) => "gradient",
+            Kernel::Gradient(_) => "find_gradient",
+            Kernel::SmoothGradient => "smooth_gradient",
             Kernel::HandDown => "hand_down",
             Kernel::HandUp => "hand_up",
             Kernel::Apply => "apply",
@@ -168,7 +193,9 @@ impl Kernel {
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }
-            _ => Interface::Levels,
+            Kernel::Gradient(_) | Kernel::Along(_) | Kernel::Take => Interface::Fine,
+            Kernel::SmoothGradient | Kernel::HandDown | Kernel::HandUp => Interface::Transfer,
+            Kernel::Apply | Kernel::Chebyshev | Kernel::Direct | Kernel::Total => Interface::Coarse,
         }
     }
 
@@ -199,7 +226,9 @@ impl Kernel {
             Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some(9)),
             Interface::Exchange => (&[PAIRS, EXCHANGE], Some(4)),
             Interface::Publish => (&[CONTROL], None),
-            Interface::Levels => (&[PARAMS, LEVELS, PAIRS, PATCH], Some(9)),
+            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some(9)),
+            Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
+            Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
         };
         parts.iter().for_each(|part| source.push_str(part));
         match (beyond, positions) {
@@ -235,10 +264,9 @@ impl Kernel {
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
                 source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
             }
-            Kernel::HandDown => {
-                [LAPLACIAN, HAND_DOWN].iter().for_each(|part| source.push_str(part))
-            }
-            Kernel::HandUp => [LAPLACIAN, HAND_UP].iter().for_each(|part| source.push_str(part)),
+            Kernel::SmoothGradient => source.push_str(SMOOTH),
+            Kernel::HandDown => source.push_str(HAND_DOWN),
+            Kernel::HandUp => source.push_str(HAND_UP),
             Kernel::Apply => source.push_str(APPLY),
             Kernel::Chebyshev => source.push_str(CHEBYSHEV),
             Kernel::Direct => source.push_str(DIRECT),

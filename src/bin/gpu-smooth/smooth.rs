@@ -109,7 +109,10 @@ fn smooth(
         done => done.map(|outcome| (outcome, backend)),
     };
     bar.clear();
-    outcome.map_err(|error: SmoothError| error.to_string())
+    outcome.map_err(|error: SmoothError| match engine::is_too_large(&error) {
+        true => format!("{error}. Smooth on the CPU: --engine cpu"),
+        false => error.to_string(),
+    })
 }
 
 /// Refuses before the work what would fail after it.
