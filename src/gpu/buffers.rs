@@ -87,6 +87,9 @@ fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingResource<'_> 
     })
 }
 
+/// Bytes of a buffer that are on their way at once.
+const PIECE: usize = 16 << 20;
+
 /// A buffer holding `contents`. To be called in an error scope.
 pub(crate) fn filled<T: bytemuck::NoUninit>(
     gpu: &Gpu,
@@ -95,12 +98,17 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     usage: Usage,
 ) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(contents);
+    let is_large = bytes.len() > PIECE;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&format!("gpu-smooth {label}")),
         size: (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
-        usage,
-        mapped_at_creation: true,
+        usage: if is_large { usage | Usage::COPY_DST } else { usage },
+        mapped_at_creation: !is_large,
     });
+    if is_large {
+        write_by_pieces(gpu, &buffer, bytes);
+        return buffer;
+    }
     // A device that is lost or out of memory maps nothing, and the error scope hears of it: no reason
     // to panic, as wgpu's own `create_buffer_init` does.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
@@ -108,6 +116,21 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     }
     buffer.unmap();
     buffer
+}
+
+/// Fills a large buffer. What is on its way takes as much memory again, until the device has it: so a piece waits
+/// for the one before the last to arrive.
+fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: &[u8]) {
+    let mut submitted = None;
+    for (at, piece) in (0..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
+        gpu.queue.write_buffer(buffer, at, piece);
+        let before = submitted.replace(gpu.queue.submit([]));
+        if before.is_some() {
+            // That the device is lost, whoever waits for results is told.
+            let _ =
+                gpu.device.poll(wgpu::PollType::Wait { submission_index: before, timeout: None });
+        }
+    }
 }
 
 /// A buffer of zeros. To be called in an error scope.
@@ -118,4 +141,24 @@ pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::B
         usage,
         mapped_at_creation: false,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::readback::{self, Waiting};
+
+    #[test]
+    fn buffers_hold_their_contents_however_large() {
+        let gpu = Gpu::open(None).unwrap();
+        let piece = PIECE / size_of::<u32>();
+        for length in [1, piece, piece + 1, 2 * piece, 3 * piece - 1] {
+            let contents: Vec<u32> =
+                (0..length as u32).map(|i| i.wrapping_mul(0x9e37_79b1)).collect();
+            let usage = Usage::STORAGE | Usage::COPY_SRC;
+            let buffer = scoped(&gpu.device, || filled(&gpu, "test", &contents, usage)).unwrap();
+            let read = readback::read::<u32>(&gpu, &buffer, length, Waiting::Block);
+            assert!(pollster::block_on(read).unwrap() == contents, "{length} numbers");
+        }
+    }
 }

@@ -99,6 +99,8 @@ impl FineLevel for GpuFine<'_> {
     }
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        // Two at once would be more than the mesh itself.
+        self.levels = None;
         self.levels = Some(Levels::new(
             self.gpu,
             self.problem,

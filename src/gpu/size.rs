@@ -61,8 +61,8 @@ impl MeshSize {
         ]
     }
 
-    /// The bytes of device memory that the mesh and sweeps on it take, at the most: a scheme that ends at its last
-    /// state does without one position in two, corrections from coarser levels take some more.
+    /// The bytes of device memory that the mesh and sweeps on it take, at the most: 84 a vertex. A scheme whose last
+    /// state is its best takes 68. Corrections from coarser levels are not in it; they take some 60 more.
     pub fn bytes(self) -> u64 {
         self.needs().iter().map(|need| need.bytes).sum()
     }
