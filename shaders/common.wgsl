@@ -12,8 +12,6 @@ struct Part {
 }
 
 @group(0) @binding(1) var<uniform> part: Part;
-// Position of each vertex as a pair of floats: xy + zw, |zw| at most half a unit in the last place of xy.
-@group(0) @binding(2) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> ring_start: array<u32>; // HELD is set where the vertex is to stay
 @group(0) @binding(4) var<storage, read> ring: array<u32>;
 @group(0) @binding(5) var<storage, read> triangles: array<u32>;

@@ -1,6 +1,7 @@
 // Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted, and behind them the
 // worst imr² - 1: each invocation strides over the triangles and leaves one pair of floats each;
-// finish.wgsl puts those together. Further parts of the triangles add to what the ones before left. No barrier: those are dear on software adapters.
+// finish.wgsl puts those together. Further parts of the triangles add to what the ones before left. No barrier:
+// those are dear on software adapters.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective(

@@ -1,6 +1,6 @@
-// The mesh itself, and the vectors on its free vertices: the gradient, and where the correction leads.
+// The mesh itself (its positions are in positions.wgsl), and the vectors on its free vertices: the gradient, and where
+// the correction leads.
 
-@group(0) @binding(2) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> ring_start: array<u32>;
 @group(0) @binding(4) var<storage, read> ring: array<u32>;
 @group(0) @binding(5) var<storage, read> triangles: array<u32>;

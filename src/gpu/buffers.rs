@@ -8,6 +8,7 @@ use wgpu::BufferUsages as Usage;
 use super::device::{Gpu, GpuError, scoped};
 use super::layout::split;
 use super::parts::{Parts, of_part};
+use super::readback::{self, Waiting};
 use super::size::{NUMBER, POSITION, TRIANGLE};
 use crate::problem::Problem;
 
@@ -25,7 +26,7 @@ impl MeshBuffers {
     /// Uploads a problem with its vertices at `positions`.
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
         let parts = Parts::new(problem, &gpu.device.limits())?;
-        let positions: Vec<[f32; 4]> = positions.iter().map(|&p| split(p)).collect();
+        let positions = laid_out(positions, parts.low_positions);
         scoped(&gpu.device, || Self {
             positions: filled(gpu, "positions", &positions, Usage::STORAGE | Usage::COPY_SRC),
             ring_start: filled(
@@ -40,18 +41,34 @@ impl MeshBuffers {
         })
     }
 
-    /// The positions, as one binding, and what is beyond it.
+    /// The positions, and their low parts where they are by themselves.
     pub(crate) fn bind_positions(
         &self,
     ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
-        match self.parts.split {
+        match self.parts.low_positions {
             None => (self.positions.as_entire_binding(), None),
-            Some(split) => {
-                let end = self.positions.size();
-                let split = u64::from(split) * POSITION;
-                (bytes(&self.positions, 0..split), Some(bytes(&self.positions, split..end)))
-            }
+            Some(low) => (
+                bytes(&self.positions, 0..low),
+                Some(bytes(&self.positions, low..self.positions.size())),
+            ),
         }
+    }
+
+    /// Reads back the first `count` positions, after everything submitted so far.
+    pub(crate) async fn read_positions(
+        &self,
+        gpu: &Gpu,
+        count: usize,
+        waiting: Waiting,
+    ) -> Result<Vec<[f32; 4]>, GpuError> {
+        let Some(low) = self.parts.low_positions else {
+            return readback::read(gpu, &self.positions, count, waiting).await;
+        };
+        let low = (low / PART) as usize;
+        let parts: Vec<[f32; 2]> =
+            readback::read(gpu, &self.positions, low + count, waiting).await?;
+        let joined = parts.iter().zip(&parts[low..]).map(|(&[x, y], &[a, b])| [x, y, a, b]);
+        Ok(joined.collect())
     }
 
     /// The one-rings of a part.
@@ -63,6 +80,25 @@ impl MeshBuffers {
     pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
     }
+}
+
+/// Bytes of the high or the low parts of a position.
+const PART: u64 = POSITION / 2;
+
+/// The numbers of the buffer of positions: vertex by vertex, or all the low parts from a byte on.
+fn laid_out(positions: &[DVec2], low: Option<u64>) -> Vec<[f32; 2]> {
+    let count = positions.len();
+    let (step, low, length) = match low {
+        None => (2, 1, 2 * count),
+        Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
+    };
+    let mut parts = vec![[0.0; 2]; length];
+    for (v, &p) in positions.iter().enumerate() {
+        let [x, y, x_low, y_low] = split(p);
+        parts[step * v] = [x, y];
+        parts[step * v + low] = [x_low, y_low];
+    }
+    parts
 }
 
 /// A uniform that stands at a dynamic offset.
@@ -146,7 +182,6 @@ pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::B
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::readback::{self, Waiting};
 
     #[test]
     fn buffers_hold_their_contents_however_large() {

@@ -111,8 +111,9 @@ impl Gpu {
     ) -> Result<wgpu::Limits, GpuError> {
         size.check(available)?;
         let mut limits = own;
-        raise(&mut limits, available, Positions::of(size.vertices, available))?;
-        let largest = size.largest();
+        let positions = Positions::of(size.vertices, available);
+        raise(&mut limits, available, positions)?;
+        let largest = size.largest(positions);
         let bound = &mut limits.max_storage_buffer_binding_size;
         *bound = largest.min(available.max_storage_buffer_binding_size).max(*bound);
         limits.max_buffer_size = largest.max(limits.max_buffer_size);

@@ -2,22 +2,22 @@
 //!
 //! Buffers stay whole. A sweep over a color is one dispatch, or several where the one-rings of the color do not fit
 //! one binding; each sees those of its own vertices. So it is with the triangles of the objective. Positions are
-//! read from anywhere, and every kernel sees all of them, in two bindings if need be.
+//! read from anywhere, and every kernel sees all of them, in two bindings if need be: the high parts
+//! and the low parts.
 
 use std::ops::Range;
 
 use super::device::GpuError;
 use super::layout::WORKGROUP;
 use super::shaders::Positions;
-use super::size::{
-    MeshSize, NUMBER, POSITION, TRIANGLE, binding_size, check_limit, objective_invocations,
-};
+use super::size::{MeshSize, NUMBER, POSITION, TRIANGLE, check_limit, objective_invocations};
 use crate::problem::Problem;
 
 /// The parts of a mesh: one of each kind where all fits a binding.
 pub(crate) struct Parts {
-    /// The first vertex whose position is in the second binding, if there are two.
-    pub(crate) split: Option<u32>,
+    /// The byte of the buffer of positions from which on there are the low parts, if these take a binding of
+    /// their own.
+    pub(crate) low_positions: Option<u64>,
     /// The one-rings.
     pub(crate) rings: Vec<RingPart>,
     /// The triangles.
@@ -47,7 +47,7 @@ impl Parts {
         // bytes enough for a binding to begin after them. So many positions are, too.
         let round = objective_invocations(triangles);
         Ok(Self {
-            split: split(size.vertices, limits),
+            low_positions: low_positions(size.vertices, limits),
             rings: rings(problem.ring_start(), limits)?,
             triangles: ranges(triangles as u32, TRIANGLE, round, limits),
             free: ranges(free, POSITION, WORKGROUP, limits),
@@ -61,7 +61,7 @@ impl Parts {
 
     /// How kernels see the positions.
     pub(crate) fn positions(&self) -> Positions {
-        if self.split.is_some() { Positions::InTwo } else { Positions::Whole }
+        if self.low_positions.is_some() { Positions::InTwo } else { Positions::Whole }
     }
 }
 
@@ -70,10 +70,11 @@ pub(crate) fn of_part<T>(parts: &[T], part: usize) -> &T {
     &parts[part.min(parts.len() - 1)]
 }
 
-/// The first vertex in the second binding of the positions of so many, if one is not enough.
-fn split(vertices: usize, limits: &wgpu::Limits) -> Option<u32> {
+/// Where the low parts of so many positions begin, if they take a binding of their own.
+fn low_positions(vertices: usize, limits: &wgpu::Limits) -> Option<u64> {
     let in_two = Positions::of(vertices, limits) == Positions::InTwo;
-    in_two.then(|| (binding_size(limits) / POSITION) as u32)
+    let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
+    in_two.then(|| (vertices as u64 * POSITION / 2).next_multiple_of(alignment))
 }
 
 /// Cuts `count` rows of `bytes` each into parts that fit a binding, all but the last a multiple of `step` rows.
@@ -127,7 +128,7 @@ mod tests {
     fn what_fits_a_binding_is_one_part() {
         let part = RingPart { vertices: 0..3, entries: 0..256 };
         assert_eq!(rings(&[0, 100, 200, 256], &binding(1024)).unwrap(), [part]);
-        assert_eq!(split(64, &binding(1024)), None);
+        assert_eq!(low_positions(64, &binding(1024)), None);
         assert_eq!(ranges(85, TRIANGLE, 64, &binding(12 * 85)), vec![0..85]);
     }
 
@@ -167,8 +168,9 @@ mod tests {
     }
 
     #[test]
-    fn positions_are_split_where_a_binding_can_begin() {
-        assert_eq!(split(65, &binding(1039)), Some(64));
-        assert_eq!(split(66, &binding(1040)), Some(64));
+    fn low_positions_are_where_a_binding_can_begin() {
+        assert_eq!(low_positions(65, &binding(1039)), Some(768));
+        assert_eq!(low_positions(96, &binding(1039)), Some(768));
+        assert_eq!(low_positions(97, &binding(1039)), Some(1024));
     }
 }

@@ -120,7 +120,7 @@ impl Interface {
 pub(crate) enum Positions {
     /// As one binding.
     Whole,
-    /// As two, where a device binds less than the buffer at once.
+    /// High parts and low parts by themselves, where a device binds less than the buffer at once.
     InTwo,
 }
 
@@ -222,22 +222,22 @@ impl Kernel {
 
     pub(crate) fn composed(&self, positions: Positions) -> String {
         let mut source = constants();
-        let (parts, beyond): (&[&str], _) = match self.interface() {
-            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some(9)),
-            Interface::Exchange => (&[PAIRS, EXCHANGE], Some(4)),
+        let (parts, bindings): (&[&str], _) = match self.interface() {
+            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 4))),
             Interface::Publish => (&[CONTROL], None),
-            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some(9)),
+            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
         };
         parts.iter().for_each(|part| source.push_str(part));
-        match (beyond, positions) {
-            (None, _) => {}
-            (Some(_), Positions::Whole) => source.push_str(POSITIONS),
-            (Some(binding), Positions::InTwo) => {
-                let _ = writeln!(source, "const BEYOND: u32 = {binding}u;");
-                source.push_str(POSITIONS_IN_TWO);
-            }
+        if let Some((first, second)) = bindings {
+            let _ = writeln!(source, "const POSITIONS: u32 = {first}u;");
+            let _ = writeln!(source, "const LOW_POSITIONS: u32 = {second}u;");
+            source.push_str(match positions {
+                Positions::Whole => POSITIONS,
+                Positions::InTwo => POSITIONS_IN_TWO,
+            });
         }
         match self {
             Kernel::Sweep(metric, derivatives) => {

@@ -32,8 +32,8 @@ fn required_limits_name_the_limit_that_is_too_low() {
         &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffer_binding_size",
         7_900,
-        // All but what the first of two bindings holds.
-        "the buffer of vertex positions (1000 vertices) needs 8320, \
+        // Half of them, in one of two bindings.
+        "the buffer of vertex positions (1000 vertices) needs 8000, \
          but the device's max_storage_buffer_binding_size is 7900",
     );
     let low = Limits { max_buffer_size: 15_999, ..Limits::default() };
@@ -127,7 +127,7 @@ fn small() -> App {
 fn a_mesh_too_large_for_the_device_is_refused() {
     let app = small();
     let mesh = lattice(70, 70);
-    let text = "the buffer of vertex positions (5041 vertices) needs 47888, \
+    let text = "the buffer of vertex positions (5041 vertices) needs 40328, \
                 but the device's max_storage_buffer_binding_size is 32768";
     let name = "max_storage_buffer_binding_size";
     let error = DeviceMesh::new(&app.gpu, &mesh).err().unwrap();

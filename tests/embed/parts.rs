@@ -100,7 +100,7 @@ fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
     let large = lattice(46, 46);
     let [_, app] = devices(&mesh());
     let error = app.gpu.check_size(size(&large)).unwrap_err();
-    let text = "the buffer of vertex positions (2209 vertices) needs 18960, \
+    let text = "the buffer of vertex positions (2209 vertices) needs 17672, \
                 but the device's max_storage_buffer_binding_size is 16384";
     assert_eq!(error.to_string(), text);
     let made = || app.device().generate_allocator_report().map(|report| report.allocations.len());
