@@ -1,19 +1,25 @@
 // What the kernels of a run of sweeps see, beside params.wgsl.
 
-// The free vertices of one color, and how one sweep steps.
-struct SweepColor {
+// What one dispatch is for: free vertices of one color and how the sweep steps, or triangles, or free vertices of
+// any color. `ring`, `triangles` and `best_positions` are bound from what it needs first.
+struct Part {
     first: u32,
     count: u32,
     omega: f32,
     sharpness: u32,
+    // What of `ring` is in front of the binding.
+    @size(16) ring_base: u32,
 }
 
-@group(0) @binding(1) var<uniform> color: SweepColor;
-// Position of each vertex as a pair of floats: xy + zw, |zw| at most half a unit in the last place of xy.
-@group(0) @binding(2) var<storage, read_write> positions: array<vec4<f32>>;
+@group(0) @binding(1) var<uniform> part: Part;
 @group(0) @binding(3) var<storage, read> ring_start: array<u32>; // HELD is set where the vertex is to stay
 @group(0) @binding(4) var<storage, read> ring: array<u32>;
 @group(0) @binding(5) var<storage, read> triangles: array<u32>;
 @group(0) @binding(6) var<storage, read_write> partial_sums: array<vec2<f32>>;
 @group(0) @binding(7) var<storage, read_write> control: Control;
 @group(0) @binding(8) var<storage, read_write> best_positions: array<vec4<f32>>;
+
+// Where in `ring` the neighbors of a vertex start, from its ring start.
+fn ring_place(start: u32) -> u32 {
+    return (start & ~HELD) - part.ring_base;
+}

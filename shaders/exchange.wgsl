@@ -14,7 +14,6 @@ struct Exchange {
 }
 
 @group(0) @binding(0) var<uniform> exchange: Exchange;
-@group(0) @binding(1) var<storage, read_write> positions: array<vec4<f32>>;
 // The application's number of each vertex.
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> vertex_buffer: array<f32>;

@@ -10,7 +10,7 @@ fn export_positions(
         return;
     }
     let at = exchange.offset + numbers[vertex] * exchange.stride;
-    let p = exported(positions[vertex]);
+    let p = exported(position(vertex));
     vertex_buffer[at] = p.x;
     vertex_buffer[at + 1u] = p.y;
 }

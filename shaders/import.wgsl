@@ -21,13 +21,13 @@ fn import_positions(
     let at = exchange.offset + numbers[vertex] * exchange.stride;
     let given = vec2(vertex_buffer[at], vertex_buffer[at + 1u]);
     // A vertex the application has not moved keeps the bits that its floats do not hold.
-    if all(given == exported(positions[vertex])) {
+    if all(given == exported(position(vertex))) {
         return;
     }
     let x = imported(given.x, vec2(exchange.center.x, exchange.center.z));
     let y = imported(given.y, vec2(exchange.center.y, exchange.center.w));
     // One vertex that is nowhere would take its neighbors along, and these theirs.
     if is_finite(x.x) && is_finite(y.x) {
-        positions[vertex] = vec4(x.x, y.x, x.y, y.y);
+        set_position(vertex, vec4(x.x, y.x, x.y, y.y));
     }
 }

@@ -5,8 +5,8 @@ fn keep_best(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
-    let vertex = invocation(id, groups);
-    if control.improved != 0u && vertex < arrayLength(&best_positions) {
-        best_positions[vertex] = positions[vertex];
+    let index = invocation(id, groups);
+    if control.improved != 0u && index < part.count {
+        best_positions[index] = position(part.first + index);
     }
 }

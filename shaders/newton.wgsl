@@ -95,18 +95,18 @@ fn sweep(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= color.count || control.done != 0u {
+    if index >= part.count || control.done != 0u {
         return;
     }
-    let vertex = color.first + index;
+    let vertex = part.first + index;
     if (ring_start[vertex] & HELD) != 0u {
         return;
     }
-    sharpness = color.sharpness;
+    sharpness = part.sharpness;
     var p = patch_of(vertex);
     var moved = false;
     for (var i = 0u; i < params.inner; i++) {
-        let d = newton_step(p, color.omega);
+        let d = newton_step(p, part.omega);
         if all(d == vec2(0.0)) {
             break;
         }
@@ -117,6 +117,6 @@ fn sweep(
         }
     }
     if moved {
-        positions[vertex] = p.at;
+        set_position(vertex, p.at);
     }
 }

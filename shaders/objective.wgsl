@@ -1,6 +1,7 @@
 // Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted, and behind them the
 // worst imr² - 1: each invocation strides over the triangles and leaves one pair of floats each;
-// finish.wgsl puts those together. No barrier: those are dear on software adapters.
+// finish.wgsl puts those together. Further parts of the triangles add to what the ones before left. No barrier:
+// those are dear on software adapters.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective(
@@ -13,10 +14,16 @@ fn objective(
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, TRACKED>;
     var worst = 0.0;
-    for (var t = id.x; t < params.triangles; t += stride) {
-        let p = positions[triangles[3u * t]];
-        let a = edge(p, positions[triangles[3u * t + 1u]]);
-        let b = edge(p, positions[triangles[3u * t + 2u]]);
+    if part.first != 0u {
+        for (var i = 0u; i < TRACKED; i++) {
+            sums[i] = partial_sums[i * stride + id.x];
+        }
+        worst = partial_sums[TRACKED * stride + id.x].x;
+    }
+    for (var t = id.x; t < part.count; t += stride) {
+        let p = position(triangles[3u * t]);
+        let a = edge(p, position(triangles[3u * t + 1u]));
+        let b = edge(p, position(triangles[3u * t + 2u]));
         let corner = Corner(a, b, params.mean_area);
         let values = tracked_values(corner);
         for (var i = 0u; i < TRACKED; i++) {

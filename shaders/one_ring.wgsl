@@ -10,7 +10,7 @@ struct Patch {
 }
 
 fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
-    return edge(p.at, positions[ring[i]]) * p.unit;
+    return edge(p.at, position(ring[i])) * p.unit;
 }
 
 // A power of two that brings the length of an edge near one.
@@ -25,10 +25,10 @@ fn inverse_mean_ratio(t: Corner) -> f32 {
 
 fn patch_of(vertex: u32) -> Patch {
     var p: Patch;
-    p.start = ring_start[vertex] & ~HELD;
-    p.end = ring_start[vertex + 1u] & ~HELD;
-    p.at = positions[vertex];
-    p.unit = unit_of(edge(p.at, positions[ring[p.start]]));
+    p.start = ring_place(ring_start[vertex]);
+    p.end = ring_place(ring_start[vertex + 1u]);
+    p.at = position(vertex);
+    p.unit = unit_of(edge(p.at, position(ring[p.start])));
     p.mean_area = params.mean_area * p.unit * p.unit;
     return p;
 }

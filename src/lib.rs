@@ -74,8 +74,9 @@
 //! # Limits
 //!
 //! Triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
-//! 2³² vertices, and on a GPU no buffer larger than the device binds (128 MiB, the default limit, is
-//! eight million vertices).
+//! 2³² vertices. On a GPU, buffers that are larger than a device binds at once are bound part by part, which
+//! changes no bit of the result; but positions, which every kernel sees whole, take two bindings at the most: where
+//! 128 MiB are the limit, 16 million vertices. [`Gpu::check_size`] tells before anything is done.
 
 mod boundary;
 mod clamp;

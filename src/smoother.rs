@@ -8,12 +8,12 @@ use glam::DVec2;
 use crate::cpu::{CpuEngine, CpuFine, mean_excess};
 use crate::engine::{Engine, Objectives};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, Waiting};
+use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, MeshSize, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::multilevel::MultilevelEngine;
 use crate::opening::{self, Opened};
-use crate::options::{Desired, Goal, Options};
+use crate::options::{Desired, Goal, Method, Options};
 use crate::plan::{Sharpness, Stop};
 use crate::prepare::prepare;
 use crate::problem::Problem;
@@ -78,6 +78,9 @@ pub struct Outcome {
     /// Sweeps that were done on the CPU, in double precision, though a device was asked for: the first ones, where triangles
     /// are too flat for single precision.
     pub opening_sweeps: u32,
+    /// Whether [`Method::Auto`](crate::Method) did without these corrections, as the device does not bind what the
+    /// coarser levels of the mesh take.
+    pub levels_left_out: bool,
     /// The sweep after which the returned state was had; 0 is the mesh as it was.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
@@ -129,6 +132,12 @@ impl<'a> Smoother<'a> {
         self.prepare
     }
 
+    /// How large the mesh is, less the vertices that no triangle uses.
+    pub fn size(&self) -> MeshSize {
+        let triangles = self.problem.triangles().len();
+        MeshSize { vertices: self.problem.positions().len(), triangles }
+    }
+
     /// Statistics of the mesh with its vertices at `points`.
     pub fn quality(&self, points: &[[f64; 2]]) -> Quality {
         Quality::of(points, &self.topology)
@@ -145,7 +154,8 @@ impl<'a> Smoother<'a> {
     /// it, the best state so far being returned all the same.
     ///
     /// # Errors
-    /// [`SmoothError`] if an option makes no sense or the device fails.
+    /// [`SmoothError`] if an option makes no sense or the device fails; [`GpuError::Limit`] before anything is done if the
+    /// mesh does not fit it.
     pub fn run(
         &self,
         options: &Options,
@@ -184,6 +194,9 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
+        if let Place::Gpu(gpu, _) = place {
+            gpu.check_size(self.size())?;
+        }
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         let goal = match options.goal {
@@ -217,6 +230,7 @@ impl<'a> Smoother<'a> {
             sweeps: end.history.len() as u32 - 1,
             corrections: end.corrections,
             opening_sweeps: end.opening_sweeps,
+            levels_left_out: end.levels_left_out,
             best_sweep: best_sweep as u32,
             history: end.history,
             goal,
@@ -322,6 +336,15 @@ impl AnyEngine<'_> {
             AnyEngine::GpuMultilevel(engine) => engine.corrections(),
         }
     }
+
+    /// Why there are no corrections, if there was to be some.
+    fn left_out(&self) -> Option<&GpuError> {
+        match self {
+            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => None,
+            AnyEngine::CpuMultilevel(engine) => engine.left_out(),
+            AnyEngine::GpuMultilevel(engine) => engine.left_out(),
+        }
+    }
 }
 
 /// Sweeps from some positions to the end.
@@ -336,6 +359,7 @@ struct End {
     positions: Vec<DVec2>,
     corrections: u32,
     opening_sweeps: u32,
+    levels_left_out: bool,
     stop: Stop,
 }
 
@@ -360,6 +384,9 @@ impl Run<'_, '_> {
             let log = engine.advance(batch).await?;
             batch = next_batch(batch, start.elapsed());
             history.extend_from_slice(&log);
+            if let (Method::Multilevel, Some(error)) = (options.method, engine.left_out()) {
+                return Err(error.clone().into());
+            }
             if let Some(stop) = engine.stop() {
                 break stop;
             }
@@ -373,6 +400,7 @@ impl Run<'_, '_> {
             }
         };
         let corrections = engine.corrections();
+        let levels_left_out = engine.left_out().is_some();
         let positions = engine.best_positions().await?;
         let (history, positions) = match opened {
             Some(opened) => opened.followed_by(base, history, positions),
@@ -382,7 +410,7 @@ impl Run<'_, '_> {
             (Place::Gpu(..), Place::Cpu) => history.len() as u32 - 1,
             _ => done,
         };
-        Ok(End { history, positions, corrections, opening_sweeps, stop })
+        Ok(End { history, positions, corrections, opening_sweeps, levels_left_out, stop })
     }
 
     /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on

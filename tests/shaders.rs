@@ -33,17 +33,21 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
+/// The modules of each kernel: for most meshes, and for large ones.
 fn modules() -> impl Iterator<Item = (Kernel, Module)> {
-    kernels().into_iter().map(|kernel| {
-        let (module, _) =
-            validated(&kernel.wgsl()).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
-        (kernel, module)
-    })
+    let both = |kernel: Kernel| {
+        [kernel.wgsl(), kernel.wgsl_for_large_meshes()].map(|wgsl| {
+            let (module, _) =
+                validated(&wgsl).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
+            (kernel.clone(), module)
+        })
+    };
+    kernels().into_iter().flat_map(both)
 }
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 4 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1));
+    assert_eq!(modules().count(), 2 * (4 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]

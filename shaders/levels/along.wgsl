@@ -1,12 +1,12 @@
-// The objective here and at a times the correction x, the number of triangles that are broken there,
-// and the slope, from the gradient in right: each invocation leaves four partial sums as pairs of floats, which
-// total.wgsl adds up.
+// The objective here and at a times the correction, the number of triangles that are broken there,
+// and the slope, from the gradient: each invocation leaves four partial sums as pairs of floats, which
+// total.wgsl adds up. Further parts of the triangles add to what the ones before left.
 
 fn moved(v: u32) -> vec2<f32> {
     if v >= op.free {
         return vec2(0.0);
     }
-    return op.a * vectors[op.x + v];
+    return op.a * direction[v];
 }
 
 // Whether a triangle is inverted or flat, or breaks the shape guard and is worse than it was.
@@ -32,11 +32,20 @@ fn along(
 ) {
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, 4>;
-    for (var t = id.x; t < params.triangles; t += stride) {
+    if op.first != 0u {
+        for (var i = 0u; i < 4u; i++) {
+            sums[i] = vectors[op.out + i * stride + id.x];
+        }
+    } else {
+        for (var v = id.x; v < op.free; v += stride) {
+            sums[3] = added(sums[3], dot(gradient[v], direction[v]));
+        }
+    }
+    for (var t = id.x; t < op.rows; t += stride) {
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
-        let p = positions[corners.x];
-        let a = edge(p, positions[corners.y]);
-        let b = edge(p, positions[corners.z]);
+        let p = position(corners.x);
+        let a = edge(p, position(corners.y));
+        let b = edge(p, position(corners.z));
         let d = moved(corners.x);
         let here = Corner(a, b, params.mean_area);
         let there =
@@ -47,9 +56,6 @@ fn along(
         } else {
             sums[1] = added(sums[1], metric_excess(there));
         }
-    }
-    for (var v = id.x; v < op.free; v += stride) {
-        sums[3] = added(sums[3], dot(vectors[op.right + v], vectors[op.x + v]));
     }
     for (var i = 0u; i < 4u; i++) {
         vectors[op.out + i * stride + id.x] = sums[i];

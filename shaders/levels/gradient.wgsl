@@ -1,14 +1,15 @@
 // The gradient of the sum of q² at each free vertex.
 
 @compute @workgroup_size(WORKGROUP)
-fn gradient(
+fn find_gradient(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
-    let vertex = invocation(id, groups);
-    if vertex >= op.rows {
+    let index = invocation(id, groups);
+    if index >= op.rows {
         return;
     }
+    let vertex = op.first + index;
     let p = patch_of(vertex);
     var sum = vec2(0.0);
     var a = ring_edge(p, p.end - 1u);
@@ -17,5 +18,5 @@ fn gradient(
         sum += metric_derivatives(Corner(a, b, p.mean_area), 0.0).gradient;
         a = b;
     }
-    vectors[op.out + vertex] = sum * p.unit;
+    gradient[vertex] = sum * p.unit;
 }

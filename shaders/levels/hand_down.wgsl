@@ -1,16 +1,4 @@
-// Sums what a smoothed prolongation hands down to each aggregate: minus the gradient x.
-
-fn smoothed(v: u32) -> vec2<f32> {
-    var around = vec2(0.0);
-    let end = ring_start[v + 1u] & ~HELD;
-    for (var i = ring_start[v] & ~HELD; i < end; i++) {
-        let k = ring[i];
-        if k < op.free {
-            around += vectors[op.x + k] * (values[op.diagonal + k] * edge_weight(v, k));
-        }
-    }
-    return vectors[op.x + v] * (1.0 - SMOOTHING) + around * SMOOTHING;
-}
+// Sums what the members of each aggregate hand down, with the sign of descent.
 
 @compute @workgroup_size(WORKGROUP)
 fn hand_down(
@@ -24,7 +12,7 @@ fn hand_down(
     var sum = vec2(0.0);
     let end = structure[op.starts + row + 1u];
     for (var i = structure[op.starts + row]; i < end; i++) {
-        sum -= smoothed(structure[op.columns + i]);
+        sum -= direction[structure[op.columns + i]];
     }
     vectors[op.out + row] = sum;
 }

@@ -13,18 +13,19 @@ fn hand_up(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
-    let v = invocation(id, groups);
-    if v >= op.rows {
+    let index = invocation(id, groups);
+    if index >= op.rows {
         return;
     }
+    let v = op.first + index;
     var around = vec2(0.0);
-    let end = ring_start[v + 1u] & ~HELD;
-    for (var i = ring_start[v] & ~HELD; i < end; i++) {
+    let end = ring_place(ring_start[v + 1u]);
+    for (var i = ring_place(ring_start[v]); i < end; i++) {
         let k = ring[i];
         if k < op.free {
             around += value_at(k) * edge_weight(v, k);
         }
     }
     let share = SMOOTHING * values[op.diagonal + v];
-    vectors[op.out + v] = value_at(v) * (1.0 - SMOOTHING) + around * share;
+    direction[v] = value_at(v) * (1.0 - SMOOTHING) + around * share;
 }

@@ -1,4 +1,4 @@
-// Moves each free vertex a times along the correction x.
+// Moves each free vertex a times along the correction.
 
 @compute @workgroup_size(WORKGROUP)
 fn take(
@@ -9,5 +9,5 @@ fn take(
     if v >= op.rows {
         return;
     }
-    positions[v] = advanced(positions[v], op.a * vectors[op.x + v]);
+    set_position(v, advanced(position(v), op.a * direction[v]));
 }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::kernel::Pipelines;
-use super::shaders::Kernel;
+use super::shaders::{Kernel, Positions};
 use crate::error::SmoothError;
 use crate::options::Options;
 
@@ -177,13 +177,13 @@ impl Gpu {
         lost: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, GpuError> {
         super::limits::check(&device.limits())?;
-        let pipelines = Arc::new(scoped(&device, || Pipelines::new(&device))?);
+        let pipelines = Arc::new(Pipelines::default());
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost })
     }
 
     /// Compiles all that meshes take with these options, so that neither a frame nor a later
     /// [`Sweeps::new`](super::Sweeps::new) has to wait for it. What is compiled already costs nothing; another
-    /// thread can do it meanwhile.
+    /// thread can do it meanwhile. Meshes so large that their positions take two bindings compile for themselves.
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
@@ -194,7 +194,7 @@ impl Gpu {
             kernels.extend(Kernel::of_levels(options.scheme.base()));
         }
         for kernel in kernels {
-            self.pipelines.get(&self.device, &kernel)?;
+            self.pipelines.get(&self.device, &kernel, Positions::Whole)?;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use super::buffers::{MeshBuffers, filled};
 use super::device::{Gpu, GpuError, scoped};
 use super::exchange::{BoundVertices, VertexBuffer};
 use super::layout::{HELD, join};
-use super::readback::{self, Waiting};
+use super::readback::Waiting;
 use crate::error::{MeshError, SmoothError};
 use crate::mesh::Mesh;
 use crate::prepare;
@@ -86,9 +86,8 @@ impl DeviceMesh {
     /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`,
     /// [`GpuError::Limit`] if the device cannot bind as much.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
-        let (positions, numbers) = (&self.buffers.positions, &self.numbers);
-        let Self { gpu, problem, vertex_count, .. } = self;
-        BoundVertices::new(gpu, problem, *vertex_count, positions, numbers, vertices)
+        let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
+        BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
     }
 
     /// Reads the positions back, in the mesh's order and units; blocks until the device has done all
@@ -112,8 +111,7 @@ impl DeviceMesh {
     async fn wait_for_points(&self, waiting: Waiting) -> Result<Vec<[f64; 2]>, GpuError> {
         let Self { gpu, problem, buffers, unused, .. } = self;
         let count = problem.positions().len();
-        let positions: Vec<[f32; 4]> =
-            readback::read(gpu, &buffers.positions, count, waiting).await?;
+        let positions = buffers.read_positions(gpu, count, waiting).await?;
         let positions: Vec<_> = positions.into_iter().map(join).collect();
         let mut points = vec![[0.0; 2]; self.vertex_count];
         for (v, point) in problem.denormalized(&positions).chain(unused.iter().copied()) {

@@ -103,32 +103,25 @@ impl<'a> GpuEngine<'a> {
 
     /// [`Engine::best_positions`](crate::Engine::best_positions), as a future.
     pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        let buffer = match self.run.plan.is_monotone() {
-            true => &self.mesh.positions,
-            false => &self.run.best,
+        let free = self.problem.free_count();
+        let moved = match self.run.plan.is_monotone() {
+            true => self.mesh.read_positions(self.gpu, free, self.waiting).await?,
+            false => readback::read(self.gpu, &self.run.best, free, self.waiting).await?,
         };
-        moved_positions(self.gpu, buffer, self.problem, self.start, self.waiting).await
+        Ok(moved_positions(moved, self.start))
     }
 }
 
-/// The positions that started at `start` as the device has them in `buffer`. Fixed vertices have not moved,
-/// and a free one that has not keeps all its bits, which the device's pairs of floats do not hold.
-pub(super) async fn moved_positions(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    problem: &Problem,
-    start: &[DVec2],
-    waiting: Waiting,
-) -> Result<Vec<DVec2>, GpuError> {
-    let free = problem.free_count();
-    let moved: Vec<[f32; 4]> = readback::read(gpu, buffer, free, waiting).await?;
+/// The positions that started at `start`, the first of them as the device has `moved` them. Fixed vertices have
+/// not moved, and a free one that has not keeps all its bits, which the device's pairs of floats do not hold.
+pub(super) fn moved_positions(moved: Vec<[f32; 4]>, start: &[DVec2]) -> Vec<DVec2> {
     let mut positions = start.to_vec();
     for (position, now) in positions.iter_mut().zip(moved) {
         if now != split(*position) {
             *position = join(now);
         }
     }
-    Ok(positions)
+    positions
 }
 
 /// The objectives from the sums of one evaluation.

@@ -2,7 +2,7 @@
 
 use wgpu::BufferUsages as Usage;
 
-use super::buffers::filled;
+use super::buffers::{MeshBuffers, filled};
 use super::device::{Gpu, GpuError, scoped};
 use super::kernel::Pipeline;
 use super::layout::{Exchange, pair};
@@ -94,7 +94,7 @@ impl BoundVertices {
         gpu: &Gpu,
         problem: &Problem,
         vertex_count: usize,
-        positions: &wgpu::Buffer,
+        mesh: &MeshBuffers,
         numbers: &wgpu::Buffer,
         with: &VertexBuffer<'_>,
     ) -> Result<Self, GpuError> {
@@ -121,16 +121,16 @@ impl BoundVertices {
         };
         let bind_group = scoped(&gpu.device, || {
             let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
-            let resources = [
-                uniform.as_entire_binding(),
-                positions.as_entire_binding(),
-                numbers.as_entire_binding(),
-                window.binding(),
-            ];
-            gpu.pipelines.bind(&gpu.device, Interface::Exchange, &resources)
+            let (positions, beyond) = mesh.bind_positions();
+            let uniform = uniform.as_entire_binding();
+            let mut resources =
+                vec![uniform, positions, numbers.as_entire_binding(), window.binding()];
+            resources.extend(beyond);
+            let positions = mesh.parts.positions();
+            gpu.pipelines.bind(&gpu.device, Interface::Exchange, positions, &resources)
         })?;
-        let [import, export] =
-            [Kernel::Import, Kernel::Export].map(|kernel| gpu.pipelines.get(&gpu.device, &kernel));
+        let [import, export] = [Kernel::Import, Kernel::Export]
+            .map(|kernel| gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.positions()));
         Ok(Self { import: import?, export: export?, bind_group, count })
     }
 

@@ -94,11 +94,14 @@ impl FineLevel for GpuFine<'_> {
     }
 
     async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        moved_positions(self.gpu, &self.mesh.positions, self.problem, self.start, self.waiting)
-            .await
+        let free = self.problem.free_count();
+        let moved = self.mesh.read_positions(self.gpu, free, self.waiting).await?;
+        Ok(moved_positions(moved, self.start))
     }
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        // Two at once would be more than the mesh itself.
+        self.levels = None;
         self.levels = Some(Levels::new(
             self.gpu,
             self.problem,

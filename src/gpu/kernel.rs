@@ -1,13 +1,22 @@
 //! Pipelines and bind groups: the only place that makes them, each pipeline once per device.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::device::{GpuError, scoped};
-use super::shaders::{Interface, Kernel};
+use super::shaders::{Interface, Kernel, Positions};
 
 /// The bindings of group 0, in order. Tests hold them against the WGSL.
-fn bindings(interface: Interface) -> &'static [Binding] {
+fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
+    let mut bindings = bindings_of_whole(interface).to_vec();
+    if interface.sees(positions) == Positions::InTwo {
+        bindings.push(Binding::ReadWrite);
+    }
+    bindings
+}
+
+/// Those where the positions are one binding.
+fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
     use Binding::{ReadOnly, ReadWrite, Uniform};
     const UNIFORM: Binding = Uniform { dynamic: false };
     match interface {
@@ -24,21 +33,33 @@ fn bindings(interface: Interface) -> &'static [Binding] {
         ],
         Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
         Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
-        Interface::Levels => &[
+        Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
             ReadWrite,
             ReadOnly,
             ReadOnly,
             ReadOnly,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+        ],
+        Interface::Transfer => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadOnly,
+            ReadOnly,
             ReadOnly,
             ReadOnly,
             ReadWrite,
+            ReadWrite,
+            ReadWrite,
         ],
+        Interface::Coarse => &[UNIFORM, Uniform { dynamic: true }, ReadOnly, ReadOnly, ReadWrite],
     }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Binding {
     Uniform { dynamic: bool },
     ReadOnly,
@@ -57,8 +78,9 @@ impl Binding {
 }
 
 /// The most storage buffers a kernel sees, to be held against the device's limit.
-pub(crate) fn storage_bindings() -> u32 {
-    bindings(Interface::Run).iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
+pub(crate) fn storage_bindings(positions: Positions) -> u32 {
+    let bindings = bindings(Interface::Run, positions);
+    bindings.iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
 }
 
 /// A kernel made ready to run.
@@ -69,12 +91,10 @@ pub(crate) struct Pipeline {
 }
 
 /// The pipelines of a device, made when first asked for.
+#[derive(Default)]
 pub(crate) struct Pipelines {
-    run: Layout,
-    exchange: Layout,
-    publish: Layout,
-    levels: Layout,
-    made: Mutex<HashMap<Kernel, wgpu::ComputePipeline>>,
+    layouts: [[OnceLock<Layout>; Positions::ALL.len()]; Interface::ALL.len()],
+    made: Mutex<HashMap<(Kernel, Positions), wgpu::ComputePipeline>>,
 }
 
 /// The layout of one [`Interface`].
@@ -84,8 +104,8 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(device: &wgpu::Device, interface: Interface) -> Self {
-        let entries: Vec<_> = bindings(interface)
+    fn new(device: &wgpu::Device, interface: Interface, positions: Positions) -> Self {
+        let entries: Vec<_> = bindings(interface, positions)
             .iter()
             .zip(0..)
             .map(|(kind, binding)| wgpu::BindGroupLayoutEntry {
@@ -110,24 +130,11 @@ impl Layout {
 }
 
 impl Pipelines {
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let layout = |interface| Layout::new(device, interface);
-        Self {
-            run: layout(Interface::Run),
-            exchange: layout(Interface::Exchange),
-            publish: layout(Interface::Publish),
-            levels: layout(Interface::Levels),
-            made: Mutex::default(),
-        }
-    }
-
-    fn layout(&self, interface: Interface) -> &Layout {
-        match interface {
-            Interface::Run => &self.run,
-            Interface::Exchange => &self.exchange,
-            Interface::Publish => &self.publish,
-            Interface::Levels => &self.levels,
-        }
+    /// To be called in an error scope.
+    fn layout(&self, device: &wgpu::Device, interface: Interface, positions: Positions) -> &Layout {
+        let positions = interface.sees(positions);
+        self.layouts[interface as usize][positions as usize]
+            .get_or_init(|| Layout::new(device, interface, positions))
     }
 
     /// Binds resources in the order of the interface. To be called in an error scope.
@@ -135,6 +142,7 @@ impl Pipelines {
         &self,
         device: &wgpu::Device,
         interface: Interface,
+        positions: Positions,
         resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
         let entries: Vec<_> = resources
@@ -145,33 +153,39 @@ impl Pipelines {
             .collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(&format!("gpu-smooth {interface:?}")),
-            layout: &self.layout(interface).bindings,
+            layout: &self.layout(device, interface, positions).bindings,
             entries: &entries,
         })
     }
 
     /// The pipeline of a kernel.
-    pub(crate) fn get(&self, device: &wgpu::Device, kernel: &Kernel) -> Result<Pipeline, GpuError> {
+    pub(crate) fn get(
+        &self,
+        device: &wgpu::Device,
+        kernel: &Kernel,
+        positions: Positions,
+    ) -> Result<Pipeline, GpuError> {
+        let positions = kernel.interface().sees(positions);
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(raw) = made.get(kernel) {
+        if let Some(raw) = made.get(&(kernel.clone(), positions)) {
             return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });
         }
         let label = kernel.label();
         let raw = scoped(device, || {
             let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&label),
-                source: wgpu::ShaderSource::Wgsl(kernel.wgsl().into()),
+                source: wgpu::ShaderSource::Wgsl(kernel.composed(positions).into()),
             });
             device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(&label),
-                layout: Some(&self.layout(kernel.interface()).pipeline),
+                layout: Some(&self.layout(device, kernel.interface(), positions).pipeline),
                 module: &module,
                 entry_point: Some(kernel.entry_point()),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 cache: None,
             })
         })?;
-        made.insert(kernel.clone(), raw.clone());
+        made.insert((kernel.clone(), positions), raw.clone());
         Ok(Pipeline { kernel: kernel.clone(), raw })
     }
 }
@@ -198,14 +212,16 @@ mod tests {
 
     #[test]
     fn every_kernel_declares_the_bindings_of_its_interface() {
-        for kernel in kernels() {
-            let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
+        let each = |kernel: Kernel| Positions::ALL.map(|positions| (kernel.clone(), positions));
+        for (kernel, positions) in kernels().into_iter().flat_map(each) {
+            let module = naga::front::wgsl::parse_str(&kernel.composed(positions)).unwrap();
             let bound = module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?, v)));
             let mut spaces: Vec<_> = bound
                 .map(|(at, variable)| (at.group, at.binding as usize, variable.space))
                 .collect();
             spaces.sort_unstable_by_key(|&(group, binding, _)| (group, binding));
-            let wanted = bindings(kernel.interface()).iter().enumerate().map(|(i, binding)| {
+            let wanted = bindings(kernel.interface(), positions);
+            let wanted = wanted.iter().enumerate().map(|(i, binding)| {
                 let space = match binding {
                     Binding::Uniform { .. } => AddressSpace::Uniform,
                     Binding::ReadOnly => AddressSpace::Storage { access: StorageAccess::LOAD },
@@ -250,7 +266,7 @@ mod tests {
     #[test]
     fn storage_bindings_fit_the_default_limits() {
         let declared = wgpu::Limits::default().max_storage_buffers_per_shader_stage;
-        assert_eq!(storage_bindings(), 7);
-        assert!(storage_bindings() <= declared);
+        assert_eq!(Positions::ALL.map(storage_bindings), [7, 8]);
+        assert!(storage_bindings(Positions::InTwo) <= declared);
     }
 }

@@ -41,14 +41,16 @@ pub(crate) struct Params {
     pub(crate) padding: u32,
 }
 
-/// `SweepColor` in shaders/common.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+/// `Part` in shaders/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct SweepColor {
+pub(crate) struct Part {
     pub(crate) first: u32,
     pub(crate) count: u32,
     pub(crate) omega: f32,
     pub(crate) sharpness: u32,
+    pub(crate) ring_base: u32,
+    pub(crate) padding: [u32; 3],
 }
 
 /// `LevelOp` in shaders/levels/common.wgsl.
@@ -56,7 +58,9 @@ pub(crate) struct SweepColor {
 #[repr(C)]
 pub(crate) struct LevelOp {
     pub(crate) rows: u32,
+    pub(crate) first: u32,
     pub(crate) free: u32,
+    pub(crate) ring_base: u32,
     pub(crate) starts: u32,
     pub(crate) columns: u32,
     pub(crate) entries: u32,
@@ -67,6 +71,7 @@ pub(crate) struct LevelOp {
     pub(crate) out: u32,
     pub(crate) a: f32,
     pub(crate) b: f32,
+    pub(crate) padding: [u32; 2],
 }
 
 /// `Control` in shaders/control.wgsl.
@@ -174,10 +179,25 @@ mod tests {
                 mean_area,
             }
         );
-        mirrors!(run, SweepColor { first, count, omega, sharpness });
+        mirrors!(run, Part { first, count, omega, sharpness, ring_base });
         mirrors!(
             &Kernel::Apply,
-            LevelOp { rows, free, starts, columns, entries, diagonal, x, right, step, out, a, b }
+            LevelOp {
+                rows,
+                first,
+                free,
+                ring_base,
+                starts,
+                columns,
+                entries,
+                diagonal,
+                x,
+                right,
+                step,
+                out,
+                a,
+                b
+            }
         );
         for kernel in [run, &Kernel::Publish] {
             mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
@@ -193,7 +213,7 @@ mod tests {
     fn a_uniform_holds_only_what_16_byte_rows_allow() {
         // In a uniform an array's elements must be multiples of 16 bytes apart.
         assert_eq!(offset_of!(Publish, ideal_squared) % 16, 0);
-        assert!(size_of::<SweepColor>() <= 256, "within the least dynamic offset alignment");
+        assert!(size_of::<Part>() <= 256, "within the least dynamic offset alignment");
     }
 
     #[test]

@@ -2,26 +2,29 @@
 
 use wgpu::BufferUsages as Usage;
 
-use super::buffers::{MeshBuffers, check_binding, filled, zeroed};
+use super::buffers::{MeshBuffers, filled, uniform, zeroed};
 use super::device::{Gpu, GpuError, scoped};
 use super::kernel::Pipeline;
 use super::layout::{LevelOp, WORKGROUP};
+use super::pages::Pages;
+use super::parts::RingPart;
 use super::passes::Passes;
-use super::run::{dispatch, objective_groups};
-use super::shaders::{Interface, Kernel};
+use super::run::dispatch;
+use super::shaders::{Interface, Kernel, Positions};
+use super::size::{check_limit, objective_invocations};
 use crate::metric::Metric;
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 use crate::problem::Problem;
 
 /// A hierarchy bound to a mesh on the device: encodes, submits nothing.
 pub(super) struct Levels {
-    bind_group: wgpu::BindGroup,
+    bind_groups: Vec<wgpu::BindGroup>,
     ops: wgpu::Buffer,
     /// Bytes from one uniform to the next.
     stride: u32,
     /// From the positions to the correction.
     correction: Vec<Dispatch>,
-    along: Dispatch,
+    along: Vec<Dispatch>,
     total: Dispatch,
     take: Dispatch,
     pub(super) vectors: wgpu::Buffer,
@@ -32,6 +35,8 @@ struct Dispatch {
     op: LevelOp,
     /// Which uniform it is.
     number: u32,
+    /// Which bind group it sees.
+    bind_group: usize,
     groups: Groups,
 }
 
@@ -40,58 +45,63 @@ enum Groups {
     Just(u32),
 }
 
-/// Places in `vectors`: the totals first, so that they can be read back, then the gradient, the correction
-/// and the partial sums; vectors of coarse levels after them.
-const TOTALS: u32 = 0;
-const GRADIENT: u32 = 4;
+/// What a dispatch sees: a part of the mesh, pages of the structure and the values.
+#[derive(Clone, Copy, PartialEq)]
+enum Bound {
+    Fine { part: usize },
+    Transfer { part: usize, structure: usize, values: usize },
+    Coarse { structure: usize, values: usize },
+}
 
-/// What is written to the three arrays of the kernels while the dispatches are listed.
+/// Places in `vectors`: the totals first, so that they can be read back, then the partial sums; vectors of coarse
+/// levels after them.
+const TOTALS: u32 = 0;
+const SUMS: u32 = 4;
+
+/// What is written to the arrays of the kernels while the dispatches are listed.
 struct Layout<'g> {
     gpu: &'g Gpu,
-    structure: Vec<u32>,
-    values: Vec<f32>,
+    positions: Positions,
+    structure: Pages<u32>,
+    values: Pages<f32>,
     vectors: u32,
+    bound: Vec<Bound>,
     listed: u32,
 }
 
-/// Where a matrix is.
-#[derive(Clone, Copy)]
-struct Place {
-    starts: u32,
-    columns: u32,
-    entries: u32,
-}
-
 impl Layout<'_> {
-    fn structure(&mut self, numbers: &[u32]) -> u32 {
-        let at = self.structure.len() as u32;
-        self.structure.extend_from_slice(numbers);
-        at
-    }
-
-    fn values(&mut self, values: &[f32]) -> u32 {
-        let at = self.values.len() as u32;
-        self.values.extend_from_slice(values);
-        at
-    }
-
     fn vector(&mut self, length: usize) -> u32 {
         let at = self.vectors;
         self.vectors += length as u32;
         at
     }
 
-    fn matrix(&mut self, matrix: &Sparse) -> Place {
-        let starts = self.structure(matrix.starts());
-        let columns = self.structure(matrix.columns());
-        Place { starts, columns, entries: self.values(matrix.values()) }
+    /// Places a matrix and the reciprocals of its diagonal, where they are needed.
+    fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, LevelOp), GpuError> {
+        let (structure, [starts, columns]) =
+            self.structure.place([matrix.starts(), matrix.columns()])?;
+        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
+        let rows = matrix.rows() as u32;
+        let op = LevelOp { rows, starts, columns, entries, diagonal, ..LevelOp::default() };
+        Ok((Bound::Coarse { structure, values }, op))
     }
 
-    fn step(&mut self, kernel: Kernel, groups: Groups, op: LevelOp) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel)?;
+    fn step(
+        &mut self,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: LevelOp,
+    ) -> Result<Dispatch, GpuError> {
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.positions)?;
+        let known = self.bound.iter().position(|&known| known == bound);
+        let bind_group = known.unwrap_or(self.bound.len());
+        if known.is_none() {
+            self.bound.push(bound);
+        }
         let number = self.listed;
         self.listed += 1;
-        Ok(Dispatch { pipeline, op, number, groups })
+        Ok(Dispatch { pipeline, op, number, bind_group, groups })
     }
 
     /// Lists one V-cycle over the levels, from the right-hand side to the solution, whose place is returned.
@@ -105,69 +115,100 @@ impl Layout<'_> {
         let rows = level.operator.rows();
         let x = self.vector(rows);
         if let Coarser::Direct(inverse) = &level.coarser {
-            let op = LevelOp {
-                rows: rows as u32,
-                entries: self.values(inverse),
-                right,
-                out: x,
-                ..LevelOp::default()
-            };
-            list.push(self.step(Kernel::Direct, Groups::ForRows, op)?);
+            let (values, [entries]) = self.values.place([&inverse[..]])?;
+            let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::default() };
+            let bound = Bound::Coarse { structure: 0, values };
+            list.push(self.step(Kernel::Direct, bound, Groups::ForRows, op)?);
             return Ok(x);
         }
         let (other, step) = (self.vector(rows), self.vector(rows));
-        let operator = self.matrix(&level.operator);
-        let smoother = LevelOp {
-            rows: rows as u32,
-            starts: operator.starts,
-            columns: operator.columns,
-            entries: operator.entries,
-            diagonal: self.values(&level.inverse_diagonal),
-            right,
-            step,
-            ..LevelOp::default()
-        };
+        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
+        let smoother = LevelOp { right, step, ..operator };
         // Two steps from the first vector (or zero) over the second to the third.
         let smooth = |layout: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
             let [first, again, now] = CHEBYSHEV;
             let one = LevelOp { x: from, out: over, b: first, ..smoother };
             let two = LevelOp { x: over, out: to, a: again, b: now, ..smoother };
-            list.push(layout.step(Kernel::Chebyshev, Groups::ForRows, one)?);
-            list.push(layout.step(Kernel::Chebyshev, Groups::ForRows, two)?);
+            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, one)?);
+            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, two)?);
             Ok::<(), GpuError>(())
         };
         smooth(self, list, [NONE, other, x])?;
         let Coarser::Level { prolongation, restriction } = &level.coarser else { return Ok(x) };
         let residual = LevelOp { x, out: other, a: 1.0, b: -1.0, ..smoother };
-        list.push(self.step(Kernel::Apply, Groups::ForRows, residual)?);
+        list.push(self.step(Kernel::Apply, bound, Groups::ForRows, residual)?);
         let below_right = self.vector(restriction.rows());
-        let down = self.apply(restriction, other, NONE, below_right);
-        list.push(self.step(Kernel::Apply, Groups::ForRows, down)?);
+        list.push(self.apply(restriction, other, NONE, below_right)?);
         let solution = self.solve(below, below_right, list)?;
-        let up = self.apply(prolongation, solution, x, other);
-        list.push(self.step(Kernel::Apply, Groups::ForRows, up)?);
+        list.push(self.apply(prolongation, solution, x, other)?);
         let end = self.vector(rows);
         smooth(self, list, [other, x, end])?;
         Ok(end)
     }
 
     /// out = right + M x.
-    fn apply(&mut self, matrix: &Sparse, x: u32, right: u32, out: u32) -> LevelOp {
-        let Place { starts, columns, entries } = self.matrix(matrix);
-        let rows = matrix.rows() as u32;
-        LevelOp {
-            rows,
-            starts,
-            columns,
-            entries,
-            x,
-            right,
-            out,
-            a: 1.0,
-            b: 1.0,
-            ..LevelOp::default()
-        }
+    fn apply(
+        &mut self,
+        matrix: &Sparse,
+        x: u32,
+        right: u32,
+        out: u32,
+    ) -> Result<Dispatch, GpuError> {
+        let (bound, op) = self.matrix(matrix, &[])?;
+        let op = LevelOp { x, right, out, a: 1.0, b: 1.0, ..op };
+        self.step(Kernel::Apply, bound, Groups::ForRows, op)
     }
+
+    /// The buffers, and the bind groups for what was listed. `params` are those of the run on `mesh`.
+    fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
+        let gpu = self.gpu;
+        let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
+        let (structure, values) = (self.structure.upload(gpu), self.values.upload(gpu));
+        let pairs = |label, length: u64| {
+            let usage = Usage::STORAGE | Usage::COPY_SRC;
+            zeroed(gpu, label, length * size_of::<[f32; 2]>() as u64, usage)
+        };
+        let vectors = pairs("level vectors", self.vectors.into());
+
+        let [gradient, direction] =
+            ["gradient", "correction"].map(|label| pairs(label, free.into()));
+        let bind_groups = self.bound.iter().map(|&bound| {
+            let mut resources = vec![params.as_entire_binding(), uniform::<LevelOp>(&ops)];
+            let fine = [&gradient, &direction].map(wgpu::Buffer::as_entire_binding);
+            let (interface, beyond) = match bound {
+                Bound::Fine { part } => {
+                    let (positions, beyond) = mesh.bind_positions();
+                    resources.extend([positions, mesh.ring_start.as_entire_binding()]);
+                    resources.extend([mesh.bind_ring(part), mesh.bind_triangles(part)]);
+                    resources.extend(fine);
+                    (Interface::Fine, beyond)
+                }
+                Bound::Transfer { part, structure: page, values: of_values } => {
+                    resources.extend([mesh.ring_start.as_entire_binding(), mesh.bind_ring(part)]);
+                    resources.push(structure[page].as_entire_binding());
+                    resources.push(values[of_values].as_entire_binding());
+                    resources.extend(fine);
+                    (Interface::Transfer, None)
+                }
+                Bound::Coarse { structure: page, values: of_values } => {
+                    resources.push(structure[page].as_entire_binding());
+                    resources.push(values[of_values].as_entire_binding());
+                    (Interface::Coarse, None)
+                }
+            };
+            resources.push(vectors.as_entire_binding());
+            resources.extend(beyond);
+            gpu.pipelines.bind(&gpu.device, interface, self.positions, &resources)
+        });
+        let bind_groups = bind_groups.collect();
+        Uploaded { bind_groups, ops, vectors }
+    }
+}
+
+struct Uploaded {
+    bind_groups: Vec<wgpu::BindGroup>,
+    ops: wgpu::Buffer,
+    vectors: wgpu::Buffer,
 }
 
 impl Levels {
@@ -183,88 +224,87 @@ impl Levels {
         metric: Metric,
         hierarchy: &Hierarchy,
     ) -> Result<Self, GpuError> {
-        let free = problem.free_count() as u32;
-        let mut layout =
-            Layout { gpu, structure: Vec::new(), values: Vec::new(), vectors: GRADIENT, listed: 0 };
-        let gradient = layout.vector(free as usize);
-        let direction = layout.vector(free as usize);
-        let groups = objective_groups(problem);
-        let partials = groups * WORKGROUP;
+        let mut layout = Layout {
+            gpu,
+            positions: mesh.parts.positions(),
+            structure: Pages::new(gpu, "structure of the coarse levels"),
+            values: Pages::new(gpu, "matrices of the coarse levels"),
+            vectors: SUMS,
+            bound: Vec::new(),
+            listed: 0,
+        };
+        let partials = objective_invocations(problem.triangles().len());
         let sums = layout.vector(4 * partials as usize);
 
         let (sizes, doubled_stiffness) = hierarchy.sizes();
+        let (values, [entries, diagonal]) =
+            layout.values.place([sizes, hierarchy.inverse_diagonal()])?;
+        let (of_page, [of]) = layout.structure.place([hierarchy.aggregate_of()])?;
+        let (members, [starts, columns]) =
+            layout.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
+        let right = layout.vector(aggregates as usize);
+        let free = problem.free_count() as u32;
         let fine = LevelOp {
             rows: free,
             free,
-            entries: layout.values(sizes),
-            diagonal: layout.values(hierarchy.inverse_diagonal()),
+            entries,
+            diagonal,
             a: doubled_stiffness,
             ..LevelOp::default()
         };
-        let of = layout.structure(hierarchy.aggregate_of());
-        let starts = layout.structure(hierarchy.member_starts());
-        let columns = layout.structure(hierarchy.members());
-        let right = layout.vector(aggregates as usize);
+        // A step on the free vertices, by what one-rings are bound at once.
+        let by_rings = |layout: &mut Layout<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
+            for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
+                let rows = vertices.end - vertices.start;
+                let op = LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
+                let bound = match kernel.interface() {
+                    Interface::Fine => Bound::Fine { part },
+                    _ => Bound::Transfer { part, structure: of_page, values },
+                };
+                list.push(layout.step(kernel.clone(), bound, Groups::ForRows, op)?);
+            }
+            Ok::<(), GpuError>(())
+        };
 
         let mut correction = Vec::new();
-        let rows = Groups::ForRows;
-        let op = LevelOp { out: gradient, ..fine };
-        correction.push(layout.step(Kernel::Gradient(metric), rows, op)?);
-        let op = LevelOp { rows: aggregates, starts, columns, x: gradient, out: right, ..fine };
-        correction.push(layout.step(Kernel::HandDown, Groups::ForRows, op)?);
+        by_rings(&mut layout, &mut correction, Kernel::Gradient(metric), fine)?;
+        by_rings(&mut layout, &mut correction, Kernel::SmoothGradient, fine)?;
+        let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
+        let bound = Bound::Transfer { part: 0, structure: members, values };
+        correction.push(layout.step(Kernel::HandDown, bound, Groups::ForRows, op)?);
         let solution = layout.solve(hierarchy.levels(), right, &mut correction)?;
-        let op = LevelOp { starts: of, x: solution, out: direction, ..fine };
-        correction.push(layout.step(Kernel::HandUp, Groups::ForRows, op)?);
+        let op = LevelOp { starts: of, x: solution, ..fine };
+        by_rings(&mut layout, &mut correction, Kernel::HandUp, op)?;
 
-        let op = LevelOp { x: direction, right: gradient, out: sums, ..fine };
-        let along = layout.step(Kernel::Along(metric), Groups::Just(groups), op)?;
+        let mut along = Vec::new();
+        for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
+            let (rows, first) = (triangles.end - triangles.start, triangles.start);
+            let op = LevelOp { rows, first, out: sums, ..fine };
+            let groups = Groups::Just(partials / WORKGROUP);
+            along.push(layout.step(Kernel::Along(metric), Bound::Fine { part }, groups, op)?);
+        }
         let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
-        let total = layout.step(Kernel::Total, Groups::Just(1), op)?;
-        let op = LevelOp { x: direction, ..fine };
-        let take = layout.step(Kernel::Take, Groups::ForRows, op)?;
+        let bound = Bound::Coarse { structure: 0, values: 0 };
+        let total = layout.step(Kernel::Total, bound, Groups::Just(1), op)?;
+        let take = layout.step(Kernel::Take, Bound::Fine { part: 0 }, Groups::ForRows, fine)?;
 
-        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+        let limits = gpu.device.limits();
+        let what = || "the vectors of the coarse levels".to_owned();
+        let bytes = u64::from(layout.vectors) * size_of::<[f32; 2]>() as u64;
+        let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
+
+        let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
-        let mut uniforms = vec![0u8; (stride * layout.listed) as usize];
-        for step in correction.iter().chain([&along, &total, &take]) {
+        let mut ops = vec![0u8; (stride * layout.listed) as usize];
+        for step in correction.iter().chain(&along).chain([&total, &take]) {
             let at = (step.number * stride) as usize;
-            uniforms[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
+            ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
         }
-        let vector_bytes = u64::from(layout.vectors) * size_of::<[f32; 2]>() as u64;
-        for (what, needed) in [
-            ("the vectors of the coarse levels", vector_bytes),
-            ("the structure of the coarse levels", layout.structure.len() as u64 * 4),
-            ("the matrices of the coarse levels", layout.values.len() as u64 * 4),
-        ] {
-            check_binding(&gpu.device.limits(), || what.to_owned(), needed)?;
-        }
-        let (ops, vectors, bind_group) = scoped(&gpu.device, || {
-            let ops = filled(gpu, "level steps", &uniforms, Usage::UNIFORM | Usage::COPY_DST);
-            let structure = filled(gpu, "level structure", &layout.structure, Usage::STORAGE);
-            let values = filled(gpu, "level values", &layout.values, Usage::STORAGE);
-            let usage = Usage::STORAGE | Usage::COPY_SRC;
-            let vectors = zeroed(gpu, "level vectors", vector_bytes, usage);
-            let op = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &ops,
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<LevelOp>() as u64),
-            });
-            let resources = [
-                params.as_entire_binding(),
-                op,
-                mesh.positions.as_entire_binding(),
-                mesh.ring_start.as_entire_binding(),
-                mesh.ring.as_entire_binding(),
-                mesh.triangles.as_entire_binding(),
-                structure.as_entire_binding(),
-                values.as_entire_binding(),
-                vectors.as_entire_binding(),
-            ];
-            let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Levels, &resources);
-            (ops, vectors, bind_group)
-        })?;
-        Ok(Self { bind_group, ops, stride, correction, along, total, take, vectors })
+        let Uploaded { bind_groups, ops, vectors } =
+            scoped(&gpu.device, || layout.upload(mesh, free, params, &ops))?;
+        Ok(Self { bind_groups, ops, stride, correction, along, total, take, vectors })
     }
 
     /// From the positions to the correction.
@@ -274,7 +314,7 @@ impl Levels {
 
     /// Evaluates the objective along the correction; the totals are then at the start of `vectors`.
     pub(super) fn encode_along(&self, passes: &mut Passes<'_>) {
-        self.encode(passes, &self.along);
+        self.along.iter().for_each(|step| self.encode(passes, step));
         self.encode(passes, &self.total);
     }
 
@@ -285,7 +325,7 @@ impl Levels {
 
     /// Sets how far the next submission goes along the correction.
     pub(super) fn set_length(&self, gpu: &Gpu, length: f32) {
-        for step in [&self.along, &self.take] {
+        for step in self.along.iter().chain([&self.take]) {
             let op = LevelOp { a: length, ..step.op };
             let at = u64::from(step.number * self.stride);
             gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
@@ -294,7 +334,8 @@ impl Levels {
 
     fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {
         passes.run(&step.pipeline, None, |pass| {
-            pass.set_bind_group(0, &self.bind_group, &[step.number * self.stride]);
+            let uniform = step.number * self.stride;
+            pass.set_bind_group(0, &self.bind_groups[step.bind_group], &[uniform]);
             match step.groups {
                 Groups::ForRows => dispatch(pass, step.op.rows),
                 Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),

@@ -1,10 +1,11 @@
 //! What the application's device has to be made with.
 
-use super::buffers::MeshSize;
 use super::device::{Gpu, GpuError};
 use super::kernel::storage_bindings;
 use super::layout::{FINISH_WORKGROUP, WORKGROUP};
 use super::run::FOLD;
+use super::shaders::Positions;
+use super::size::MeshSize;
 
 /// A limit, how much of it the kernels need, and what for.
 type Row = (&'static str, fn(&mut wgpu::Limits) -> &mut u32, u32, &'static str);
@@ -15,9 +16,9 @@ macro_rules! row {
     };
 }
 
-/// What the kernels need, whatever the mesh. Tests make a device of exactly this.
-fn rows() -> [Row; 11] {
-    let storage = storage_bindings();
+/// What the kernels need, on meshes bound like this. Tests make a device of exactly this.
+fn rows(positions: Positions) -> [Row; 11] {
+    let storage = storage_bindings(positions);
     let largest = FINISH_WORKGROUP.max(WORKGROUP);
     [
         row!(max_storage_buffers_per_shader_stage, storage, "the storage buffers of a kernel"),
@@ -39,12 +40,16 @@ const SHARED: u32 = FINISH_WORKGROUP * size_of::<[f32; 2]>() as u32;
 
 /// Fails if the kernels cannot run with these limits.
 pub(crate) fn check(available: &wgpu::Limits) -> Result<(), GpuError> {
-    raise(&mut available.clone(), available)
+    raise(&mut available.clone(), available, Positions::Whole)
 }
 
 /// Raises limits as far as the kernels need.
-fn raise(limits: &mut wgpu::Limits, available: &wgpu::Limits) -> Result<(), GpuError> {
-    for (limit, of, needed, what) in rows() {
+fn raise(
+    limits: &mut wgpu::Limits,
+    available: &wgpu::Limits,
+    positions: Positions,
+) -> Result<(), GpuError> {
+    for (limit, of, needed, what) in rows(positions) {
         let available = *of(&mut available.clone());
         if needed > available {
             let (what, needed, available) = (what.into(), needed.into(), available.into());
@@ -70,7 +75,8 @@ impl Gpu {
     }
 
     /// The limits to make a device with, for an application that needs `own` for itself and has meshes of up
-    /// to `size`: `own`, raised where the kernels or the meshes need more.
+    /// to `size`: `own`, raised where the kernels or the meshes need more. Buffers larger than what the
+    /// adapter binds at once are bound part by part: that takes its largest `max_storage_buffer_binding_size`.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize};
@@ -105,11 +111,20 @@ impl Gpu {
     ) -> Result<wgpu::Limits, GpuError> {
         size.check(available)?;
         let mut limits = own;
-        raise(&mut limits, available)?;
-        let largest = size.largest();
+        let positions = Positions::of(size.vertices, available);
+        raise(&mut limits, available, positions)?;
+        let largest = size.largest(positions);
         let bound = &mut limits.max_storage_buffer_binding_size;
-        *bound = largest.max(*bound);
+        *bound = largest.min(available.max_storage_buffer_binding_size).max(*bound);
         limits.max_buffer_size = largest.max(limits.max_buffer_size);
         Ok(limits)
+    }
+
+    /// Says whether meshes of this size fit the device, however their buffers are bound. Allocates nothing.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if not; it names the buffer and the limit.
+    pub fn check_size(&self, size: MeshSize) -> Result<(), GpuError> {
+        size.check(&self.device.limits())
     }
 }

@@ -12,7 +12,7 @@ use super::kernel::Pipeline;
 use super::layout::Publish;
 use super::passes::Encoder;
 use super::run::Run;
-use super::shaders::{Interface, Kernel};
+use super::shaders::{Interface, Kernel, Positions};
 use crate::metric::Metric;
 
 /// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The
@@ -77,9 +77,9 @@ impl BoundObjective {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
             let control = run.control.as_entire_binding();
             let resources = [uniform.as_entire_binding(), control, window.binding()];
-            gpu.pipelines.bind(&gpu.device, Interface::Publish, &resources)
+            gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
         })?;
-        let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish)?;
+        let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
         Ok(Self { run: Arc::clone(run), publish, bind_group })
     }
 

@@ -4,12 +4,14 @@ use std::ops::Range;
 
 use wgpu::BufferUsages as Usage;
 
-use super::buffers::{MeshBuffers, filled, zeroed};
+use super::buffers::{MeshBuffers, filled, rows, uniform, zeroed};
 use super::device::{Gpu, GpuError, scoped};
 use super::kernel::Pipeline;
-use super::layout::{Control, Params, SweepColor, WORKGROUP, pair};
+use super::layout::{Control, Params, Part, WORKGROUP, pair};
+use super::parts::{Parts, of_part};
 use super::passes::Passes;
 use super::shaders::{Interface, Kernel};
+use super::size::{POSITION, objective_invocations};
 use crate::metric::Metric;
 use crate::multilevel::OMEGAS;
 use crate::plan::{Plan, Sharpness, StopRule};
@@ -24,25 +26,40 @@ pub(crate) struct Run {
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
+    /// One, or one for each part of the mesh; see [`Parts`].
+    bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Pipeline)>,
     objective: Pipeline,
     finish: Pipeline,
     keep_best: Option<Pipeline>,
     objective_groups: u32,
-    colors: Vec<Range<u32>>,
     steps: Steps,
 }
 
-/// Every different way a sweep of the plan steps, in the order of its uniforms.
+/// What the dispatches are for, and the uniforms that say so: those of sweeps by step, then by color and part; then
+/// those of the triangles; then those of the free vertices.
 struct Steps {
+    /// Every different way a sweep of the plan steps: over-relaxation and sharpness.
     known: Vec<(f32, u32)>,
+    /// The dispatches of a sweep.
+    sweep: Vec<Dispatch>,
+    triangles: Vec<Range<u32>>,
+    free: Vec<Range<u32>>,
     /// Bytes from one uniform to the next.
     stride: u32,
 }
 
+/// Free vertices of one color whose one-rings are bound at once.
+struct Dispatch {
+    color: u32,
+    /// The number of the part.
+    part: usize,
+    vertices: Range<u32>,
+    ring_base: u32,
+}
+
 impl Steps {
-    fn new(gpu: &Gpu, plan: &Plan) -> Self {
+    fn new(gpu: &Gpu, plan: &Plan, colors: &[Range<u32>], parts: &Parts) -> Self {
         let Sharpness { first, last, .. } = plan.sharpness;
         let mut known = Vec::new();
         for &metric in plan.scheme.metrics() {
@@ -56,8 +73,20 @@ impl Steps {
                 }
             }
         }
+        let mut sweep = Vec::new();
+        for (color, of_color) in (0..).zip(colors) {
+            for (part, ring) in parts.rings.iter().enumerate() {
+                let first = of_color.start.max(ring.vertices.start);
+                let vertices = first..of_color.end.min(ring.vertices.end);
+                if !vertices.is_empty() {
+                    sweep.push(Dispatch { color, part, vertices, ring_base: ring.entries.start });
+                }
+            }
+        }
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-        Self { known, stride: alignment.max(size_of::<SweepColor>() as u32) }
+        let stride = alignment.max(size_of::<Part>() as u32);
+        let (triangles, free) = (parts.triangles.clone(), parts.free.clone());
+        Self { known, sweep, triangles, free, stride }
     }
 
     /// Over-relaxation and sharpness of a sweep.
@@ -65,19 +94,40 @@ impl Steps {
         (plan.omega(plan.scheme.metric(sweep), sweep) as f32, plan.sharpness.of(sweep))
     }
 
-    /// The uniforms: by step, then by color.
-    fn uniforms(&self, colors: &[Range<u32>]) -> Vec<u8> {
-        let stride = self.stride as usize;
-        let mut bytes = vec![0; self.known.len() * colors.len() * stride];
-        let mut chunks = bytes.chunks_exact_mut(stride);
+    fn uniforms(&self) -> Vec<u8> {
+        let mut parts = Vec::new();
+        let part = |range: &Range<u32>| {
+            let (first, count) = (range.start, range.end - range.start);
+            Part { first, count, ..Part::default() }
+        };
         for &(omega, sharpness) in &self.known {
-            for (range, chunk) in colors.iter().zip(&mut chunks) {
-                let count = range.end - range.start;
-                let uniform = SweepColor { first: range.start, count, omega, sharpness };
-                chunk[..size_of::<SweepColor>()].copy_from_slice(bytemuck::bytes_of(&uniform));
-            }
+            let steps = |d: &Dispatch| Part {
+                omega,
+                sharpness,
+                ring_base: d.ring_base,
+                ..part(&d.vertices)
+            };
+            parts.extend(self.sweep.iter().map(steps));
+        }
+        parts.extend(self.triangles.iter().chain(&self.free).map(part));
+        let mut bytes = vec![0; parts.len() * self.stride as usize];
+        for (part, chunk) in parts.iter().zip(bytes.chunks_exact_mut(self.stride as usize)) {
+            chunk[..size_of::<Part>()].copy_from_slice(bytemuck::bytes_of(part));
         }
         bytes
+    }
+
+    /// Where the uniforms of a step begin, if it is known.
+    fn of_step(&self, step: (f32, u32)) -> Option<usize> {
+        Some(self.known.iter().position(|&known| known == step)? * self.sweep.len())
+    }
+
+    fn of_triangles(&self) -> usize {
+        self.known.len() * self.sweep.len()
+    }
+
+    fn of_free(&self) -> usize {
+        self.of_triangles() + self.triangles.len()
     }
 }
 
@@ -91,7 +141,8 @@ impl Run {
         plan: Plan,
         keep_best: bool,
     ) -> Result<Self, GpuError> {
-        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel);
+        let positions = mesh.parts.positions();
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
         let mut sweeps: Vec<(Metric, Pipeline)> = Vec::new();
         for &metric in plan.scheme.metrics() {
             if sweeps.iter().all(|&(known, _)| known != metric) {
@@ -105,18 +156,16 @@ impl Run {
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
 
-        let objective_groups = objective_groups(problem);
-        let partials = objective_groups * WORKGROUP;
+        let partials = objective_invocations(problem.triangles().len());
         let partial_bytes =
             (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
-        let steps = Steps::new(gpu, &plan);
+        let steps = Steps::new(gpu, &plan, problem.colors(), &mesh.parts);
         let params = params(problem, &plan, partials);
-        let uniforms = steps.uniforms(problem.colors());
 
-        let (control, best, params, bind_group) = scoped(&gpu.device, || {
+        let (control, best, params, bind_groups) = scoped(&gpu.device, || {
             let params = filled(gpu, "params", &[params], Usage::UNIFORM);
-            let steps = filled(gpu, "sweep colors", &uniforms, Usage::UNIFORM);
+            let uniforms = filled(gpu, "parts", &steps.uniforms(), Usage::UNIFORM);
             let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
             // Zeros: not done, nothing evaluated.
             let control = zeroed(
@@ -125,40 +174,42 @@ impl Run {
                 size_of::<Control>() as u64,
                 Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
             );
-            let best_bytes = kept * size_of::<[f32; 4]>() as u64;
-            let best = zeroed(gpu, "best positions", best_bytes, Usage::STORAGE | Usage::COPY_SRC);
-            let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &steps,
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<SweepColor>() as u64),
+            let best =
+                zeroed(gpu, "best positions", kept * POSITION, Usage::STORAGE | Usage::COPY_SRC);
+            let bind_groups = (0..mesh.parts.count()).map(|part| {
+                let (positions, beyond) = mesh.bind_positions();
+                let kept = match keep_best {
+                    Some(_) => rows(&best, of_part(&steps.free, part), POSITION),
+                    None => best.as_entire_binding(),
+                };
+                let mut resources = vec![
+                    params.as_entire_binding(),
+                    uniform::<Part>(&uniforms),
+                    positions,
+                    mesh.ring_start.as_entire_binding(),
+                    mesh.bind_ring(part),
+                    mesh.bind_triangles(part),
+                    partial_sums.as_entire_binding(),
+                    control.as_entire_binding(),
+                    kept,
+                ];
+                resources.extend(beyond);
+                gpu.pipelines.bind(&gpu.device, Interface::Run, mesh.parts.positions(), &resources)
             });
-            let resources = [
-                params.as_entire_binding(),
-                step,
-                mesh.positions.as_entire_binding(),
-                mesh.ring_start.as_entire_binding(),
-                mesh.ring.as_entire_binding(),
-                mesh.triangles.as_entire_binding(),
-                partial_sums.as_entire_binding(),
-                control.as_entire_binding(),
-                best.as_entire_binding(),
-            ];
-            let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Run, &resources);
-            (control, best, params, bind_group)
+            let bind_groups = bind_groups.collect();
+            (control, best, params, bind_groups)
         })?;
-        let colors = problem.colors().to_vec();
         Ok(Self {
             plan,
             control,
             best,
             params,
-            bind_group,
+            bind_groups,
             sweeps,
             objective,
             finish,
             keep_best,
-            objective_groups,
-            colors,
+            objective_groups: partials / WORKGROUP,
             steps,
         })
     }
@@ -177,45 +228,42 @@ impl Run {
 
     fn encode_step(&self, passes: &mut Passes<'_>, metric: Metric, step: (f32, u32)) {
         let pipeline = self.sweeps.iter().find(|&&(known, _)| known == metric);
-        let step = self.steps.known.iter().position(|&known| known == step);
         // Both were made for every sweep of the plan.
-        let (Some((_, pipeline)), Some(step)) = (pipeline, step) else { return };
-        let first = (step * self.colors.len()) as u32;
-        for (color, range) in (0..).zip(&self.colors) {
-            passes.run(pipeline, Some(color), |pass| {
-                let uniform = (first + color) * self.steps.stride;
-                pass.set_bind_group(0, &self.bind_group, &[uniform]);
-                dispatch(pass, range.end - range.start);
+        let (Some((_, pipeline)), Some(first)) = (pipeline, self.steps.of_step(step)) else {
+            return;
+        };
+        for (i, Dispatch { color, part, vertices, .. }) in self.steps.sweep.iter().enumerate() {
+            passes.run(pipeline, Some(*color), |pass| {
+                self.bind(pass, *part, first + i);
+                dispatch(pass, vertices.end - vertices.start);
             });
         }
     }
 
     /// Evaluates the objectives, judges, and keeps the positions if they are the best.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
-        let bind = |pass: &mut wgpu::ComputePass<'_>| {
-            pass.set_bind_group(0, &self.bind_group, &[0]);
-        };
-        passes.run(&self.objective, None, |pass| {
-            bind(pass);
-            pass.dispatch_workgroups(self.objective_groups, 1, 1);
-        });
+        for part in 0..self.steps.triangles.len() {
+            passes.run(&self.objective, None, |pass| {
+                self.bind(pass, part, self.steps.of_triangles() + part);
+                pass.dispatch_workgroups(self.objective_groups, 1, 1);
+            });
+        }
         passes.run(&self.finish, None, |pass| {
-            bind(pass);
+            self.bind(pass, 0, 0);
             pass.dispatch_workgroups(1, 1, 1);
         });
-        if let Some(keep_best) = &self.keep_best {
+        let Some(keep_best) = &self.keep_best else { return };
+        for (part, vertices) in self.steps.free.iter().enumerate() {
             passes.run(keep_best, None, |pass| {
-                bind(pass);
-                dispatch(pass, self.colors.last().map_or(0, |range| range.end));
+                self.bind(pass, part, self.steps.of_free() + part);
+                dispatch(pass, vertices.end - vertices.start);
             });
         }
     }
-}
 
-/// Workgroups of a sum over the triangles: few enough invocations to end it in one workgroup, enough to
-/// fill a large GPU.
-pub(crate) fn objective_groups(problem: &Problem) -> u32 {
-    (problem.triangles().len() as u32).div_ceil(2048).clamp(1, 1024)
+    fn bind(&self, pass: &mut wgpu::ComputePass<'_>, part: usize, uniform: usize) {
+        pass.set_bind_group(0, &self.bind_groups[part], &[uniform as u32 * self.steps.stride]);
+    }
 }
 
 fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {

@@ -8,6 +8,8 @@ use crate::multilevel::{NONE, SMOOTHING};
 use crate::plan::{Derivatives, NOISE, Plan, Stop, line_search};
 
 const COMMON: &str = include_str!("../../shaders/common.wgsl");
+const POSITIONS: &str = include_str!("../../shaders/positions.wgsl");
+const POSITIONS_IN_TWO: &str = include_str!("../../shaders/positions_in_two.wgsl");
 const PAIRS: &str = include_str!("../../shaders/pairs.wgsl");
 const PARAMS: &str = include_str!("../../shaders/params.wgsl");
 const CONTROL: &str = include_str!("../../shaders/control.wgsl");
@@ -24,8 +26,11 @@ const EXPORT: &str = include_str!("../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../shaders/publish.wgsl");
 
 const LEVELS: &str = include_str!("../../shaders/levels/common.wgsl");
-const LAPLACIAN: &str = include_str!("../../shaders/levels/laplacian.wgsl");
+const FINE: &str = include_str!("../../shaders/levels/fine.wgsl");
+const TRANSFER: &str = include_str!("../../shaders/levels/transfer.wgsl");
+const COARSE: &str = include_str!("../../shaders/levels/coarse.wgsl");
 const GRADIENT: &str = include_str!("../../shaders/levels/gradient.wgsl");
+const SMOOTH: &str = include_str!("../../shaders/levels/smooth.wgsl");
 const HAND_DOWN: &str = include_str!("../../shaders/levels/hand_down.wgsl");
 const HAND_UP: &str = include_str!("../../shaders/levels/hand_up.wgsl");
 const APPLY: &str = include_str!("../../shaders/levels/apply.wgsl");
@@ -54,6 +59,8 @@ pub enum Kernel {
     Publish,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
+    /// The same, smoothed.
+    SmoothGradient,
     /// From the free vertices to the aggregates of the first coarse level.
     HandDown,
     /// And back.
@@ -81,8 +88,51 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
-    /// A mesh and the levels below it: `shaders/levels/common.wgsl`.
-    Levels,
+    /// A mesh that is corrected: `shaders/levels/fine.wgsl`.
+    Fine,
+    /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
+    Transfer,
+    /// The coarse levels: `shaders/levels/coarse.wgsl`.
+    Coarse,
+}
+
+impl Interface {
+    pub(crate) const ALL: [Self; 6] = [
+        Interface::Run,
+        Interface::Exchange,
+        Interface::Publish,
+        Interface::Fine,
+        Interface::Transfer,
+        Interface::Coarse,
+    ];
+
+    /// How its kernels see the positions: as one if not at all.
+    pub(crate) fn sees(self, positions: Positions) -> Positions {
+        match self {
+            Interface::Run | Interface::Exchange | Interface::Fine => positions,
+            Interface::Publish | Interface::Transfer | Interface::Coarse => Positions::Whole,
+        }
+    }
+}
+
+/// How kernels see the positions of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Positions {
+    /// As one binding.
+    Whole,
+    /// High parts and low parts by themselves, where a device binds less than the buffer at once.
+    InTwo,
+}
+
+impl Positions {
+    pub(crate) const ALL: [Self; 2] = [Positions::Whole, Positions::InTwo];
+
+    /// Those of so many vertices.
+    pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
+        let bytes = vertices as u64 * size_of::<[f32; 4]>() as u64;
+        let fits = bytes <= limits.max_storage_buffer_binding_size;
+        if fits { Positions::Whole } else { Positions::InTwo }
+    }
 }
 
 impl Kernel {
@@ -100,6 +150,7 @@ impl Kernel {
     pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
         let of_metric = [Kernel::Gradient(metric), Kernel::Along(metric)];
         let others = [
+            Kernel::SmoothGradient,
             Kernel::HandDown,
             Kernel::HandUp,
             Kernel::Apply,
@@ -121,7 +172,8 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
-            Kernel::Gradient(_) => "gradient",
+            Kernel::Gradient(_) => "find_gradient",
+            Kernel::SmoothGradient => "smooth_gradient",
             Kernel::HandDown => "hand_down",
             Kernel::HandUp => "hand_up",
             Kernel::Apply => "apply",
@@ -141,7 +193,9 @@ impl Kernel {
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }
-            _ => Interface::Levels,
+            Kernel::Gradient(_) | Kernel::Along(_) | Kernel::Take => Interface::Fine,
+            Kernel::SmoothGradient | Kernel::HandDown | Kernel::HandUp => Interface::Transfer,
+            Kernel::Apply | Kernel::Chebyshev | Kernel::Direct | Kernel::Total => Interface::Coarse,
         }
     }
 
@@ -158,16 +212,32 @@ impl Kernel {
 
     /// The complete WGSL module.
     pub fn wgsl(&self) -> String {
+        self.composed(Positions::Whole)
+    }
+
+    /// The same for a mesh whose positions are more than the device binds at once.
+    pub fn wgsl_for_large_meshes(&self) -> String {
+        self.composed(Positions::InTwo)
+    }
+
+    pub(crate) fn composed(&self, positions: Positions) -> String {
         let mut source = constants();
-        match self.interface() {
-            Interface::Run => {
-                [PARAMS, COMMON, CONTROL, PAIRS].iter().for_each(|part| source.push_str(part))
-            }
-            Interface::Exchange => [PAIRS, EXCHANGE].iter().for_each(|part| source.push_str(part)),
-            Interface::Publish => source.push_str(CONTROL),
-            Interface::Levels => {
-                [PARAMS, LEVELS, PAIRS, PATCH].iter().for_each(|part| source.push_str(part))
-            }
+        let (parts, bindings): (&[&str], _) = match self.interface() {
+            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 4))),
+            Interface::Publish => (&[CONTROL], None),
+            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
+            Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
+            Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
+        };
+        parts.iter().for_each(|part| source.push_str(part));
+        if let Some((first, second)) = bindings {
+            let _ = writeln!(source, "const POSITIONS: u32 = {first}u;");
+            let _ = writeln!(source, "const LOW_POSITIONS: u32 = {second}u;");
+            source.push_str(match positions {
+                Positions::Whole => POSITIONS,
+                Positions::InTwo => POSITIONS_IN_TWO,
+            });
         }
         match self {
             Kernel::Sweep(metric, derivatives) => {
@@ -194,10 +264,9 @@ impl Kernel {
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
                 source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
             }
-            Kernel::HandDown => {
-                [LAPLACIAN, HAND_DOWN].iter().for_each(|part| source.push_str(part))
-            }
-            Kernel::HandUp => [LAPLACIAN, HAND_UP].iter().for_each(|part| source.push_str(part)),
+            Kernel::SmoothGradient => source.push_str(SMOOTH),
+            Kernel::HandDown => source.push_str(HAND_DOWN),
+            Kernel::HandUp => source.push_str(HAND_UP),
             Kernel::Apply => source.push_str(APPLY),
             Kernel::Chebyshev => source.push_str(CHEBYSHEV),
             Kernel::Direct => source.push_str(DIRECT),

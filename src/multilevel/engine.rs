@@ -47,7 +47,7 @@ pub(crate) trait FineLevel {
     /// Normalized positions of all vertices.
     async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
 
-    /// Takes the levels below.
+    /// Takes the levels below, or [`GpuError::Limit`] if there is no room for them: the run then goes on without.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
     /// One sweep, then the correction from the levels below, tried at `length`.
@@ -87,6 +87,8 @@ pub(crate) struct MultilevelEngine<'a, F> {
     attempts: u32,
     history: Vec<f64>,
     corrections: u32,
+    /// Why there are no corrections, if the levels do not fit.
+    left_out: Option<GpuError>,
     stop: Option<Stop>,
 }
 
@@ -117,6 +119,7 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
             attempts: 0,
             history: Vec::new(),
             corrections: 0,
+            left_out: None,
             stop: None,
         }
     }
@@ -137,10 +140,7 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
                 Phase::Correcting { since, length, proposed, refused } => {
                     self.sweep_and_correct(since, length, proposed, refused).await?
                 }
-                Phase::Without { .. } => {
-                    self.fine.sweep(self.omega).await?;
-                    self.fine.objectives().await?
-                }
+                Phase::Without { .. } => self.sweep_without().await?,
             };
             self.record(objectives, &mut log);
         }
@@ -155,6 +155,11 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
     /// Corrections taken so far.
     pub(crate) fn corrections(&self) -> u32 {
         self.corrections
+    }
+
+    /// Why the run does without corrections, if the place where the mesh is does not hold the levels below it.
+    pub(crate) fn left_out(&self) -> Option<&GpuError> {
+        self.left_out.as_ref()
     }
 
     /// As [`Engine::best_positions`](crate::Engine::best_positions): no step raises the objective.
@@ -175,6 +180,11 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
         Ok(objectives)
     }
 
+    async fn sweep_without(&mut self) -> Result<Objectives, GpuError> {
+        self.fine.sweep(self.omega).await?;
+        self.fine.objectives().await
+    }
+
     async fn sweep_and_correct(
         &mut self,
         since: usize,
@@ -187,7 +197,14 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
         if proposed == 0 || proposed == REBUILD_AFTER && lost > REBUILD_IF * built {
             let positions = self.fine.positions().await?;
             let hierarchy = Hierarchy::new(self.problem, &positions, self.stiffness);
-            self.fine.set_hierarchy(hierarchy)?;
+            match self.fine.set_hierarchy(hierarchy) {
+                Err(error @ GpuError::Limit { .. }) => {
+                    self.left_out = Some(error);
+                    self.phase = Phase::Without { since: self.history.len() };
+                    return self.sweep_without().await;
+                }
+                set => set?,
+            }
         }
         let mut length = Search::first_length(last_length);
         let Proposal { here, slope, there } = self.fine.propose(OMEGA_BETWEEN, length).await?;

@@ -33,6 +33,7 @@ fn report_holds_the_documented_keys() {
                 "sweeps",
                 "corrections",
                 "opening_sweeps",
+                "levels_left_out",
                 "best_sweep",
                 "stop",
                 "returned",

@@ -27,13 +27,14 @@ const SIZE: MeshSize = MeshSize { vertices: 1000, triangles: 1900 };
 
 #[test]
 fn required_limits_name_the_limit_that_is_too_low() {
-    let low = Limits { max_storage_buffer_binding_size: 16_000, ..Limits::default() };
+    let low = Limits { max_storage_buffer_binding_size: 7_900, ..Limits::default() };
     assert_limit(
         &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffer_binding_size",
-        16_000,
-        "the buffer of triangles (1000 vertices) needs 22800, \
-         but the device's max_storage_buffer_binding_size is 16000",
+        7_900,
+        // Half of them, in one of two bindings.
+        "the buffer of vertex positions (1000 vertices) needs 8000, \
+         but the device's max_storage_buffer_binding_size is 7900",
     );
     let low = Limits { max_buffer_size: 15_999, ..Limits::default() };
     assert_limit(
@@ -78,7 +79,15 @@ fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
     let limits = Gpu::required_limits(Limits::default(), size, &most).unwrap();
     assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
     assert_eq!(limits.max_buffer_size, 1_200_000_000);
-    let less = Limits { max_storage_buffer_binding_size: 1_199_999_999, ..most };
+    // Part by part, with an eighth binding for the positions where these take two.
+    for (bound, bindings) in [(1_199_999_999, 7), (800_000_000, 7), (799_999_999, 8)] {
+        let less = Limits { max_storage_buffer_binding_size: bound, ..most.clone() };
+        let own = Limits { max_storage_buffers_per_shader_stage: 0, ..Limits::default() };
+        let limits = Gpu::required_limits(own, size, &less).unwrap();
+        assert_eq!(limits.max_storage_buffer_binding_size, bound);
+        assert_eq!(limits.max_storage_buffers_per_shader_stage, bindings);
+    }
+    let less = Limits { max_storage_buffer_binding_size: 399_999_999, ..most };
     assert!(Gpu::required_limits(Limits::default(), size, &less).is_err());
 }
 
@@ -117,8 +126,8 @@ fn small() -> App {
 #[test]
 fn a_mesh_too_large_for_the_device_is_refused() {
     let app = small();
-    let mesh = lattice(50, 50);
-    let text = "the buffer of vertex positions (2601 vertices) needs 41616, \
+    let mesh = lattice(70, 70);
+    let text = "the buffer of vertex positions (5041 vertices) needs 40328, \
                 but the device's max_storage_buffer_binding_size is 32768";
     let name = "max_storage_buffer_binding_size";
     let error = DeviceMesh::new(&app.gpu, &mesh).err().unwrap();

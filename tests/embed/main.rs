@@ -14,6 +14,7 @@ mod inverted;
 mod limits;
 mod lost;
 mod objective;
+mod parts;
 mod refusals;
 mod sweeps;
 mod timestamps;

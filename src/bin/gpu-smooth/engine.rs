@@ -41,13 +41,16 @@ fn refusal(error: GpuError) -> String {
 
 /// Whether a run that failed for this reason may be done on the CPU instead; says so if it may.
 pub(crate) fn may_fall_back(args: &SmoothArgs, error: &SmoothError) -> bool {
-    let too_large =
-        matches!(error, SmoothError::Gpu(GpuError::Limit { .. } | GpuError::OutOfMemory(_)));
-    let falls_back = is_optional(args) && too_large;
+    let falls_back = is_optional(args) && is_too_large(error);
     if falls_back {
         tell::note(args.quiet, &format!("{error}: smoothing on the CPU"));
     }
     falls_back
+}
+
+/// Whether the GPU cannot hold the mesh.
+pub(crate) fn is_too_large(error: &SmoothError) -> bool {
+    matches!(error, SmoothError::Gpu(GpuError::Limit { .. } | GpuError::OutOfMemory(_)))
 }
 
 fn is_optional(args: &SmoothArgs) -> bool {

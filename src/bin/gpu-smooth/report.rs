@@ -17,6 +17,7 @@ pub(crate) struct Report {
     pub(crate) corrections: u32,
     /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat for the GPU.
     pub(crate) opening_sweeps: u32,
+    pub(crate) levels_left_out: bool,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
     /// reached, converged, stalled or max-sweeps.
@@ -204,6 +205,9 @@ impl Report {
             let n = self.opening_sweeps;
             let _ =
                 write!(text, "; the first {n} on the CPU, as triangles were too flat for the GPU");
+        }
+        if self.levels_left_out {
+            text.push_str("; coarser levels of so large a mesh do not fit the GPU");
         }
         if self.returned > 0 {
             let _ = write!(text, "; vertices put back for rounding: {}", self.returned);

@@ -65,6 +65,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             sweeps: outcome.sweeps,
             corrections: outcome.corrections,
             opening_sweeps: outcome.opening_sweeps,
+            levels_left_out: outcome.levels_left_out,
             best_sweep: outcome.best_sweep,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),
@@ -108,7 +109,10 @@ fn smooth(
         done => done.map(|outcome| (outcome, backend)),
     };
     bar.clear();
-    outcome.map_err(|error: SmoothError| error.to_string())
+    outcome.map_err(|error: SmoothError| match engine::is_too_large(&error) {
+        true => format!("{error}. Smooth on the CPU: --engine cpu"),
+        false => error.to_string(),
+    })
 }
 
 /// Refuses before the work what would fail after it.

@@ -1,0 +1,9 @@
+// The mesh itself (its positions are in positions.wgsl), and the vectors on its free vertices: the gradient, and where
+// the correction leads.
+
+@group(0) @binding(3) var<storage, read> ring_start: array<u32>;
+@group(0) @binding(4) var<storage, read> ring: array<u32>;
+@group(0) @binding(5) var<storage, read> triangles: array<u32>;
+@group(0) @binding(6) var<storage, read_write> gradient: array<vec2<f32>>;
+@group(0) @binding(7) var<storage, read_write> direction: array<vec2<f32>>;
+@group(0) @binding(8) var<storage, read_write> vectors: array<vec2<f32>>;

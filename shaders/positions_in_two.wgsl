@@ -1,0 +1,15 @@
+// Positions of a mesh that is too large for one binding: as in positions.wgsl, but the high parts of all vertices and
+// the low parts by themselves. To have some vertices in one binding and the rest in the other would take twice the
+// loads on adapters that follow both branches.
+
+@group(0) @binding(POSITIONS) var<storage, read_write> high_positions: array<vec2<f32>>;
+@group(0) @binding(LOW_POSITIONS) var<storage, read_write> low_positions: array<vec2<f32>>;
+
+fn position(vertex: u32) -> vec4<f32> {
+    return vec4(high_positions[vertex], low_positions[vertex]);
+}
+
+fn set_position(vertex: u32, at: vec4<f32>) {
+    high_positions[vertex] = at.xy;
+    low_positions[vertex] = at.zw;
+}

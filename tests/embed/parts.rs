@@ -1,0 +1,175 @@
+//! Meshes whose buffers are larger than what a device binds at once: bound part by part, they are smoothed as if they
+//! were not, bit for bit.
+
+use std::ops::ControlFlow;
+
+use gpu_smooth::{
+    Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother,
+    Stop, Sweeps, wgpu,
+};
+use wgpu::Limits;
+
+use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
+use crate::support::lattice;
+
+/// What the small device binds at once.
+const BOUND: u64 = 16 << 10;
+
+/// A mesh whose positions take two bindings of the small device, its rings and triangles three.
+fn mesh() -> Mesh {
+    bad_plate(1600)
+}
+
+fn size(mesh: &Mesh) -> MeshSize {
+    MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() }
+}
+
+/// A device that binds all of such a mesh at once, and one that does not.
+fn devices(mesh: &Mesh) -> [App; 2] {
+    let most = Limits { max_storage_buffer_binding_size: BOUND, ..adapter().limits() };
+    let own = Limits::downlevel_webgl2_defaults();
+    let own = Limits { max_storage_buffer_binding_size: 0, ..own };
+    let small = Gpu::required_limits(own, size(mesh), &most).unwrap();
+    assert_eq!(small.max_storage_buffer_binding_size, BOUND);
+    [least_limits(size(mesh)), small].map(|limits| App::with_limits(limits).unwrap())
+}
+
+fn run(app: &App, mesh: &Mesh, options: &Options) -> Outcome {
+    let backend = Backend::Gpu(app.another_gpu());
+    let observe = &mut |_: &_| ControlFlow::Continue(());
+    Smoother::new(mesh).unwrap().run(options, &backend, observe).unwrap()
+}
+
+/// The base objective before the first sweep and after each.
+fn f(outcome: &Outcome, metric: Metric) -> Vec<f64> {
+    outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
+}
+
+#[test]
+fn a_run_is_the_same_part_by_part() {
+    let mesh = mesh();
+    let devices = devices(&mesh);
+    let sweeps = |scheme: &str| Options {
+        scheme: scheme.parse().unwrap(),
+        method: Method::Sweeps,
+        max_sweeps: 30,
+        track_all: true,
+        ..Options::default()
+    };
+    let names = Metric::ALL.iter().map(|metric| metric.name());
+    let alone = names.map(sweeps);
+    // The best of the last two is not the last.
+    let others = ["edge+imr", "imr+area"].map(sweeps);
+    for options in alone.chain(others) {
+        let [whole, parts] = devices.each_ref().map(|app| run(app, &mesh, &options));
+        let name = options.scheme.to_string();
+        assert_eq!(whole.history, parts.history, "{name}");
+        assert_eq!((whole.sweeps, whole.best_sweep), (parts.sweeps, parts.best_sweep), "{name}");
+        assert!(whole.points == parts.points, "{name}");
+        assert!(whole.best_sweep > 0 && whole.points != mesh.points, "{name}");
+    }
+}
+
+#[test]
+fn an_application_sees_no_parts() {
+    let mesh = mesh();
+    let found = devices(&mesh).map(|app| {
+        let device_mesh = app.mesh(&mesh);
+        let held: Vec<u32> = (0..mesh.points.len() as u32).step_by(17).collect();
+        device_mesh.set_fixed(&held).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let vertices = Vertices::new(&app, &mesh, 0, 8);
+        let bound = vertices.bind(&device_mesh);
+        // A corner of the plate, taken along by an import.
+        vertices.put(&app, 0, [-0.125, -0.25]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            sweeps.encode(encoder, 10);
+            bound.encode_export(encoder);
+        });
+        let f = app.objective(&sweeps);
+        (app.read(&vertices.buffer), app.points(&device_mesh), f)
+    });
+    assert!(found[0] == found[1]);
+    assert_ne!(found[0].1, mesh.points);
+}
+
+#[test]
+fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
+    // Positions of this one would take three bindings.
+    let large = lattice(46, 46);
+    let [_, app] = devices(&mesh());
+    let error = app.gpu.check_size(size(&large)).unwrap_err();
+    let text = "the buffer of vertex positions (2209 vertices) needs 17672, \
+                but the device's max_storage_buffer_binding_size is 16384";
+    assert_eq!(error.to_string(), text);
+    let made = || app.device().generate_allocator_report().map(|report| report.allocations.len());
+    let before = made();
+    assert_eq!(gpu_error(DeviceMesh::new(&app.gpu, &large).err().unwrap()).to_string(), text);
+    let backend = Backend::Gpu(app.another_gpu());
+    let smoother = Smoother::new(&large).unwrap();
+    for method in [Method::Sweeps, Method::Auto] {
+        let options = Options { method, ..Options::default() };
+        let run = smoother.run(&options, &backend, &mut |_| ControlFlow::Continue(()));
+        assert_eq!(gpu_error(run.unwrap_err()).to_string(), text);
+    }
+    assert_eq!(made(), before);
+    app.gpu.check_size(size(&mesh())).unwrap();
+}
+
+#[test]
+fn a_device_of_few_bindings_takes_no_positions_in_two() {
+    let mesh = mesh();
+    let few = Limits { max_storage_buffers_per_shader_stage: 7, ..adapter().limits() };
+    let few = Limits { max_storage_buffer_binding_size: BOUND, ..few };
+    let own = Limits::downlevel_webgl2_defaults();
+    let error = Gpu::required_limits(own.clone(), size(&mesh), &few).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "a kernel that binds positions in two ({} vertices) needs 8, \
+             but the device's max_storage_buffers_per_shader_stage is 7",
+            mesh.points.len()
+        )
+    );
+    let less = size(&bad_plate(900));
+    let limits = Gpu::required_limits(own, less, &few).unwrap();
+    assert_eq!(limits.max_storage_buffers_per_shader_stage, 7);
+    let app = App::with_limits(limits).unwrap();
+    assert!(matches!(app.gpu.check_size(size(&mesh)), Err(GpuError::Limit { available: 7, .. })));
+}
+
+#[test]
+fn corrections_are_the_same_part_by_part() {
+    let mesh = mesh();
+    let devices = devices(&mesh);
+    for metric in [Metric::Imr, Metric::Rms] {
+        let method = Method::Multilevel;
+        let options = Options { scheme: metric.into(), method, ..Options::default() };
+        let [whole, parts] = devices.each_ref().map(|app| run(app, &mesh, &options));
+        assert!(whole.corrections > 3, "{metric}");
+        assert_eq!(f(&whole, metric), f(&parts, metric));
+        assert!(whole.points == parts.points, "{metric}");
+        assert!(!parts.levels_left_out);
+    }
+}
+
+#[test]
+fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
+    // Its only coarse level has some 80 unknowns: their inverse matrix is more than the device binds.
+    let mesh = bad_plate(700);
+    let [large, small] = devices(&self::mesh());
+    let auto = Options::default();
+    let [with, without] = [&large, &small].map(|app| run(app, &mesh, &auto));
+    assert!(with.corrections > 0 && !with.levels_left_out);
+    assert!(without.corrections == 0 && without.levels_left_out);
+    assert_eq!(without.stop, Stop::Converged);
+    let [with, without] = [with, without].map(|outcome| *f(&outcome, Metric::Imr).last().unwrap());
+    assert!((without / with - 1.0).abs() < 1e-6, "{without} for {with}");
+
+    let asked = Options { method: Method::Multilevel, ..auto };
+    let backend = Backend::Gpu(small.another_gpu());
+    let observe = &mut |_: &_| ControlFlow::Continue(());
+    let error = Smoother::new(&mesh).unwrap().run(&asked, &backend, observe).unwrap_err();
+    assert!(matches!(gpu_error(error), GpuError::Limit { available: BOUND, .. }));
+}
