@@ -3,9 +3,9 @@
 use super::Mesh;
 use super::atomic::{self, Job};
 use super::gmsh;
+use super::patch::Patch;
 use super::sniff::{self, Content};
 use super::source::{Parsed, Source};
-use super::text;
 use super::triangle::{self, Names};
 use crate::error::{ReadError, WriteError};
 use std::fmt;
@@ -231,10 +231,8 @@ impl MeshFile {
                 let (bytes, old) = (&source.bytes, &self.mesh.points);
                 // Only the first part holds vertices.
                 let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-                let patch = move |out: &mut dyn std::io::Write| {
-                    text::write_patched(out, bytes, x_at, old, points)
-                };
-                (destination, Box::new(patch))
+                let patch = Patch { bytes, x_at, old, new: points };
+                (destination, Box::new(move |out| patch.write(out)))
             })
             .collect();
         atomic::replace(&jobs)

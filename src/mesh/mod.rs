@@ -3,6 +3,7 @@
 mod atomic;
 mod file;
 mod gmsh;
+mod patch;
 mod sniff;
 mod source;
 mod text;

@@ -1,9 +1,8 @@
-//! Rows and tokens of a text file, and the replacement of single tokens in it.
+//! Rows and tokens of a text file.
 
 use super::source::Source;
 use crate::error::ReadError;
 use std::fmt::Display;
-use std::io::{self, Write};
 
 /// What to do about a single wrong line.
 pub(super) const CORRECT: &str = "Correct the line, or write the mesh again";
@@ -159,36 +158,8 @@ pub(super) fn quoted(token: &[u8]) -> String {
     quoted
 }
 
-/// Copies `bytes` to `out`, with the coordinates replaced whose bits differ between `old` and `new`.
-///
-/// `x_at` is where each vertex's x starts, ascending; its y is the token after it.
-pub(super) fn write_patched(
-    out: &mut dyn Write,
-    bytes: &[u8],
-    x_at: &[usize],
-    old: &[[f64; 2]],
-    new: &[[f64; 2]],
-) -> io::Result<()> {
-    let mut copied = 0;
-    for ((&x_at, old), new) in x_at.iter().zip(old).zip(new) {
-        let mut start = x_at;
-        for (old, new) in old.iter().zip(new) {
-            start = skip_blanks(bytes, start);
-            let end = token_end(bytes, start);
-            if old.to_bits() != new.to_bits() {
-                out.write_all(&bytes[copied..start])?;
-                // The fewest digits that parse back to the same bits.
-                write!(out, "{new:?}")?;
-                copied = end;
-            }
-            start = end;
-        }
-    }
-    out.write_all(&bytes[copied..])
-}
-
 #[inline]
-fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+pub(super) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
         at += 1;
     }
@@ -196,7 +167,7 @@ fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
 }
 
 #[inline]
-fn token_end(bytes: &[u8], mut at: usize) -> usize {
+pub(super) fn token_end(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
         at += 1;
     }
@@ -288,31 +259,6 @@ mod tests {
         let source = source(b"1 2 3 4 5 6\n");
         assert_eq!(Cursor::new(&source).capacity(u64::MAX, 4), 3);
         assert_eq!(Cursor::new(&source).capacity(2, 4), 2);
-    }
-
-    #[test]
-    fn written_numbers_parse_back_to_the_same_bits() {
-        let values = [
-            -0.0,
-            0.0,
-            1e-7,
-            1e16,
-            -1.0 / 3.0,
-            f64::MIN_POSITIVE,
-            f64::from_bits(1),
-            f64::MAX,
-            123_456_789.123_456_79,
-            1e15,
-            0.1 + 0.2,
-        ];
-        for value in values {
-            let mut out = Vec::new();
-            let old = [[7.0, 8.0]];
-            write_patched(&mut out, b"1 7 8 9", &[2], &old, &[[value, 8.0]]).unwrap();
-            let token = out[2..].split(|&b| b == b' ').next().unwrap();
-            assert_eq!(float(token).map(f64::to_bits), Some(value.to_bits()));
-            assert!(out.ends_with(b" 8 9"));
-        }
     }
 
     #[test]
