@@ -1,5 +1,6 @@
 //! A mesh as read, and the files it comes from.
 
+mod ahead;
 mod atomic;
 mod file;
 mod gmsh;

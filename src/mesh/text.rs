@@ -13,6 +13,8 @@ const WHOLE: &str = "a whole number from 0 to 2^64-1";
 /// Walks over the rows of a file: the lines that hold more than blanks and a `#` comment.
 pub(super) struct Cursor<'a> {
     pub(super) source: &'a Source,
+    /// The source's bytes up to where this cursor ends.
+    bytes: &'a [u8],
     at: usize,
     line: usize,
 }
@@ -21,7 +23,31 @@ impl<'a> Cursor<'a> {
     /// Stands before the first row.
     pub(super) fn new(source: &'a Source) -> Self {
         let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        Cursor { source, at, line: 0 }
+        Cursor { source, bytes: &source.bytes, at, line: 0 }
+    }
+
+    /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
+    /// lines from their own first.
+    pub(super) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
+        let mut at = if self.line > 0 { self.line_end(self.at) } else { self.at };
+        let mut parts = Vec::with_capacity(count);
+        while parts.len() < count && at < self.bytes.len() {
+            let end = self.line_end(self.bytes.len().min(at + size - 1));
+            parts.push(Cursor { source: self.source, bytes: &self.bytes[..end], at, line: 0 });
+            at = end;
+        }
+        parts
+    }
+
+    /// Moves to the last line of a part that is used up. It has to be the first one of [`parts`](Self::parts).
+    pub(super) fn skip(&mut self, part: &Cursor<'_>) {
+        self.line += part.line;
+        self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
+    }
+
+    /// Where the line ends that holds this byte, after its line feed.
+    fn line_end(&self, at: usize) -> usize {
+        memchr::memchr(b'\n', &self.bytes[at..]).map_or(self.bytes.len(), |n| at + n + 1)
     }
 
     /// One-based number of the line it stands on, which is the last one once the rows are used up.
@@ -31,11 +57,10 @@ impl<'a> Cursor<'a> {
 
     /// Moves to the first token of the next row. False when there is none.
     pub(super) fn next_row(&mut self) -> bool {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         loop {
             if self.line > 0 {
-                let end = memchr::memchr(b'\n', &bytes[self.at..]);
-                self.at = end.map_or(bytes.len(), |n| self.at + n + 1);
+                self.at = self.line_end(self.at);
             }
             if self.at == bytes.len() {
                 return false;
@@ -51,7 +76,7 @@ impl<'a> Cursor<'a> {
     /// The next token of the row, or none at its end.
     #[inline]
     pub(super) fn token(&mut self) -> Option<&'a [u8]> {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         let start = skip_blanks(bytes, self.at);
         self.at = token_end(bytes, start);
         (self.at > start).then(|| &bytes[start..self.at])
@@ -59,13 +84,13 @@ impl<'a> Cursor<'a> {
 
     /// Whether the next token starts with this byte.
     pub(super) fn is_at(&self, byte: u8) -> bool {
-        self.source.bytes.get(skip_blanks(&self.source.bytes, self.at)) == Some(&byte)
+        self.bytes.get(skip_blanks(self.bytes, self.at)) == Some(&byte)
     }
 
     /// Reads a number from zero up, called `what` in messages.
     #[inline]
     pub(super) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         let start = skip_blanks(bytes, self.at);
         let mut at = start;
         let mut number = 0_u64;
@@ -116,13 +141,13 @@ impl<'a> Cursor<'a> {
         &mut self,
         owner: impl Display + Copy,
     ) -> Result<(usize, [f64; 2]), ReadError> {
-        let x_at = skip_blanks(&self.source.bytes, self.at);
+        let x_at = skip_blanks(self.bytes, self.at);
         Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
     }
 
     /// How many of `count` rows to reserve space for: no more than can follow, a count proves nothing.
     pub(super) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
-        let possible = (self.source.bytes.len() - self.at) / bytes_per_row;
+        let possible = (self.bytes.len() - self.at) / bytes_per_row;
         usize::try_from(count).map_or(possible, |count| count.min(possible))
     }
 
@@ -136,7 +161,7 @@ impl<'a> Cursor<'a> {
     fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
         match token {
             // Nothing follows, not even the end of the line.
-            None if memchr::memchr(b'\n', &self.source.bytes[self.at..]).is_none() => {
+            None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
                 self.error(format!("{what} is missing"), CUT_OFF)
             }
             None => self.error(format!("{what} is missing"), CORRECT),

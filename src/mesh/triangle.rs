@@ -4,6 +4,7 @@
 //! what follows the announced rows, and extra columns.
 
 use super::Mesh;
+use super::ahead::take_rows;
 use super::source::{Parsed, Source, fixed_note};
 use super::text::{CORRECT, CUT_OFF, Cursor};
 use crate::error::ReadError;
@@ -114,7 +115,22 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     let capacity = cursor.capacity(numbers.count, "1 0 0\n".len());
     let mut points = Vec::with_capacity(capacity);
     let mut x_at = Vec::with_capacity(capacity);
-    for row in 0..numbers.count {
+    let read = |cursor: &mut Cursor<'_>| {
+        let number = cursor.integer("the number of a vertex")?;
+        Ok((number, cursor.point(format_args!("vertex {number}"))?))
+    };
+    let plain = take_rows(cursor, numbers.count, read, |(number, (at, point))| {
+        if points.is_empty() {
+            numbers.first = number.min(1);
+        }
+        let expected = number == numbers.first + points.len() as u64;
+        if expected {
+            x_at.push(at);
+            points.push(point);
+        }
+        expected
+    });
+    for row in plain..numbers.count {
         let number = vertex_number(cursor, row, &mut numbers)?;
         let (at, point) = cursor.point(format_args!("vertex {number}"))?;
         x_at.push(at);
@@ -179,22 +195,36 @@ fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Vec<[u32;
         }
     }
     let mut triangles = Vec::with_capacity(cursor.capacity(count, "1 1 2 3\n".len()));
-    for row in 0..count {
-        next_of(cursor, row, count, "triangles")?;
-        let number = cursor.integer("the number of a triangle")?;
-        let mut corners = [0; 3];
-        for corner in &mut corners {
-            *corner = numbers.index(cursor, node, format_args!("triangle {number}"))?;
-        }
-        let [a, b, c] = corners;
-        if a == b || b == c || c == a {
-            let twice = numbers.first + u64::from(if b == c { b } else { a });
-            let problem = format!("triangle {number} lists vertex {twice} twice");
-            return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
-        }
+    let read = |cursor: &mut Cursor<'_>| triangle(cursor, node, numbers);
+    let plain = take_rows(cursor, count, read, |corners| {
         triangles.push(corners);
+        true
+    });
+    for row in plain..count {
+        next_of(cursor, row, count, "triangles")?;
+        triangles.push(read(cursor)?);
     }
     Ok(triangles)
+}
+
+#[inline]
+fn triangle(
+    cursor: &mut Cursor<'_>,
+    node: &Source,
+    numbers: &Numbers,
+) -> Result<[u32; 3], ReadError> {
+    let number = cursor.integer("the number of a triangle")?;
+    let mut corners = [0; 3];
+    for corner in &mut corners {
+        *corner = numbers.index(cursor, node, format_args!("triangle {number}"))?;
+    }
+    let [a, b, c] = corners;
+    if a == b || b == c || c == a {
+        let twice = numbers.first + u64::from(if b == c { b } else { a });
+        let problem = format!("triangle {number} lists vertex {twice} twice");
+        return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
+    }
+    Ok(corners)
 }
 
 /// Adds the vertices a `.poly` lists, and those of its segments, to `fixed`. Returns the number of

@@ -47,6 +47,8 @@ struct Reader {
 }
 
 impl Sink for Reader {
+    const TAKES_AHEAD: bool = true;
+
     fn expect_nodes(&mut self, count: usize) {
         self.mesh.points.reserve_exact(count);
         self.x_at.reserve_exact(count);
