@@ -4,6 +4,7 @@ mod ahead;
 mod atomic;
 mod file;
 mod gmsh;
+mod implied;
 mod patch;
 mod sniff;
 mod source;

@@ -21,25 +21,14 @@ pub(super) struct Patch<'a> {
 }
 
 impl Patch<'_> {
-    /// Copies the text to `out`, with the coordinates replaced whose bits differ between `old` and `new`.
-    pub(super) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
+    /// Copies the text to `out` up to the last coordinate, with those replaced whose bits differ between `old` and
+    /// `new`. Returns where it stopped.
+    pub(super) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<usize> {
         let vertices = self.x_at.len();
-        let at_once = 2 * BLOCK * rayon::current_num_threads();
-        let mut ready = Vec::new();
-        for start in (0..vertices).step_by(at_once) {
-            // The next blocks are made while the system takes these.
-            let next = start..(start + at_once).min(vertices);
-            let (written, next) = rayon::join(|| write_all(out, &ready), || self.blocks(next));
-            written?;
-            ready = next;
-        }
-        write_all(out, &ready)?;
-        out.write_all(&self.bytes[self.start_of(vertices)..])
-    }
-
-    fn blocks(&self, vertices: Range<usize>) -> Vec<Vec<u8>> {
-        let starts = vertices.clone().into_par_iter().step_by(BLOCK);
-        starts.map(|start| self.block(start..(start + BLOCK).min(vertices.end))).collect()
+        write_blocks(out, vertices.div_ceil(BLOCK), |block| {
+            self.block(block * BLOCK..vertices.min((block + 1) * BLOCK))
+        })?;
+        Ok(self.start_of(vertices))
     }
 
     /// The new text of some vertices, up to the first one after them.
@@ -80,8 +69,24 @@ impl Patch<'_> {
     }
 }
 
-fn write_all(out: &mut (dyn Write + Send), blocks: &[Vec<u8>]) -> io::Result<()> {
-    blocks.iter().try_for_each(|block| out.write_all(block))
+/// Writes blocks of text in their order. All threads make some while the system takes those made before.
+pub(super) fn write_blocks(
+    out: &mut (dyn Write + Send),
+    count: usize,
+    make: impl Fn(usize) -> Vec<u8> + Sync,
+) -> io::Result<()> {
+    let at_once = 2 * rayon::current_num_threads();
+    let mut made: Vec<Vec<u8>> = Vec::new();
+    for start in (0..count).step_by(at_once) {
+        let next = start..count.min(start + at_once);
+        let (written, next) = rayon::join(
+            || made.iter().try_for_each(|block| out.write_all(block)),
+            || next.into_par_iter().map(&make).collect(),
+        );
+        written?;
+        made = next;
+    }
+    made.iter().try_for_each(|block| out.write_all(block))
 }
 
 #[cfg(test)]
@@ -90,7 +95,8 @@ mod tests {
 
     fn patched(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let mut out = Vec::new();
-        Patch { bytes, x_at, old, new }.write(&mut out).unwrap();
+        let end = Patch { bytes, x_at, old, new }.write(&mut out).unwrap();
+        out.extend_from_slice(&bytes[end..]);
         out
     }
 

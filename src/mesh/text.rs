@@ -29,10 +29,10 @@ impl<'a> Cursor<'a> {
     /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
     /// lines from their own first.
     pub(super) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
-        let mut at = if self.line > 0 { self.line_end(self.at) } else { self.at };
+        let mut at = if self.line > 0 { line_end(self.bytes, self.at) } else { self.at };
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
-            let end = self.line_end(self.bytes.len().min(at + size - 1));
+            let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
             parts.push(Cursor { source: self.source, bytes: &self.bytes[..end], at, line: 0 });
             at = end;
         }
@@ -45,11 +45,6 @@ impl<'a> Cursor<'a> {
         self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
-    /// Where the line ends that holds this byte, after its line feed.
-    fn line_end(&self, at: usize) -> usize {
-        memchr::memchr(b'\n', &self.bytes[at..]).map_or(self.bytes.len(), |n| at + n + 1)
-    }
-
     /// One-based number of the line it stands on, which is the last one once the rows are used up.
     pub(super) fn line(&self) -> usize {
         self.line
@@ -60,7 +55,7 @@ impl<'a> Cursor<'a> {
         let bytes = self.bytes;
         loop {
             if self.line > 0 {
-                self.at = self.line_end(self.at);
+                self.at = line_end(self.bytes, self.at);
             }
             if self.at == bytes.len() {
                 return false;
@@ -170,6 +165,11 @@ impl<'a> Cursor<'a> {
             }
         }
     }
+}
+
+/// Where the line ends that holds this byte, after its line feed.
+pub(super) fn line_end(bytes: &[u8], at: usize) -> usize {
+    memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
 }
 
 /// A token as it can stand in a one-line message.

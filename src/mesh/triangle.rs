@@ -5,6 +5,7 @@
 
 use super::Mesh;
 use super::ahead::take_rows;
+use super::implied::Labels;
 use super::source::{Parsed, Source, fixed_note};
 use super::text::{CORRECT, CUT_OFF, Cursor};
 use crate::error::ReadError;
@@ -53,7 +54,8 @@ pub(super) fn parse(
         let segments = segments(poly, node, &numbers, &mut fixed)?;
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
-    Ok(Parsed { mesh: Mesh { points, triangles, fixed }, x_at, notes })
+    let labels = Some(Labels { triangle: triangle_place(ele, 0).1, vertex: numbers.first });
+    Ok(Parsed { mesh: Mesh { points, triangles, fixed }, x_at, labels, notes })
 }
 
 /// Line and number of a vertex whose x stands at `x_at`.

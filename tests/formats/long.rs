@@ -67,8 +67,8 @@ fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
     let [node, ele, v2, v4] = &mut texts;
     let triangles = triangles();
     let (n, m) = (points.len(), triangles.len());
-    // Far apart, so that tags are not indices.
-    let tag = |v: usize| 3 * (v + first);
+    // Tags of one file are far apart.
+    let (apart, tag) = (|v: usize| 3 * (v + first), |v: usize| v + first);
     node.row(&format!("{n} 2"));
     ele.row(&format!("{m} 3"));
     for (text, version) in [(&mut *v2, "2.2"), (&mut *v4, "4.1")] {
@@ -77,7 +77,7 @@ fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
         }
     }
     v2.row(&n.to_string());
-    v4.row(&format!("1 {n} 1 {}", 3 * n));
+    v4.row(&format!("1 {n} 1 {n}"));
     v4.row(&format!("2 1 0 {n}"));
     for v in 0..n {
         v4.row(&tag(v).to_string());
@@ -85,7 +85,7 @@ fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
     for (v, [x, y]) in points.iter().enumerate() {
         let rows = [
             (&mut *node, format!("{} {x:?}\t{y:?} 9 # {v}", v + first)),
-            (&mut *v2, format!("{} {x:?} {y:?} 0", tag(v))),
+            (&mut *v2, format!("{} {x:?} {y:?} 0", apart(v))),
             (&mut *v4, format!("{x:?} {y:?} 0")),
         ];
         for (text, row) in rows {
@@ -108,8 +108,8 @@ fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
             })
         };
         let rows = [
-            (&mut *ele, format!("  {}{} # {t}", t + 1, of(&|v| v + first))),
-            (&mut *v2, format!("{} 2 2 1 1{}", t + 1, of(&tag))),
+            (&mut *ele, format!("  {}{} # {}", t + 1, of(&tag), t / 10_000)),
+            (&mut *v2, format!("{} 2 2 1 1{}", t + 1, of(&apart))),
             (&mut *v4, format!("{}{} ", t + 1, of(&tag))),
         ];
         for (text, row) in rows {
@@ -243,7 +243,7 @@ fn errors_in_long_lists_name_their_line() {
         );
         check(v2, line, Some("5 9 2 1 1 3 6 9"), line, "element type 9 is of higher order");
         let line = v4.vertex_lines[at];
-        check(v4, line, Some("1 1"), line, &format!("z of node {} is missing", 3 * (at + 1)));
+        check(v4, line, Some("1 1"), line, &format!("z of node {} is missing", at + 1));
         let line = v4.triangle_lines[at];
         check(v4, line, Some("5 3 6 6"), line, "triangle 5 lists node 6 twice");
     }
