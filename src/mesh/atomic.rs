@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A file to be written: its path, and what writes its content.
-pub(super) type Job<'a> = (PathBuf, Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>);
+pub(super) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
 
 /// Writes all of the files, or leaves all that stood there as they were.
 ///
@@ -79,7 +79,7 @@ struct Staged {
 
 fn stage(
     path: &Path,
-    content: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    content: &dyn Fn(&mut (dyn Write + Send)) -> io::Result<()>,
 ) -> Result<Staged, WriteError> {
     let attempt = || {
         let (target, existing) = resolve(path)?;

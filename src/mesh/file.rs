@@ -3,12 +3,15 @@
 use super::Mesh;
 use super::atomic::{self, Job};
 use super::gmsh;
+use super::implied::Implied;
+use super::patch::Patch;
 use super::sniff::{self, Content};
 use super::source::{Parsed, Source};
 use super::text;
 use super::triangle::{self, Names};
 use crate::error::{ReadError, WriteError};
 use std::fmt;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A file format that is read and written.
@@ -33,6 +36,14 @@ impl Format {
         match self {
             Format::Triangle => &[".node", ".ele"],
             Format::Gmsh22 | Format::Gmsh41 => &[".msh"],
+        }
+    }
+
+    /// Which of the sources lists the triangles.
+    fn part_with_triangles(self) -> usize {
+        match self {
+            Format::Triangle => 1,
+            Format::Gmsh22 | Format::Gmsh41 => 0,
         }
     }
 
@@ -82,6 +93,8 @@ pub struct MeshFile {
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
     /// `.ele` and, if there is one, `.poly`.
     sources: Vec<Source>,
+    /// What was left out of the source with the triangles.
+    implied: Implied,
 }
 
 impl MeshFile {
@@ -139,9 +152,16 @@ impl MeshFile {
         Ok(Self::new(Format::Triangle, parsed, sources))
     }
 
-    fn new(format: Format, parsed: Parsed, sources: Vec<Source>) -> MeshFile {
-        let Parsed { mesh, x_at, notes } = parsed;
-        MeshFile { mesh, format, notes, x_at, sources }
+    fn new(format: Format, parsed: Parsed, mut sources: Vec<Source>) -> MeshFile {
+        let Parsed { mesh, x_at, labels, notes } = parsed;
+        let part = format.part_with_triangles();
+        let bytes = &mut sources[part].bytes;
+        let lists_vertices = x_at.last().filter(|_| part == 0);
+        let from = lists_vertices.map_or(0, |&last| text::line_end(bytes, last));
+        let implied = labels
+            .map(|labels| Implied::take_out(bytes, from, labels, &mesh.triangles))
+            .unwrap_or_default();
+        MeshFile { mesh, format, notes, x_at, sources, implied }
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -197,15 +217,16 @@ impl MeshFile {
     /// If there is no such triangle.
     pub fn triangle_place(&self, index: usize) -> Place {
         assert!(index < self.mesh.triangles.len(), "there is no triangle {index}");
-        let (source, (line, label)) = match self.format {
-            Format::Triangle => {
-                (&self.sources[1], triangle::triangle_place(&self.sources[1], index))
-            }
-            Format::Gmsh22 | Format::Gmsh41 => {
-                (&self.sources[0], gmsh::triangle_place(&self.sources[0], index))
-            }
+        let kept = &self.sources[self.format.part_with_triangles()];
+        let path = kept.path.clone();
+        let whole = self.implied.whole(&kept.bytes, &self.mesh.triangles);
+        let whole = whole.map(|bytes| Source { path: path.clone(), bytes });
+        let source = whole.as_ref().unwrap_or(kept);
+        let (line, label) = match self.format {
+            Format::Triangle => triangle::triangle_place(source, index),
+            Format::Gmsh22 | Format::Gmsh41 => gmsh::triangle_place(source, index),
         };
-        Place { path: source.path.clone(), line, label }
+        Place { path, line, label }
     }
 
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -231,10 +252,16 @@ impl MeshFile {
                 let (bytes, old) = (&source.bytes, &self.mesh.points);
                 // Only the first part holds vertices.
                 let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-                let patch = move |out: &mut dyn std::io::Write| {
-                    text::write_patched(out, bytes, x_at, old, points)
+                let patch = Patch { bytes, x_at, old, new: points };
+                let has_triangles = part == self.format.part_with_triangles();
+                let content = move |out: &mut (dyn Write + Send)| {
+                    let patched = patch.write(out)?;
+                    match has_triangles {
+                        true => self.implied.write(out, bytes, patched, &self.mesh.triangles),
+                        false => out.write_all(&bytes[patched..]),
+                    }
                 };
-                (destination, Box::new(patch))
+                (destination, Box::new(content))
             })
             .collect();
         atomic::replace(&jobs)

@@ -1,8 +1,11 @@
 //! A mesh as read, and the files it comes from.
 
+mod ahead;
 mod atomic;
 mod file;
 mod gmsh;
+mod implied;
+mod patch;
 mod sniff;
 mod source;
 mod text;

@@ -1,6 +1,7 @@
 //! The bytes of one file, and what a format's reader makes of them.
 
 use super::Mesh;
+use super::implied::Labels;
 use crate::error::ReadError;
 use std::fs;
 use std::io::ErrorKind;
@@ -17,6 +18,8 @@ pub(super) struct Parsed {
     pub(super) mesh: Mesh,
     /// Offset of each vertex's x token in the text that holds the vertices, ascending.
     pub(super) x_at: Vec<usize>,
+    /// How triangles and vertices are numbered, if the latter are consecutively.
+    pub(super) labels: Option<Labels>,
     /// One-line remarks for the user.
     pub(super) notes: Vec<String>,
 }

@@ -1,9 +1,8 @@
-//! Rows and tokens of a text file, and the replacement of single tokens in it.
+//! Rows and tokens of a text file.
 
 use super::source::Source;
 use crate::error::ReadError;
 use std::fmt::Display;
-use std::io::{self, Write};
 
 /// What to do about a single wrong line.
 pub(super) const CORRECT: &str = "Correct the line, or write the mesh again";
@@ -14,6 +13,8 @@ const WHOLE: &str = "a whole number from 0 to 2^64-1";
 /// Walks over the rows of a file: the lines that hold more than blanks and a `#` comment.
 pub(super) struct Cursor<'a> {
     pub(super) source: &'a Source,
+    /// The source's bytes up to where this cursor ends.
+    bytes: &'a [u8],
     at: usize,
     line: usize,
 }
@@ -22,7 +23,26 @@ impl<'a> Cursor<'a> {
     /// Stands before the first row.
     pub(super) fn new(source: &'a Source) -> Self {
         let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        Cursor { source, at, line: 0 }
+        Cursor { source, bytes: &source.bytes, at, line: 0 }
+    }
+
+    /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
+    /// lines from their own first.
+    pub(super) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
+        let mut at = if self.line > 0 { line_end(self.bytes, self.at) } else { self.at };
+        let mut parts = Vec::with_capacity(count);
+        while parts.len() < count && at < self.bytes.len() {
+            let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
+            parts.push(Cursor { source: self.source, bytes: &self.bytes[..end], at, line: 0 });
+            at = end;
+        }
+        parts
+    }
+
+    /// Moves to the last line of a part that is used up. It has to be the first one of [`parts`](Self::parts).
+    pub(super) fn skip(&mut self, part: &Cursor<'_>) {
+        self.line += part.line;
+        self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
     /// One-based number of the line it stands on, which is the last one once the rows are used up.
@@ -32,11 +52,10 @@ impl<'a> Cursor<'a> {
 
     /// Moves to the first token of the next row. False when there is none.
     pub(super) fn next_row(&mut self) -> bool {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         loop {
             if self.line > 0 {
-                let end = memchr::memchr(b'\n', &bytes[self.at..]);
-                self.at = end.map_or(bytes.len(), |n| self.at + n + 1);
+                self.at = line_end(self.bytes, self.at);
             }
             if self.at == bytes.len() {
                 return false;
@@ -52,7 +71,7 @@ impl<'a> Cursor<'a> {
     /// The next token of the row, or none at its end.
     #[inline]
     pub(super) fn token(&mut self) -> Option<&'a [u8]> {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         let start = skip_blanks(bytes, self.at);
         self.at = token_end(bytes, start);
         (self.at > start).then(|| &bytes[start..self.at])
@@ -60,13 +79,13 @@ impl<'a> Cursor<'a> {
 
     /// Whether the next token starts with this byte.
     pub(super) fn is_at(&self, byte: u8) -> bool {
-        self.source.bytes.get(skip_blanks(&self.source.bytes, self.at)) == Some(&byte)
+        self.bytes.get(skip_blanks(self.bytes, self.at)) == Some(&byte)
     }
 
     /// Reads a number from zero up, called `what` in messages.
     #[inline]
     pub(super) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
-        let bytes = &self.source.bytes;
+        let bytes = self.bytes;
         let start = skip_blanks(bytes, self.at);
         let mut at = start;
         let mut number = 0_u64;
@@ -117,13 +136,13 @@ impl<'a> Cursor<'a> {
         &mut self,
         owner: impl Display + Copy,
     ) -> Result<(usize, [f64; 2]), ReadError> {
-        let x_at = skip_blanks(&self.source.bytes, self.at);
+        let x_at = skip_blanks(self.bytes, self.at);
         Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
     }
 
     /// How many of `count` rows to reserve space for: no more than can follow, a count proves nothing.
     pub(super) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
-        let possible = (self.source.bytes.len() - self.at) / bytes_per_row;
+        let possible = (self.bytes.len() - self.at) / bytes_per_row;
         usize::try_from(count).map_or(possible, |count| count.min(possible))
     }
 
@@ -137,7 +156,7 @@ impl<'a> Cursor<'a> {
     fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
         match token {
             // Nothing follows, not even the end of the line.
-            None if memchr::memchr(b'\n', &self.source.bytes[self.at..]).is_none() => {
+            None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
                 self.error(format!("{what} is missing"), CUT_OFF)
             }
             None => self.error(format!("{what} is missing"), CORRECT),
@@ -146,6 +165,11 @@ impl<'a> Cursor<'a> {
             }
         }
     }
+}
+
+/// Where the line ends that holds this byte, after its line feed.
+pub(super) fn line_end(bytes: &[u8], at: usize) -> usize {
+    memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
 }
 
 /// A token as it can stand in a one-line message.
@@ -159,36 +183,8 @@ pub(super) fn quoted(token: &[u8]) -> String {
     quoted
 }
 
-/// Copies `bytes` to `out`, with the coordinates replaced whose bits differ between `old` and `new`.
-///
-/// `x_at` is where each vertex's x starts, ascending; its y is the token after it.
-pub(super) fn write_patched(
-    out: &mut dyn Write,
-    bytes: &[u8],
-    x_at: &[usize],
-    old: &[[f64; 2]],
-    new: &[[f64; 2]],
-) -> io::Result<()> {
-    let mut copied = 0;
-    for ((&x_at, old), new) in x_at.iter().zip(old).zip(new) {
-        let mut start = x_at;
-        for (old, new) in old.iter().zip(new) {
-            start = skip_blanks(bytes, start);
-            let end = token_end(bytes, start);
-            if old.to_bits() != new.to_bits() {
-                out.write_all(&bytes[copied..start])?;
-                // The fewest digits that parse back to the same bits.
-                write!(out, "{new:?}")?;
-                copied = end;
-            }
-            start = end;
-        }
-    }
-    out.write_all(&bytes[copied..])
-}
-
 #[inline]
-fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+pub(super) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
         at += 1;
     }
@@ -196,7 +192,7 @@ fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
 }
 
 #[inline]
-fn token_end(bytes: &[u8], mut at: usize) -> usize {
+pub(super) fn token_end(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
         at += 1;
     }
@@ -288,31 +284,6 @@ mod tests {
         let source = source(b"1 2 3 4 5 6\n");
         assert_eq!(Cursor::new(&source).capacity(u64::MAX, 4), 3);
         assert_eq!(Cursor::new(&source).capacity(2, 4), 2);
-    }
-
-    #[test]
-    fn written_numbers_parse_back_to_the_same_bits() {
-        let values = [
-            -0.0,
-            0.0,
-            1e-7,
-            1e16,
-            -1.0 / 3.0,
-            f64::MIN_POSITIVE,
-            f64::from_bits(1),
-            f64::MAX,
-            123_456_789.123_456_79,
-            1e15,
-            0.1 + 0.2,
-        ];
-        for value in values {
-            let mut out = Vec::new();
-            let old = [[7.0, 8.0]];
-            write_patched(&mut out, b"1 7 8 9", &[2], &old, &[[value, 8.0]]).unwrap();
-            let token = out[2..].split(|&b| b == b' ').next().unwrap();
-            assert_eq!(float(token).map(f64::to_bits), Some(value.to_bits()));
-            assert!(out.ends_with(b" 8 9"));
-        }
     }
 
     #[test]

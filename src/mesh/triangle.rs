@@ -4,6 +4,8 @@
 //! what follows the announced rows, and extra columns.
 
 use super::Mesh;
+use super::ahead::take_rows;
+use super::implied::Labels;
 use super::source::{Parsed, Source, fixed_note};
 use super::text::{CORRECT, CUT_OFF, Cursor};
 use crate::error::ReadError;
@@ -52,7 +54,8 @@ pub(super) fn parse(
         let segments = segments(poly, node, &numbers, &mut fixed)?;
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
-    Ok(Parsed { mesh: Mesh { points, triangles, fixed }, x_at, notes })
+    let labels = Some(Labels { triangle: triangle_place(ele, 0).1, vertex: numbers.first });
+    Ok(Parsed { mesh: Mesh { points, triangles, fixed }, x_at, labels, notes })
 }
 
 /// Line and number of a vertex whose x stands at `x_at`.
@@ -114,7 +117,22 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     let capacity = cursor.capacity(numbers.count, "1 0 0\n".len());
     let mut points = Vec::with_capacity(capacity);
     let mut x_at = Vec::with_capacity(capacity);
-    for row in 0..numbers.count {
+    let read = |cursor: &mut Cursor<'_>| {
+        let number = cursor.integer("the number of a vertex")?;
+        Ok((number, cursor.point(format_args!("vertex {number}"))?))
+    };
+    let plain = take_rows(cursor, numbers.count, read, |(number, (at, point))| {
+        if points.is_empty() {
+            numbers.first = number.min(1);
+        }
+        let expected = number == numbers.first + points.len() as u64;
+        if expected {
+            x_at.push(at);
+            points.push(point);
+        }
+        expected
+    });
+    for row in plain..numbers.count {
         let number = vertex_number(cursor, row, &mut numbers)?;
         let (at, point) = cursor.point(format_args!("vertex {number}"))?;
         x_at.push(at);
@@ -179,22 +197,36 @@ fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Vec<[u32;
         }
     }
     let mut triangles = Vec::with_capacity(cursor.capacity(count, "1 1 2 3\n".len()));
-    for row in 0..count {
-        next_of(cursor, row, count, "triangles")?;
-        let number = cursor.integer("the number of a triangle")?;
-        let mut corners = [0; 3];
-        for corner in &mut corners {
-            *corner = numbers.index(cursor, node, format_args!("triangle {number}"))?;
-        }
-        let [a, b, c] = corners;
-        if a == b || b == c || c == a {
-            let twice = numbers.first + u64::from(if b == c { b } else { a });
-            let problem = format!("triangle {number} lists vertex {twice} twice");
-            return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
-        }
+    let read = |cursor: &mut Cursor<'_>| triangle(cursor, node, numbers);
+    let plain = take_rows(cursor, count, read, |corners| {
         triangles.push(corners);
+        true
+    });
+    for row in plain..count {
+        next_of(cursor, row, count, "triangles")?;
+        triangles.push(read(cursor)?);
     }
     Ok(triangles)
+}
+
+#[inline]
+fn triangle(
+    cursor: &mut Cursor<'_>,
+    node: &Source,
+    numbers: &Numbers,
+) -> Result<[u32; 3], ReadError> {
+    let number = cursor.integer("the number of a triangle")?;
+    let mut corners = [0; 3];
+    for corner in &mut corners {
+        *corner = numbers.index(cursor, node, format_args!("triangle {number}"))?;
+    }
+    let [a, b, c] = corners;
+    if a == b || b == c || c == a {
+        let twice = numbers.first + u64::from(if b == c { b } else { a });
+        let problem = format!("triangle {number} lists vertex {twice} twice");
+        return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
+    }
+    Ok(corners)
 }
 
 /// Adds the vertices a `.poly` lists, and those of its segments, to `fixed`. Returns the number of

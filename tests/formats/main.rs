@@ -2,6 +2,7 @@
 
 mod damage;
 mod errors;
+mod long;
 
 use gpu_smooth::{Format, MeshFile};
 use std::fs;

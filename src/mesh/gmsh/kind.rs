@@ -61,16 +61,15 @@ impl Kind {
     }
 }
 
-/// Reads the node tags that end an element's row.
+/// Reads the node tags that end an element's row: as many as the kind has, then zeros.
 #[inline]
-pub(super) fn node_tags<'t>(
+pub(super) fn node_tags(
     cursor: &mut Cursor<'_>,
     kind: Kind,
     tag: u64,
-    tags: &'t mut [u64; 4],
-) -> Result<&'t [u64], ReadError> {
-    let tags = &mut tags[..kind.nodes()];
-    for node in tags.iter_mut() {
+) -> Result<[u64; 4], ReadError> {
+    let mut tags = [0; 4];
+    for node in &mut tags[..kind.nodes()] {
         *node = cursor.integer(format_args!("a node of element {tag}"))?;
     }
     Ok(tags)

@@ -11,6 +11,7 @@ mod v4;
 
 pub(super) use reader::{parse, triangle_place, vertex_place};
 
+use super::ahead::take_rows;
 use super::source::Source;
 use super::text::{CUT_OFF, Cursor, quoted};
 use crate::error::ReadError;
@@ -25,6 +26,9 @@ pub(super) enum Version {
 
 /// Takes what the sections hold, in the order of the file.
 trait Sink {
+    /// Whether it looks at the cursor only to fail. Then what is read ahead may be handed to it as well; where it
+    /// fails it has to be as before.
+    const TAKES_AHEAD: bool = false;
     /// About this many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
     /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
@@ -147,6 +151,22 @@ fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(),
         return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
     }
     Ok(())
+}
+
+/// Reads ahead of the rows that are taken one by one, if the sink can bear it. Returns how many of `count` it took.
+fn ahead<'a, S: Sink, T: Send>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    sink: &mut S,
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
+    mut take: impl FnMut(&Cursor<'a>, &mut S, T) -> bool,
+) -> u64 {
+    if !S::TAKES_AHEAD {
+        return 0;
+    }
+    // Errors are told by who takes the rows one by one.
+    let nowhere = &Cursor::new(cursor.source);
+    take_rows(cursor, count, read, |row| take(nowhere, sink, row))
 }
 
 /// Moves past the line that ends a section of which all that was announced is read.

@@ -1,6 +1,7 @@
 //! What becomes of the nodes and elements: a mesh, or the place of one of them.
 
 use super::super::Mesh;
+use super::super::implied::Labels;
 use super::super::source::{Parsed, Source, fixed_note};
 use super::super::text::{CORRECT, Cursor};
 use super::kind::Kind;
@@ -12,7 +13,9 @@ use crate::error::ReadError;
 pub(in crate::mesh) fn parse(source: &Source) -> Result<(Version, Parsed), ReadError> {
     let mut reader = Reader::default();
     let version = walk(source, &mut reader)?;
-    let Reader { mesh, x_at, quadrilaterals, on_lower, .. } = reader;
+    let Reader { mesh, x_at, map, first_triangle, quadrilaterals, on_lower, .. } = reader;
+    let vertex = map.and_then(|map| map.first_of_run());
+    let labels = vertex.map(|vertex| Labels { triangle: first_triangle, vertex });
     let mut notes = Vec::new();
     if quadrilaterals > 0 {
         notes.push(fixed_note(quadrilaterals, "quadrilateral", ""));
@@ -21,7 +24,7 @@ pub(in crate::mesh) fn parse(source: &Source) -> Result<(Version, Parsed), ReadE
         let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
         notes.push(note.into());
     }
-    Ok((version, Parsed { mesh, x_at, notes }))
+    Ok((version, Parsed { mesh, x_at, labels, notes }))
 }
 
 /// Line and tag of a vertex, in a file that was read before.
@@ -41,12 +44,16 @@ struct Reader {
     /// The tag of each node, until the map is made.
     tags: Vec<u64>,
     map: Option<TagMap>,
+    /// The tag of the first triangle.
+    first_triangle: u64,
     quadrilaterals: u64,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
 }
 
 impl Sink for Reader {
+    const TAKES_AHEAD: bool = true;
+
     fn expect_nodes(&mut self, count: usize) {
         self.mesh.points.reserve_exact(count);
         self.x_at.reserve_exact(count);
@@ -110,6 +117,9 @@ impl Sink for Reader {
                 Err(cursor.error(problem, "Remove the triangle, or correct its nodes"))
             }
             Kind::Triangle => {
+                if self.mesh.triangles.is_empty() {
+                    self.first_triangle = tag;
+                }
                 self.mesh.triangles.push([a, b, c]);
                 Ok(())
             }

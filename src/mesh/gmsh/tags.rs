@@ -46,6 +46,14 @@ impl TagMap {
         Ok(TagMap::Sparse(map))
     }
 
+    /// The first tag, if they are consecutive.
+    pub(super) fn first_of_run(&self) -> Option<u64> {
+        match self {
+            TagMap::Run { first, .. } => Some(*first),
+            TagMap::Dense { .. } | TagMap::Sparse(_) => None,
+        }
+    }
+
     #[inline]
     pub(super) fn index(&self, tag: u64) -> Option<u32> {
         match self {

@@ -2,8 +2,9 @@
 
 use super::super::text::Cursor;
 use super::kind::{Kind, node_tags};
-use super::{Sink, row};
+use super::{Sink, ahead, row};
 use crate::error::ReadError;
+use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns their number.
 pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
@@ -21,19 +22,26 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         let size = block_size(cursor, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
-        for at in 0..size {
+        let plain = ahead(cursor, size, sink, node_tag, |_, _, tag| {
+            tags.push(tag);
+            true
+        });
+        for at in plain..size {
             row(cursor, done + at, count, "node tags")?;
-            tags.push(cursor.integer("a node tag")?);
+            tags.push(node_tag(cursor)?);
         }
-        for &tag in &tags {
-            row(cursor, done, count, "nodes")?;
-            let owner = format_args!("node {tag}");
-            let (x_at, at) = cursor.point(owner)?;
-            // z is kept, but that the row holds it shows that it is whole.
-            cursor.coordinate('z', owner)?;
+        let mut owners = tags.iter();
+        let read = |cursor: &mut Cursor<'_>| point(cursor, "a node");
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, (x_at, at)| {
+            let owner = owners.next();
+            owner.inspect(|&&tag| sink.node(cursor, tag, dimension, x_at, at)).is_some()
+        });
+        for (at, &tag) in (plain..).zip(owners) {
+            row(cursor, done + at, count, "nodes")?;
+            let (x_at, at) = point(cursor, format_args!("node {tag}"))?;
             sink.node(cursor, tag, dimension, x_at, at);
-            done += 1;
         }
+        done += size;
     }
     all_in_blocks(cursor, done, count, "nodes")?;
     Ok(count)
@@ -53,17 +61,42 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
         let kind = cursor.integer("the type of an element block")?;
         let kind = Kind::new(cursor, kind)?;
         let size = block_size(cursor, count - done, "elements")?;
-        for at in 0..size {
+        let read = |cursor: &mut Cursor<'_>| element(cursor, kind);
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, (tag, nodes)| {
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()]).is_ok()
+        });
+        for at in plain..size {
             row(cursor, done + at, count, "elements")?;
-            let tag = cursor.integer("an element tag")?;
-            let mut tags = [0; 4];
-            let tags = node_tags(cursor, kind, tag, &mut tags)?;
-            sink.element(cursor, tag, kind, tags)?;
+            let (tag, nodes) = element(cursor, kind)?;
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
         }
         done += size;
     }
     all_in_blocks(cursor, done, count, "elements")?;
     Ok(count)
+}
+
+#[inline]
+fn node_tag(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+    cursor.integer("a node tag")
+}
+
+/// Reads where a node's x stands, and x and y.
+#[inline]
+fn point(
+    cursor: &mut Cursor<'_>,
+    owner: impl Display + Copy,
+) -> Result<(usize, [f64; 2]), ReadError> {
+    let point = cursor.point(owner)?;
+    // z is kept, but that the row holds it shows that it is whole.
+    cursor.coordinate('z', owner)?;
+    Ok(point)
+}
+
+#[inline]
+fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<(u64, [u64; 4]), ReadError> {
+    let tag = cursor.integer("an element tag")?;
+    Ok((tag, node_tags(cursor, kind, tag)?))
 }
 
 /// Reads the size of a block, of which the section's count leaves `left`.
