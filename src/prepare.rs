@@ -1,6 +1,7 @@
 //! From a mesh to what the engines are given.
 
 use crate::coloring::Coloring;
+use crate::curve::along_curve;
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
@@ -10,7 +11,8 @@ use crate::topology::Topology;
 pub(crate) fn prepare(mesh: &Mesh) -> Result<(Topology, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;
-    let coloring = Coloring::new(&topology);
-    let problem = Problem::new(mesh, &topology, &coloring);
+    let curve = along_curve(mesh, &topology);
+    let coloring = Coloring::along(&topology, &curve);
+    let problem = Problem::along(mesh, &topology, &coloring, &curve);
     Ok((topology, problem))
 }

@@ -1,12 +1,14 @@
 //! What both engines are given: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::coloring::{Coloring, UNCOLORED};
+use crate::curve::{along_curve, bounds};
+use crate::groups::{atomics, place, plain, running_sum, split};
 use crate::mesh::Mesh;
 use crate::topology::Topology;
 
@@ -37,29 +39,30 @@ impl Problem {
 
     /// Lays out a mesh with its topology and coloring.
     pub fn new(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Self {
+        Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
+    }
+
+    /// The same, given the vertices in use along a curve.
+    pub(crate) fn along(
+        mesh: &Mesh,
+        topology: &Topology,
+        coloring: &Coloring,
+        curve: &[u32],
+    ) -> Self {
         let (center, scale) = normalization(mesh, topology);
         let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
 
-        let vertices = order(mesh, topology, coloring);
-        let mut number = vec![u32::MAX; mesh.points.len()];
-        for (new, &v) in vertices.iter().enumerate() {
-            number[v as usize] = new as u32;
-        }
-        let mut colors = vec![0..0; coloring.count() as usize];
-        for (new, &v) in vertices.iter().enumerate() {
-            let color = coloring.colors()[v as usize];
-            if color != UNCOLORED {
-                let range = &mut colors[color as usize];
-                if range.start == range.end {
-                    range.start = new as u32;
-                }
-                range.end = new as u32 + 1;
-            }
-        }
+        let (vertices, colors) = order(topology, coloring, curve);
+        let number = atomics(mesh.points.len(), u32::MAX);
+        vertices.par_iter().enumerate().for_each(|(new, &v)| {
+            number[v as usize].store(new as u32, Relaxed);
+        });
+        let number = plain(number);
 
         let free = colors.last().map_or(0, |range| range.end) as usize;
-        let (ring_start, ring) = rings(topology, &vertices[..free], &number);
+        let (ring_start, ring) = rings(topology, &vertices[..free], curve, &number);
         let triangles = triangles(topology, vertices.len(), &number);
+        drop(number);
 
         let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
         let area = |t: &[u32; 3]| {
@@ -159,17 +162,6 @@ fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
     (center, (-length.log2().round()).exp2())
 }
 
-/// The bounding box of the vertices in use.
-fn bounds(mesh: &Mesh, topology: &Topology) -> (DVec2, DVec2) {
-    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    let of = |t: &[u32; 3]| {
-        let [p, q, r] = t.map(|v| DVec2::from(mesh.points[v as usize]));
-        (p.min(q).min(r), p.max(q).max(r))
-    };
-    let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
-    topology.triangles().par_iter().map(of).reduce(|| none, both)
-}
-
 /// The sum of a number of each triangle, in an order that does not depend on the number of threads.
 fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
     let parts = triangles.par_chunks(4096).map(|part| part.iter().map(&of).sum());
@@ -177,101 +169,94 @@ fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
 }
 
 /// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
-fn rings(topology: &Topology, vertices: &[u32], number: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let mut start = Vec::with_capacity(vertices.len() + 1);
-    let mut end = 0;
-    start.push(end);
-    for &v in vertices {
-        end += topology.star(v).len() as u32;
-        start.push(end);
-    }
-    let ring: Vec<AtomicU32> = (0..end).into_par_iter().map(|_| AtomicU32::new(0)).collect();
-    // In the mesh's own order, where the triangles around a vertex are mostly near those around the
-    // vertex before it. Each writes its own row; they are atomic only because rows lie anywhere.
-    (0..number.len() as u32).into_par_iter().with_min_len(1 << 12).for_each_init(
-        Vec::new,
-        |edges, v| {
-            if topology.free()[v as usize] {
-                topology.ring_edges(v, edges);
-                let row = &ring[start[number[v as usize] as usize] as usize..][..edges.len()];
-                for (&(from, _), to) in edges.iter().zip(row) {
-                    to.store(number[from as usize], Ordering::Relaxed);
-                }
+fn rings(
+    topology: &Topology,
+    vertices: &[u32],
+    curve: &[u32],
+    number: &[u32],
+) -> (Vec<u32>, Vec<u32>) {
+    let lengths = vertices.par_iter().map(|&v| topology.star(v).len() as u32);
+    let mut start: Vec<u32> = lengths.chain([0]).collect();
+    let end = running_sum(&mut start, |start| start);
+    let ring = atomics(end as usize, 0);
+    // Along the curve, where the triangles around a vertex are mostly those around the vertices before it. Each
+    // writes its own row; they are atomic only because rows lie anywhere.
+    curve.par_iter().with_min_len(1 << 12).filter(|&&v| topology.free()[v as usize]).for_each(
+        |&v| {
+            let row = &ring[start[number[v as usize] as usize] as usize..];
+            for (to, from) in row.iter().zip(topology.ring_of(v)) {
+                to.store(number[from as usize], Relaxed);
             }
         },
     );
-    (start, ring.into_iter().map(AtomicU32::into_inner).collect())
+    (start, plain(ring))
 }
 
 /// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
 /// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
 fn triangles(topology: &Topology, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
-    let renumbered = |t: &[u32; 3]| t.map(|v| number[v as usize]);
+    let given = topology.triangles();
+    let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
     let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
-    let mut end = vec![0u32; vertices];
-    for t in topology.triangles() {
-        end[least(&renumbered(t)) as usize] += 1;
-    }
-    let mut sum = 0;
-    for end in &mut end {
-        sum += *end;
-        *end = sum;
-    }
-    let mut all = vec![[0; 3]; sum as usize];
-    for t in topology.triangles().iter().rev() {
-        let t = renumbered(t);
-        let end = &mut end[least(&t) as usize];
-        *end -= 1;
-        all[*end as usize] = t;
-    }
+    let zeros = || std::array::from_fn(|_| AtomicU32::new(0));
+    let all: Vec<[AtomicU32; 3]> = (0..given.len()).into_par_iter().map(|_| zeros()).collect();
+    let keys = |t| [least(&renumbered(t))];
+    place(given.len(), vertices, keys, |t, at| {
+        for (corner, to) in renumbered(t).into_iter().zip(&all[at]) {
+            to.store(corner, Relaxed);
+        }
+    });
+    let mut all: Vec<[u32; 3]> = all.into_iter().map(|t| t.map(AtomicU32::into_inner)).collect();
     all.par_chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
     all
 }
 
-/// The vertices in use, in the order [`Problem`] promises.
-fn order(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Vec<u32> {
-    let (low, high) = bounds(mesh, topology);
-    let cells = f64::from(u32::MAX) / (high - low).max_element();
-    let mut keyed: Vec<(u32, u64, u32)> = (0..mesh.points.len() as u32)
-        .into_par_iter()
-        .filter(|&v| !topology.star(v).is_empty())
-        .map(|v| {
-            let cell = (DVec2::from(mesh.points[v as usize]) - low) * cells;
-            (coloring.colors()[v as usize], z_order(cell.x as u32, cell.y as u32), v)
-        })
-        .collect();
-    // UNCOLORED is the largest color, so fixed vertices come last.
-    keyed.par_sort_unstable();
-    let color_of = |&(color, ..): &(u32, u64, u32)| color;
-    for color in keyed.chunk_by_mut(|a, b| color_of(a) == color_of(b)) {
-        color
-            .par_chunks_mut(Problem::BLOCK)
-            .for_each(|block| block.sort_by_key(|&(.., v)| topology.star(v).len()));
-    }
-    keyed.into_iter().map(|(_, _, v)| v).collect()
-}
-
-/// Position along the Z-order curve: the bits of x and y interleaved.
-fn z_order(x: u32, y: u32) -> u64 {
-    let spread = |bits: u32| {
-        let mut b = u64::from(bits);
-        b = (b | b << 16) & 0x0000_ffff_0000_ffff;
-        b = (b | b << 8) & 0x00ff_00ff_00ff_00ff;
-        b = (b | b << 4) & 0x0f0f_0f0f_0f0f_0f0f;
-        b = (b | b << 2) & 0x3333_3333_3333_3333;
-        (b | b << 1) & 0x5555_5555_5555_5555
+/// The vertices in the order [`Problem`] promises, and the range of each color.
+fn order(topology: &Topology, coloring: &Coloring, curve: &[u32]) -> (Vec<u32>, Vec<Range<u32>>) {
+    const CHUNK: usize = 1 << 14;
+    let colors = coloring.count() as usize;
+    // Fixed vertices come last.
+    let slot = |v: u32| match coloring.colors()[v as usize] {
+        UNCOLORED => colors,
+        color => color as usize,
     };
-    spread(x) | spread(y) << 1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn z_order_interleaves() {
-        assert_eq!(z_order(0b11, 0b00), 0b0101);
-        assert_eq!(z_order(0b01, 0b10), 0b1001);
-        assert_eq!(z_order(u32::MAX, u32::MAX), u64::MAX);
+    let counts = curve.par_chunks(CHUNK).map(|chunk| {
+        let mut counts = vec![0; colors + 1];
+        chunk.iter().for_each(|&v| counts[slot(v)] += 1);
+        counts
+    });
+    let counts: Vec<Vec<usize>> = counts.collect();
+    // What each chunk has of a color goes behind what the chunk before it has.
+    let mut vertices = vec![0; curve.len()];
+    let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
+    let mut targets: Vec<Vec<&mut [u32]>> = counts.iter().map(|_| Vec::new()).collect();
+    for (i, part) in split(&mut vertices, lengths).into_iter().enumerate() {
+        targets[i % counts.len()].push(part);
     }
+    curve.par_chunks(CHUNK).zip(targets).for_each(|(chunk, mut targets)| {
+        for &v in chunk {
+            if let Some(to) = targets[slot(v)].split_off_first_mut() {
+                *to = v;
+            }
+        }
+    });
+    let mut rest = &mut vertices[..];
+    let mut ranges = Vec::new();
+    let mut end = 0;
+    for color in 0..=colors {
+        let length = counts.iter().map(|counts| counts[color]).sum();
+        ranges.push(end..end + length as u32);
+        end += length as u32;
+        let color = rest.split_off_mut(..length).unwrap_or_default();
+        color.par_chunks_mut(Problem::BLOCK).for_each_init(Vec::new, |keyed, block| {
+            keyed.clear();
+            keyed.extend(block.iter().map(|&v| (topology.star(v).len(), v)));
+            keyed.sort_by_key(|&(degree, _)| degree);
+            for (vertex, &(_, v)) in block.iter_mut().zip(&*keyed) {
+                *vertex = v;
+            }
+        });
+    }
+    ranges.truncate(colors);
+    (vertices, ranges)
 }

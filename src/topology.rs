@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::error::MeshError;
+use crate::groups::Groups;
 use crate::mesh::Mesh;
 use crate::validity;
 
@@ -11,40 +12,8 @@ use crate::validity;
 pub struct Topology {
     triangles: Vec<[u32; 3]>,
     free: Vec<bool>,
-    stars: Stars,
-}
-
-/// The triangles at each vertex, in ascending order, as compressed rows.
-#[derive(Clone, Debug)]
-struct Stars {
-    start: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Stars {
-    fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
-        let mut start = vec![0u32; vertices + 1];
-        for &v in triangles.as_flattened() {
-            start[v as usize + 1] += 1;
-        }
-        for v in 0..vertices {
-            start[v + 1] += start[v];
-        }
-        let mut next = start.clone();
-        let mut rows = vec![0u32; triangles.len() * 3];
-        for (t, corners) in triangles.iter().enumerate() {
-            for &v in corners {
-                rows[next[v as usize] as usize] = t as u32;
-                next[v as usize] += 1;
-            }
-        }
-        Self { start, triangles: rows }
-    }
-
-    fn of(&self, vertex: u32) -> &[u32] {
-        let v = vertex as usize;
-        &self.triangles[self.start[v] as usize..self.start[v + 1] as usize]
-    }
+    /// The triangles at each vertex.
+    stars: Groups,
 }
 
 /// No triangle lies across this edge.
@@ -63,16 +32,18 @@ impl Topology {
     pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
-        let stars = Stars::new(points.len(), triangles);
+        let mut stars = stars(points.len(), triangles);
+        check_size(points, &stars)?;
         let mut free = vec![false; points.len()];
         // What most meshes are, all consistent and counter-clockwise, is seen from the stars alone.
-        let triangles = if are_positive(points, triangles) && close(triangles, &stars, &mut free) {
-            triangles.clone()
-        } else {
-            let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
-            close(&wound, &stars, &mut free);
-            wound
-        };
+        let triangles =
+            if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
+                triangles.par_iter().copied().collect()
+            } else {
+                let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
+                close(&wound, &mut stars, &mut free);
+                wound
+            };
         for &v in fixed {
             free[v as usize] = false;
         }
@@ -107,26 +78,23 @@ impl Topology {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// The triangles at a vertex, ascending.
+    /// The triangles at a vertex: counter-clockwise around a free one, starting with the least.
     pub fn star(&self, vertex: u32) -> &[u32] {
-        self.stars.of(vertex)
+        self.stars.of(vertex as usize)
     }
 
     /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the
     /// second corner of its first triangle. Each neighbor makes a
     /// triangle of the patch with the vertex and the neighbor after it.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
-        let mut edges = Vec::new();
-        self.ring_edges(free_vertex, &mut edges);
-        edges.into_iter().map(|(from, _)| from).collect()
+        self.ring_of(free_vertex).collect()
     }
 
-    /// The same as edges of the ring from each neighbor to the next, into memory that is used again.
-    pub(crate) fn ring_edges(&self, free_vertex: u32, edges: &mut Vec<(u32, u32)>) {
-        outer_edges(&self.triangles, &self.stars, free_vertex, edges);
-        if !chain(edges) {
-            edges.clear();
-        }
+    /// The same, without memory of its own.
+    #[inline]
+    pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        let star = if self.free[free_vertex as usize] { self.star(free_vertex) } else { &[] };
+        star.iter().map(move |&t| outer_edge(&self.triangles[t as usize], free_vertex).0)
     }
 }
 
@@ -138,16 +106,16 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
         return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
     }
-    if let Some(vertex) =
-        points.par_iter().position_first(|p| !(p[0].is_finite() && p[1].is_finite()))
-    {
+    let is_infinite = |p: &[f64; 2]| !(p[0].is_finite() & p[1].is_finite());
+    if let Some(vertex) = first(points, is_infinite) {
         return Err(MeshError::NotFinite { vertex: vertex as u32 });
     }
+    let count = points.len() as u32;
     let is_bad = |t: &[u32; 3]| {
-        let inside = t.iter().all(|&v| (v as usize) < points.len());
-        !inside || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
+        let outside = (t[0] >= count) | (t[1] >= count) | (t[2] >= count);
+        outside | (t[0] == t[1]) | (t[1] == t[2]) | (t[2] == t[0])
     };
-    if let Some(t) = triangles.par_iter().position_first(is_bad) {
+    if let Some(t) = first(triangles, is_bad) {
         let corners = &triangles[t];
         for (i, &vertex) in corners.iter().enumerate() {
             if vertex as usize >= points.len() {
@@ -159,14 +127,6 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
             }
         }
     }
-    // Vertices in no triangle may be anywhere.
-    let size = |t: &[u32; 3]| {
-        t.iter().flat_map(|&v| points[v as usize]).fold(0.0, |most: f64, x| most.max(x.abs()))
-    };
-    let largest = triangles.par_iter().map(size).reduce(|| 0.0, f64::max);
-    if !(1e-100..=1e100).contains(&largest) {
-        return Err(MeshError::OutOfRange { size: largest });
-    }
     if let Some(&vertex) = fixed.iter().find(|&&v| v as usize >= points.len()) {
         let vertices = points.len();
         return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
@@ -174,19 +134,43 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
+/// The first of the items that is bad.
+fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    const CHUNK: usize = 1 << 14;
+    // Looking at all of a chunk goes without branches.
+    let any = |chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
+    let chunk = items.par_chunks(CHUNK).position_first(any)?;
+    items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
+}
+
+/// Checks that coordinates are of a size to compute with. Vertices in no triangle may be anywhere.
+fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
+    let size = |(v, p): (usize, &[f64; 2])| match stars.of(v) {
+        [] => 0.0,
+        _ => p[0].abs().max(p[1].abs()),
+    };
+    let size = points.par_iter().enumerate().map(size).reduce(|| 0.0, f64::max);
+    match size {
+        1e-100..=1e100 => Ok(()),
+        _ => Err(MeshError::OutOfRange { size }),
+    }
+}
+
 /// The triangle across each edge (corner i to corner i + 1) of each triangle, or `NONE`.
-fn neighbors(triangles: &[[u32; 3]], stars: &Stars) -> Result<Vec<[u32; 3]>, MeshError> {
+fn neighbors(triangles: &[[u32; 3]], stars: &Groups) -> Result<Vec<[u32; 3]>, MeshError> {
     let across = |(t, corners): (usize, &[u32; 3])| {
         let mut found = [NONE; 3];
         for i in 0..3 {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
             let at_edge = |&&o: &&u32| o as usize != t && triangles[o as usize].contains(&b);
-            let mut others = stars.of(a).iter().filter(at_edge);
+            let mut others = stars.of(a as usize).iter().filter(at_edge);
             if let Some(&other) = others.next() {
                 found[i] = other;
                 if others.next().is_some() {
-                    let all = stars.of(a).iter().map(|&o| o as usize);
-                    let triangles = all.filter(|&o| triangles[o].contains(&b)).collect();
+                    let all = stars.of(a as usize).iter().map(|&o| o as usize);
+                    let mut triangles: Vec<_> =
+                        all.filter(|&o| triangles[o].contains(&b)).collect();
+                    triangles.sort_unstable();
                     return Err(MeshError::EdgeOfThree { edge: [a, b], triangles });
                 }
             }
@@ -251,68 +235,134 @@ fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
     triangles.par_iter().with_min_len(1 << 12).all(|t| validity::doubled_area(points, t) > 0.0)
 }
 
-/// Notes in `closed` around which vertices the triangles close one cycle. False, with notes
-/// of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
+/// The triangles at each vertex, in ascending order.
+fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
+    Groups::new(triangles.len(), vertices, |t| triangles[t])
+}
+
+/// Notes in `closed` around which vertices the triangles close one cycle, and sorts those of each by it. False, with
+/// notes of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
 /// two triangles meet.
-fn close(triangles: &[[u32; 3]], stars: &Stars, closed: &mut [bool]) -> bool {
+fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
-    closed
-        .par_chunks_mut(CHUNK)
+    let stars = stars.chunks_mut(CHUNK).into_par_iter();
+    stars
+        .zip(closed.par_chunks_mut(CHUNK))
         .enumerate()
-        .map(|(chunk, closed)| {
+        .map(|(chunk, ((bounds, stars), closed))| {
             let mut edges = Vec::new();
             let mut consistent = true;
-            for (vertex, closed) in (chunk * CHUNK..).zip(closed) {
-                outer_edges(triangles, stars, vertex as u32, &mut edges);
+            for (i, closed) in closed.iter_mut().enumerate() {
+                let vertex = (chunk * CHUNK + i) as u32;
+                let star = (bounds[i] - bounds[0]) as usize..(bounds[i + 1] - bounds[0]) as usize;
+                let star = &mut stars[star];
+                outer_edges(triangles, star, vertex, &mut edges);
                 *closed = chain(&mut edges);
-                // Those of a cycle are all different.
-                consistent &= *closed || are_different(&edges);
+                if *closed {
+                    for (t, edge) in star.iter_mut().zip(&edges) {
+                        *t = edge.triangle;
+                    }
+                } else {
+                    // Those of a cycle are all different.
+                    consistent &= are_different(&edges);
+                }
             }
             consistent
         })
         .reduce(|| true, |a, b| a && b)
 }
 
+/// The edge of a triangle that does not touch one of its vertices.
+#[derive(Clone, Copy, Default)]
+struct OuterEdge {
+    from: u32,
+    to: u32,
+    triangle: u32,
+}
+
+/// The ends of a triangle's edge that does not touch the vertex. Without branches: which corner it is nobody foretells.
+#[inline]
+fn outer_edge(corners: &[u32; 3], vertex: u32) -> (u32, u32) {
+    let [is_a, is_b, is_c] = corners.map(|corner| usize::from(corner == vertex));
+    (corners[is_a + 2 * is_b], corners[2 * is_a + is_c])
+}
+
 /// The edges of a vertex's triangles that do not touch it, in the order of the triangles.
 #[inline]
-fn outer_edges(triangles: &[[u32; 3]], stars: &Stars, vertex: u32, edges: &mut Vec<(u32, u32)>) {
+fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Vec<OuterEdge>) {
     edges.clear();
-    edges.extend(stars.of(vertex).iter().map(|&t| {
-        let [a, b, c] = triangles[t as usize];
-        if a == vertex {
-            (b, c)
-        } else if b == vertex {
-            (c, a)
-        } else {
-            (a, b)
-        }
+    edges.extend(star.iter().map(|&triangle| {
+        let (from, to) = outer_edge(&triangles[triangle as usize], vertex);
+        OuterEdge { from, to, triangle }
     }));
 }
 
 /// Sorts edges into one cycle of three or more, each from where the one before it ends; false if they
 /// make none.
-fn chain(edges: &mut [(u32, u32)]) -> bool {
-    if edges.len() < 3 {
+fn chain(edges: &mut [OuterEdge]) -> bool {
+    match edges.len() {
+        0..3 => false,
+        3..=FEW => chain_few(edges),
+        _ => chain_many(edges),
+    }
+}
+
+/// Edges that are compared all at once.
+const FEW: usize = 8;
+
+fn chain_few(edges: &mut [OuterEdge]) -> bool {
+    let mut from = [NONE; FEW];
+    for (from, edge) in from.iter_mut().zip(&*edges) {
+        *from = edge.from;
+    }
+    // Of the edges that start where another ends: their number times FEW, and the sum of their places.
+    let after = |edge: &OuterEdge| {
+        let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
+        (0..FEW).map(|k| found(k) as u32).sum::<u32>()
+    };
+    let mut next = [0; FEW];
+    let mut single = true;
+    for (next, edge) in next.iter_mut().zip(&*edges) {
+        let after = after(edge);
+        single &= after / FEW as u32 == 1;
+        *next = after as usize % FEW;
+    }
+    if !single {
         return false;
     }
-    let first = edges[0].0;
+    let mut sorted = [OuterEdge::default(); FEW];
+    let mut at = 0;
+    for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
+        // Back at the first before all were met.
+        if i > 0 && at == 0 {
+            return false;
+        }
+        *to = edges[at];
+        at = next[at];
+    }
+    edges.copy_from_slice(&sorted[..edges.len()]);
+    at == 0
+}
+
+fn chain_many(edges: &mut [OuterEdge]) -> bool {
+    let first = edges[0].from;
     for next in 1..edges.len() {
-        let at = edges[next - 1].1;
-        let Some(found) = edges[next..].iter().position(|&(from, _)| from == at) else {
+        let at = edges[next - 1].to;
+        let Some(found) = edges[next..].iter().position(|e| e.from == at) else {
             return false;
         };
         edges.swap(next, next + found);
-        let again = edges[next + 1..].iter().any(|&(from, _)| from == at);
+        let again = edges[next + 1..].iter().any(|e| e.from == at);
         if again || at == first {
             return false;
         }
     }
-    edges[edges.len() - 1].1 == first
+    edges[edges.len() - 1].to == first
 }
 
 /// Whether no two edges start at one vertex, nor end at one.
-fn are_different(edges: &[(u32, u32)]) -> bool {
-    let alike = |a: &(u32, u32), b: &(u32, u32)| a.0 == b.0 || a.1 == b.1;
+fn are_different(edges: &[OuterEdge]) -> bool {
+    let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
     edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)))
 }
 
@@ -396,8 +446,8 @@ mod tests {
         // must not make a ring of either half.
         let ring_of = |triangles: &[[u32; 3]]| {
             let mut edges = Vec::new();
-            outer_edges(triangles, &Stars::new(7, triangles), 0, &mut edges);
-            chain(&mut edges).then(|| edges.iter().map(|e| e.0).collect::<Vec<_>>())
+            outer_edges(triangles, stars(7, triangles).of(0), 0, &mut edges);
+            chain(&mut edges).then(|| edges.iter().map(|e| e.from).collect::<Vec<_>>())
         };
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
         assert_eq!(ring_of(&triangles), None);

@@ -30,10 +30,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("mesh", &["error"]),
     ("validity", &["error", "topology", "mesh"]),
     ("clamp", &["error", "metric", "topology", "validity"]),
-    ("topology", &["error", "mesh", "validity"]),
+    ("groups", &[]),
+    ("topology", &["error", "groups", "mesh", "validity"]),
     ("boundary", &["topology"]),
-    ("coloring", &["topology"]),
-    ("problem", &["coloring", "mesh", "topology"]),
+    ("curve", &["groups", "mesh", "topology"]),
+    ("coloring", &["groups", "topology", "mesh"]),
+    ("problem", &["coloring", "curve", "groups", "mesh", "topology"]),
     ("engine", &["gpu", "metric", "plan"]),
     ("multilevel", &["engine", "gpu", "metric", "plan", "problem"]),
     (
@@ -41,7 +43,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["dual", "engine", "gpu", "mesh", "metric", "multilevel", "plan", "prepare", "problem"],
     ),
     ("opening", &["cpu", "engine", "metric", "plan", "problem"]),
-    ("prepare", &["coloring", "error", "mesh", "problem", "topology"]),
+    ("prepare", &["coloring", "curve", "error", "mesh", "problem", "topology"]),
     (
         "gpu",
         &[

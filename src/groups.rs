@@ -1,0 +1,171 @@
+//! Numbers grouped by keys, as compressed rows: a counting sort on all cores.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+/// Parts that are counted at once, at most: each has a counter of its own for every group.
+const MOST_PARTS: usize = 8;
+
+/// Fewer numbers than this are not worth a part of their own.
+const SMALL: usize = 1 << 14;
+
+/// Numbers group by group, ascending within each.
+#[derive(Clone, Debug)]
+pub(crate) struct Groups {
+    start: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Groups {
+    /// Groups the numbers below `items`, each with `N` keys below `groups`.
+    pub(crate) fn new<const N: usize>(
+        items: usize,
+        groups: usize,
+        keys: impl Fn(usize) -> [u32; N] + Sync,
+    ) -> Self {
+        let grouped = atomics(items * N, 0);
+        let put = |item: usize, at: usize| grouped[at].store(item as u32, Relaxed);
+        let start = place(items, groups, keys, put);
+        Self { start, items: plain(grouped) }
+    }
+
+    /// Where each group starts, and one past the last.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.start
+    }
+
+    /// The numbers in a group.
+    pub(crate) fn of(&self, group: usize) -> &[u32] {
+        &self.items[self.start[group] as usize..self.start[group + 1] as usize]
+    }
+
+    /// Every `chunk` groups: where each starts and the last ends, and their numbers.
+    pub(crate) fn chunks_mut(&mut self, chunk: usize) -> Vec<(&[u32], &mut [u32])> {
+        let Self { start, items } = self;
+        let last = start.len() - 1;
+        let bounds = (0..last).step_by(chunk).map(|first| &start[first..=last.min(first + chunk)]);
+        let length = |bounds: &[u32]| (bounds[bounds.len() - 1] - bounds[0]) as usize;
+        let parts = split(items, bounds.clone().map(length));
+        bounds.zip(parts).collect()
+    }
+
+    /// All numbers.
+    pub(crate) fn into_items(self) -> Vec<u32> {
+        self.items
+    }
+}
+
+/// Says where each of the numbers below `items` stands once they are grouped by their keys, and returns where each
+/// group starts, and one past the last. `put` is called with a number and each place of it, from any thread.
+pub(crate) fn place<const N: usize>(
+    items: usize,
+    groups: usize,
+    keys: impl Fn(usize) -> [u32; N] + Sync,
+    put: impl Fn(usize, usize) + Sync,
+) -> Vec<u32> {
+    let parts = rayon::current_num_threads().min(MOST_PARTS).min(items.div_ceil(SMALL)).max(1);
+    let part = |part: usize| part * items / parts..(part + 1) * items / parts;
+    // The counters of a group stand side by side, so that their running sum is where each part
+    // writes. They are atomic only because any part may meet any group: no two share a counter.
+    let mut next = atomics(groups * parts, 0);
+    (0..parts).into_par_iter().for_each(|p| {
+        for key in part(p).flat_map(&keys) {
+            let count = &next[key as usize * parts + p];
+            count.store(count.load(Relaxed) + 1, Relaxed);
+        }
+    });
+    let sum = running_sum(&mut next, AtomicU32::get_mut);
+    let firsts = next.par_chunks(parts).map(|of_group| of_group[0].load(Relaxed));
+    let start = firsts.chain([sum]).collect();
+    (0..parts).into_par_iter().for_each(|p| {
+        for item in part(p) {
+            for key in keys(item) {
+                let next = &next[key as usize * parts + p];
+                let at = next.load(Relaxed);
+                next.store(at + 1, Relaxed);
+                put(item, at as usize);
+            }
+        }
+    });
+    start
+}
+
+/// Parts of a slice, of the lengths given.
+pub(crate) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    let take = |length| slice.split_off_mut(..length).unwrap_or_default();
+    lengths.map(take).collect()
+}
+
+/// Replaces each number by the sum of those before it, and returns the sum of all.
+pub(crate) fn running_sum<T: Send>(
+    cells: &mut [T],
+    number: impl Fn(&mut T) -> &mut u32 + Sync,
+) -> u32 {
+    const CHUNK: usize = 1 << 14;
+    let sums = cells.par_chunks_mut(CHUNK).map(|chunk| chunk.iter_mut().map(|c| *number(c)).sum());
+    let sums: Vec<u32> = sums.collect();
+    let mut sum = 0;
+    let before = sums.iter().map(|own| {
+        sum += own;
+        sum - own
+    });
+    let before: Vec<u32> = before.collect();
+    cells.par_chunks_mut(CHUNK).zip(before).for_each(|(chunk, mut sum)| {
+        for cell in chunk {
+            let number = number(cell);
+            sum += std::mem::replace(number, sum);
+        }
+    });
+    sum
+}
+
+/// One number again and again, that several threads may overwrite.
+pub(crate) fn atomics(count: usize, number: u32) -> Vec<AtomicU32> {
+    (0..count).into_par_iter().map(|_| AtomicU32::new(number)).collect()
+}
+
+/// What was written.
+pub(crate) fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
+    atomics.into_iter().map(AtomicU32::into_inner).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_are_those_of_a_plain_loop_whatever_the_threads() {
+        // Enough for three parts; the last group stays empty.
+        let keys = |item: usize| [item * item % 997, item % 131].map(|key| key as u32);
+        let (items, groups) = (3 * SMALL, 998);
+        let mut expected = vec![Vec::new(); groups];
+        for item in 0..items {
+            keys(item).iter().for_each(|&key| expected[key as usize].push(item as u32));
+        }
+        for threads in 1..=3 {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut found = pool.install(|| Groups::new(items, groups, keys));
+            for (group, expected) in expected.iter().enumerate() {
+                assert_eq!(found.of(group), expected, "group {group}, {threads} threads");
+            }
+            let chunks = found.chunks_mut(100);
+            assert_eq!(chunks.len(), 10);
+            assert!(chunks.iter().all(|(bounds, chunk)| {
+                chunk.len() as u32 == bounds[bounds.len() - 1] - bounds[0]
+            }));
+            assert_eq!(found.into_items(), expected.concat());
+        }
+    }
+
+    #[test]
+    fn sums_run_across_chunks() {
+        let mut cells: Vec<u32> = (0..50_000).map(|i| i % 7).collect();
+        let plain: Vec<u32> =
+            cells.iter().scan(0, |sum, &cell| Some(std::mem::replace(sum, *sum + cell))).collect();
+        let last = cells[49_999];
+        assert_eq!(running_sum(&mut cells, |cell| cell), plain[49_999] + last);
+        assert_eq!(cells, plain);
+        assert_eq!(running_sum(&mut [], |cell: &mut u32| cell), 0);
+    }
+}
