@@ -13,7 +13,7 @@ mod support;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use gpu_smooth::gpu::GpuEngine;
-use gpu_smooth::{Coloring, CpuEngine, Engine, Gpu, Metric, Options, Problem, Topology};
+use gpu_smooth::{CpuEngine, Engine, Gpu, Metric, Options, Problem, prepare};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -28,8 +28,7 @@ fn problem(size: usize) -> &'static Problem {
     static PROBLEMS: [OnceLock<Problem>; SIDES.len()] = [const { OnceLock::new() }; SIDES.len()];
     PROBLEMS[size].get_or_init(|| {
         let mesh = mesh::mixed(SIDES[size], 1);
-        let topology = Topology::new(&mesh).unwrap();
-        Problem::new(&mesh, &topology, &Coloring::new(&topology))
+        prepare(&mesh).unwrap().1
     })
 }
 

@@ -116,6 +116,7 @@ pub use mesh::{Format, Mesh, MeshFile, Place};
 pub use metric::{Corner, Metric, Properties, Stiffness, UnknownMetric};
 pub use options::{Desired, Goal, Method, Options};
 pub use plan::{Derivatives, Plan, Sharpness, Stop, StopRule};
+pub use prepare::prepare;
 pub use problem::Problem;
 pub use quality::Quality;
 pub use scheme::Scheme;

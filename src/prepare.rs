@@ -7,8 +7,12 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::topology::Topology;
 
-/// Checks a mesh, colors and lays it out.
-pub(crate) fn prepare(mesh: &Mesh) -> Result<(Topology, Problem), MeshError> {
+/// Checks a mesh, colors and lays it out: what [`Smoother::new`](crate::Smoother::new) does, for those who drive an
+/// [`Engine`](crate::Engine) themselves.
+///
+/// # Errors
+/// [`MeshError`] for a mesh that cannot be smoothed.
+pub fn prepare(mesh: &Mesh) -> Result<(Topology, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;
     let curve = along_curve(mesh, &topology);

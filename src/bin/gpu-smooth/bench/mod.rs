@@ -7,7 +7,7 @@ mod report;
 mod sweeps;
 
 use gpu_smooth::gpu::{GpuEngine, Kernel};
-use gpu_smooth::{Coloring, CpuEngine, Engine, Gpu, Mesh, Options, Problem, SmoothError, Topology};
+use gpu_smooth::{CpuEngine, Engine, Gpu, Mesh, Options, Problem, SmoothError, prepare};
 
 use crate::cli::{BenchArgs, EngineChoice};
 use crate::smooth::read;
@@ -60,11 +60,10 @@ fn measure_all(
     explain: &Explain<'_>,
     rows: &mut Vec<Row>,
 ) -> Result<(), String> {
-    let topology = Topology::new(mesh).map_err(|error| explain(error.into()))?;
-    if topology.free_count() == 0 {
+    let (_, problem) = prepare(mesh).map_err(|error| explain(error.into()))?;
+    if problem.free_count() == 0 {
         return Err("the mesh has no free vertex: there is nothing to measure".into());
     }
-    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
     for place in places {
         match measure(args, mesh, &problem, place) {
             Ok(row) => {
