@@ -84,7 +84,7 @@ fn draw(path: &str, curves: &BTreeMap<String, Curve>) -> Result<(), Box<dyn Erro
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
+        .position(SeriesLabelPosition::MiddleMiddle)
         .background_style(WHITE)
         .border_style(RGBColor(180, 180, 180))
         .label_font(("sans-serif", 14))
