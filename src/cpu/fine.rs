@@ -109,6 +109,8 @@ impl FineLevel for CpuFine<'_> {
         self.sweep(omega).await?;
         let Self { metric, problem, positions, gradient, .. } = self;
         sweep::gradient(*metric, problem, positions, self.step.sharpness, gradient);
+        // Room for a direction is taken anew: that of the last goes first.
+        self.direction = Vec::new();
         self.direction = match &self.hierarchy {
             Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
             None => vec![Vec2::ZERO; gradient.len()],

@@ -29,15 +29,18 @@ pub(super) fn correction(
         ring(v).fold(Vec2::ZERO, sum)
     };
     let diagonal = hierarchy.inverse_diagonal();
-    let scaled = rows(gradient.len(), |v| (gradient[v].as_vec2() * diagonal[v]).extend(sizes[v]));
-    let smoothed = rows(gradient.len(), |v| {
-        gradient[v].as_vec2() * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
-    });
-    let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
-    let restricted = rows(first.operator.rows(), |aggregate| {
-        let members = &members[starts[aggregate] as usize..starts[aggregate + 1] as usize];
-        -members.iter().map(|&v| smoothed[v as usize]).sum::<Vec2>()
-    });
+    let restricted = {
+        let scaled =
+            rows(gradient.len(), |v| (gradient[v].as_vec2() * diagonal[v]).extend(sizes[v]));
+        let smoothed = rows(gradient.len(), |v| {
+            gradient[v].as_vec2() * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
+        });
+        let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
+        rows(first.operator.rows(), |aggregate| {
+            let members = &members[starts[aggregate] as usize..starts[aggregate + 1] as usize];
+            -members.iter().map(|&v| smoothed[v as usize]).sum::<Vec2>()
+        })
+    };
     let coarse = solve(hierarchy.levels(), &restricted);
     let handed = rows(gradient.len(), |v| {
         let value = match hierarchy.aggregate_of()[v] {
