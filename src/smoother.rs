@@ -1,19 +1,18 @@
-//! The loop over sweeps, whatever the engine.
+//! A mesh made ready, and what a run makes of it.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::cpu::{CpuEngine, CpuFine, mean_excess};
-use crate::engine::{Engine, Objectives};
+use crate::cpu::mean_excess;
+use crate::drive::{Observer, Phase, Place, Run};
+use crate::engine::Objectives;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, MeshSize, Waiting};
+use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
-use crate::multilevel::MultilevelEngine;
-use crate::opening::{self, Opened};
-use crate::options::{Desired, Goal, Method, Options};
+use crate::options::{Desired, Goal, Options};
 use crate::plan::{Sharpness, Stop};
 use crate::prepare::prepare;
 use crate::problem::Problem;
@@ -30,37 +29,12 @@ pub enum Backend {
     Gpu(Gpu),
 }
 
-/// Hears how far a run is, and may end it: any `FnMut(&Progress) -> ControlFlow<()>`.
-pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
-
-impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
-
 /// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
     mesh: &'a Mesh,
     topology: Topology,
     problem: Problem,
     prepare: Duration,
-}
-
-/// How far a run is, for a progress display.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// What the sweeps are for.
-    pub phase: Phase,
-    /// Sweeps done in this phase.
-    pub sweep: u32,
-    /// The base objective.
-    pub f: f64,
-}
-
-/// The part of a run that is under way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// The optimum is sought that [`Desired::Auto`] measures by.
-    Reference,
-    /// The mesh is smoothed.
-    Smoothing,
 }
 
 /// What a run made of the mesh.
@@ -154,7 +128,7 @@ impl<'a> Smoother<'a> {
     /// it, the best state so far being returned all the same.
     ///
     /// # Errors
-    /// [`SmoothError`] if an option makes no sense or the device fails; [`GpuError::Limit`] before anything is done if the
+    /// [`SmoothError`] if an option makes no sense or the device fails; [`GpuError::Limit`](crate::GpuError::Limit) before anything is done if the
     /// mesh does not fit it.
     pub fn run(
         &self,
@@ -205,7 +179,7 @@ impl<'a> Smoother<'a> {
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
-        let run = Run { smoother: self, place, phase: Phase::Smoothing };
+        let run = Run { problem: &self.problem, place, phase: Phase::Smoothing };
         let monotone = options.plan_to(target).is_monotone();
         let end = run.sweep(options, target, self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
@@ -264,7 +238,7 @@ impl<'a> Smoother<'a> {
             sharpness: Sharpness::CONTINUED,
             ..Options::default()
         };
-        let run = Run { smoother: self, place, phase: Phase::Reference };
+        let run = Run { problem: &self.problem, place, phase: Phase::Reference };
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !matches!(base, Metric::Imr | Metric::Ar) {
@@ -284,187 +258,6 @@ impl<'a> Smoother<'a> {
         let origin = format!("over-relaxed; {}", describe.join("; "));
         Ok(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
     }
-}
-
-/// Where a run computes, and who waits for it.
-#[derive(Clone, Copy)]
-enum Place<'g> {
-    Cpu,
-    Gpu(&'g Gpu, Waiting),
-}
-
-/// The engine of a run.
-enum AnyEngine<'e> {
-    Cpu(Box<CpuEngine<'e>>),
-    Gpu(Box<GpuEngine<'e>>),
-    CpuMultilevel(Box<MultilevelEngine<'e, CpuFine<'e>>>),
-    GpuMultilevel(Box<MultilevelEngine<'e, GpuFine<'e>>>),
-}
-
-impl AnyEngine<'_> {
-    async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
-        match self {
-            AnyEngine::Cpu(engine) => engine.advance(sweeps),
-            AnyEngine::Gpu(engine) => GpuEngine::advance(engine, sweeps).await,
-            AnyEngine::CpuMultilevel(engine) => engine.advance(sweeps).await,
-            AnyEngine::GpuMultilevel(engine) => engine.advance(sweeps).await,
-        }
-    }
-
-    fn stop(&self) -> Option<Stop> {
-        match self {
-            AnyEngine::Cpu(engine) => engine.stop(),
-            AnyEngine::Gpu(engine) => engine.stop(),
-            AnyEngine::CpuMultilevel(engine) => engine.stop(),
-            AnyEngine::GpuMultilevel(engine) => engine.stop(),
-        }
-    }
-
-    async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        match self {
-            AnyEngine::Cpu(engine) => engine.best_positions(),
-            AnyEngine::Gpu(engine) => GpuEngine::best_positions(engine).await,
-            AnyEngine::CpuMultilevel(engine) => engine.best_positions().await,
-            AnyEngine::GpuMultilevel(engine) => engine.best_positions().await,
-        }
-    }
-
-    fn corrections(&self) -> u32 {
-        match self {
-            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => 0,
-            AnyEngine::CpuMultilevel(engine) => engine.corrections(),
-            AnyEngine::GpuMultilevel(engine) => engine.corrections(),
-        }
-    }
-
-    /// Why there are no corrections, if there was to be some.
-    fn left_out(&self) -> Option<&GpuError> {
-        match self {
-            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => None,
-            AnyEngine::CpuMultilevel(engine) => engine.left_out(),
-            AnyEngine::GpuMultilevel(engine) => engine.left_out(),
-        }
-    }
-}
-
-/// Sweeps from some positions to the end.
-struct Run<'s, 'a> {
-    smoother: &'s Smoother<'a>,
-    place: Place<'s>,
-    phase: Phase,
-}
-
-struct End {
-    history: Vec<Objectives>,
-    positions: Vec<DVec2>,
-    corrections: u32,
-    opening_sweeps: u32,
-    levels_left_out: bool,
-    stop: Stop,
-}
-
-impl Run<'_, '_> {
-    async fn sweep(
-        &self,
-        options: &Options,
-        target: Option<f64>,
-        from: &[DVec2],
-        observe: &mut (impl Observer + ?Sized),
-    ) -> Result<End, SmoothError> {
-        let base = options.scheme.base();
-        let (place, opened) = self.opened(options, target, from);
-        let done = opened.as_ref().map_or(0, Opened::sweeps);
-        let options = &Options { max_sweeps: options.max_sweeps - done, ..options.clone() };
-        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
-        let mut engine = self.engine(place, options, target, from)?;
-        let mut history = Vec::new();
-        let mut batch = 4;
-        let stop = loop {
-            let start = Instant::now();
-            let log = engine.advance(batch).await?;
-            batch = next_batch(batch, start.elapsed());
-            history.extend_from_slice(&log);
-            if let (Method::Multilevel, Some(error)) = (options.method, engine.left_out()) {
-                return Err(error.clone().into());
-            }
-            if let Some(stop) = engine.stop() {
-                break stop;
-            }
-            let progress = Progress {
-                phase: self.phase,
-                sweep: done + history.len() as u32 - 1,
-                f: history.last().and_then(|o| o.of(base)).unwrap_or(f64::NAN),
-            };
-            if observe(&progress).is_break() {
-                break Stop::Cancelled;
-            }
-        };
-        let corrections = engine.corrections();
-        let levels_left_out = engine.left_out().is_some();
-        let positions = engine.best_positions().await?;
-        let (history, positions) = match opened {
-            Some(opened) => opened.followed_by(base, history, positions),
-            None => (history, positions),
-        };
-        let opening_sweeps = match (self.place, place) {
-            (Place::Gpu(..), Place::Cpu) => history.len() as u32 - 1,
-            _ => done,
-        };
-        Ok(End { history, positions, corrections, opening_sweeps, levels_left_out, stop })
-    }
-
-    /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on
-    /// the CPU that open it; or all of the run, if they cannot.
-    fn opened(
-        &self,
-        options: &Options,
-        target: Option<f64>,
-        from: &[DVec2],
-    ) -> (Place<'_>, Option<Opened>) {
-        match self.place {
-            Place::Gpu(..) if opening::is_needed(&self.smoother.problem, from) => {
-                match opening::open(&self.smoother.problem, from, options.plan_to(target)) {
-                    Some(opened) => (self.place, Some(opened)),
-                    None => (Place::Cpu, None),
-                }
-            }
-            _ => (self.place, None),
-        }
-    }
-
-    fn engine<'e>(
-        &'e self,
-        place: Place<'e>,
-        options: &Options,
-        target: Option<f64>,
-        from: &'e [DVec2],
-    ) -> Result<AnyEngine<'e>, GpuError> {
-        let problem = &self.smoother.problem;
-        let plan = options.plan_to(target);
-        let multilevel = options.is_multilevel();
-        Ok(match place {
-            Place::Cpu if multilevel => {
-                let fine = CpuFine::new(problem, from.to_vec(), &plan);
-                AnyEngine::CpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
-            }
-            Place::Cpu => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, from.to_vec(), plan))),
-            Place::Gpu(gpu, waiting) if multilevel => {
-                let fine = GpuFine::new(gpu, problem, from, &plan, waiting)?;
-                AnyEngine::GpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
-            }
-            Place::Gpu(gpu, waiting) => {
-                let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
-                AnyEngine::Gpu(Box::new(engine))
-            }
-        })
-    }
-}
-
-/// How many sweeps to ask for next, so that the caller hears something about ten times a second.
-/// Results do not depend on it.
-fn next_batch(batch: u32, took: Duration) -> u32 {
-    let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);
-    (fits as u32).clamp(1, 4 * batch).min(100)
 }
 
 /// Smooths a mesh given as plain slices, in one blocking call: positions in any unit, and vertex triples,
