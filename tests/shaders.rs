@@ -14,7 +14,10 @@ const MOST_WORKGROUP_BYTES: u32 = 16384;
 
 fn kernels() -> Vec<Kernel> {
     let mut kernels = vec![Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish];
+    kernels.extend([Kernel::SmoothGradient, Kernel::HandDown, Kernel::HandUp, Kernel::Apply]);
+    kernels.extend([Kernel::Chebyshev, Kernel::Direct, Kernel::Total, Kernel::Take]);
     for &metric in Metric::ALL {
+        kernels.extend([Kernel::Gradient(metric), Kernel::Along(metric)]);
         for derivatives in [Derivatives::Analytic, Derivatives::FiniteDifference] {
             kernels.push(Kernel::Sweep(metric, derivatives));
         }
@@ -47,7 +50,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 2 * (4 + 2 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 2 * (12 + 4 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]
@@ -76,7 +79,7 @@ fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
     for (kernel, module) in modules() {
         let size = module.entry_points[0].workgroup_size;
         let width = match kernel {
-            Kernel::Finish(_) => 256,
+            Kernel::Finish(_) | Kernel::Total => 256,
             // One for each metric, one for the inverted and one for the worst.
             Kernel::Publish => Metric::ALL.len() as u32 + 2,
             _ => 64,
@@ -158,7 +161,12 @@ fn barriers(module: &Module) -> Result<usize, &'static str> {
 fn no_invocation_leaves_before_a_barrier() {
     for (kernel, module) in modules() {
         let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
-        assert_eq!(count > 0, matches!(kernel, Kernel::Finish(_)), "{}", kernel.label());
+        assert_eq!(
+            count > 0,
+            matches!(kernel, Kernel::Finish(_) | Kernel::Total),
+            "{}",
+            kernel.label()
+        );
     }
 }
 

@@ -8,6 +8,10 @@ fn value_at(v: u32) -> vec2<f32> {
     return vectors[op.x + aggregate];
 }
 
+fn carried(v: u32, k: u32) -> vec2<f32> {
+    return value_at(k) * edge_weight(v, k);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn hand_up(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -18,14 +22,6 @@ fn hand_up(
         return;
     }
     let v = op.first + index;
-    var around = vec2(0.0);
-    let end = ring_place(ring_start[v + 1u]);
-    for (var i = ring_place(ring_start[v]); i < end; i++) {
-        let k = ring[i];
-        if k < op.free {
-            around += value_at(k) * edge_weight(v, k);
-        }
-    }
     let share = SMOOTHING * values[op.diagonal + v];
-    direction[v] = value_at(v) * (1.0 - SMOOTHING) + around * share;
+    direction[v] = value_at(v) * (1.0 - SMOOTHING) + around(v) * share;
 }

@@ -32,6 +32,7 @@ const COARSE: &str = include_str!("../../shaders/levels/coarse.wgsl");
 const GRADIENT: &str = include_str!("../../shaders/levels/gradient.wgsl");
 const SMOOTH: &str = include_str!("../../shaders/levels/smooth.wgsl");
 const HAND_DOWN: &str = include_str!("../../shaders/levels/hand_down.wgsl");
+const AROUND: &str = include_str!("../../shaders/levels/around.wgsl");
 const HAND_UP: &str = include_str!("../../shaders/levels/hand_up.wgsl");
 const APPLY: &str = include_str!("../../shaders/levels/apply.wgsl");
 const CHEBYSHEV: &str = include_str!("../../shaders/levels/chebyshev.wgsl");
@@ -264,9 +265,11 @@ impl Kernel {
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
                 source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
             }
-            Kernel::SmoothGradient => source.push_str(SMOOTH),
+            Kernel::SmoothGradient => {
+                [AROUND, SMOOTH].iter().for_each(|part| source.push_str(part))
+            }
             Kernel::HandDown => source.push_str(HAND_DOWN),
-            Kernel::HandUp => source.push_str(HAND_UP),
+            Kernel::HandUp => [AROUND, HAND_UP].iter().for_each(|part| source.push_str(part)),
             Kernel::Apply => source.push_str(APPLY),
             Kernel::Chebyshev => source.push_str(CHEBYSHEV),
             Kernel::Direct => source.push_str(DIRECT),
