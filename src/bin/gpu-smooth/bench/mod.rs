@@ -22,7 +22,7 @@ struct Place {
     copy_rate: f64,
 }
 
-/// What is measured, and the error in the user's terms.
+/// Tells an error in the user's terms.
 type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
 pub(crate) fn run(args: &BenchArgs) -> Result<(), String> {
