@@ -32,8 +32,13 @@ const SIDES: [usize; 2] = [999, 3161];
 enum Kind {
     Triangle,
     Gmsh22,
+    Gmsh22Binary,
     Gmsh41,
+    Gmsh41Binary,
 }
+
+const KINDS: [Kind; 5] =
+    [Kind::Triangle, Kind::Gmsh22, Kind::Gmsh22Binary, Kind::Gmsh41, Kind::Gmsh41Binary];
 
 #[derive(Clone, Copy)]
 struct Case {
@@ -46,18 +51,16 @@ impl fmt::Display for Case {
         let kind = match self.kind {
             Kind::Triangle => "triangle",
             Kind::Gmsh22 => "msh22",
+            Kind::Gmsh22Binary => "msh22-binary",
             Kind::Gmsh41 => "msh41",
+            Kind::Gmsh41Binary => "msh41-binary",
         };
         write!(f, "{kind}/{}", (SIDES[self.size] + 1).pow(2))
     }
 }
 
 fn cases() -> Vec<Case> {
-    let kinds = |size| {
-        [Kind::Triangle, Kind::Gmsh22, Kind::Gmsh41]
-            .into_iter()
-            .map(move |kind| Case { size, kind })
-    };
+    let kinds = |size| KINDS.into_iter().map(move |kind| Case { size, kind });
     (0..SIDES.len()).flat_map(kinds).collect()
 }
 
@@ -78,18 +81,20 @@ impl Case {
     fn files(self) -> Files {
         let folder = TempDir::new().unwrap();
         let mesh = self.mesh();
-        let texts = match self.kind {
+        let contents = match self.kind {
             Kind::Triangle => {
                 let [node, ele] = support::triangle_text(mesh, "made by a benchmark");
-                vec![("m.node", node), ("m.ele", ele)]
+                vec![("m.node", node.into_bytes()), ("m.ele", ele.into_bytes())]
             }
-            Kind::Gmsh22 => vec![("m.msh", support::write_msh22(mesh))],
-            Kind::Gmsh41 => vec![("m.msh", support::write_msh41(mesh))],
+            Kind::Gmsh22 => vec![("m.msh", support::write_msh22(mesh).into_bytes())],
+            Kind::Gmsh22Binary => vec![("m.msh", support::write_msh22_binary(mesh, false, true))],
+            Kind::Gmsh41 => vec![("m.msh", support::write_msh41(mesh).into_bytes())],
+            Kind::Gmsh41Binary => vec![("m.msh", support::write_msh41_binary(mesh, false))],
         };
-        for (name, text) in &texts {
-            fs::write(folder.path().join(name), text).unwrap();
+        for (name, content) in &contents {
+            fs::write(folder.path().join(name), content).unwrap();
         }
-        Files { folder, names: texts.into_iter().map(|(name, _)| name).collect() }
+        Files { folder, names: contents.into_iter().map(|(name, _)| name).collect() }
     }
 }
 

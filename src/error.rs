@@ -1,7 +1,25 @@
 //! What can go wrong, one enum per operation.
 
-use std::io;
 use std::path::PathBuf;
+use std::{fmt, io};
+
+/// Where in a file something stands. Displayed to follow the file's name: `:18`, or `, byte 4711`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// One-based line of a text.
+    Line(usize),
+    /// How many bytes of a binary file stand before it.
+    Byte(usize),
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Location::Line(line) => write!(f, ":{line}"),
+            Location::Byte(at) => write!(f, ", byte {at}"),
+        }
+    }
+}
 
 /// A mesh file could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -17,12 +35,12 @@ pub enum ReadError {
         remedy: String,
     },
     /// The content is not what the format asks for.
-    #[error("{}:{line}: {problem}. {remedy}", path.display())]
+    #[error("{}{location}: {problem}. {remedy}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
-        /// One-based line of the offence.
-        line: usize,
+        /// Where the offence stands.
+        location: Location,
         /// What is wrong there.
         problem: String,
         /// What the user can do about it.

@@ -110,7 +110,7 @@ pub use cpu::CpuEngine;
 pub use drive::{Observer, Phase, Progress};
 pub use dual::{Dual, Real};
 pub use engine::{Engine, Objectives};
-pub use error::{MeshError, ReadError, SmoothError, WriteError};
+pub use error::{Location, MeshError, ReadError, SmoothError, WriteError};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, MeshSize, ObjectiveValues, Sweeps,
     Timestamps, VertexBuffer,

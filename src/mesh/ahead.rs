@@ -82,9 +82,10 @@ fn take_chunks<'a, T: Send>(
 mod tests {
     use super::super::source::Source;
     use super::*;
+    use crate::error::Location;
 
     /// Rows taken; the line the cursor then stands on, if that is said; line and tokens of the rows that follow.
-    type Seen = (Vec<(u64, u64)>, Option<usize>, Vec<(usize, Vec<u8>)>);
+    type Seen = (Vec<(u64, u64)>, Option<Location>, Vec<(Location, Vec<u8>)>);
 
     fn seen(source: &Source, count: u64, size: Option<usize>) -> Seen {
         let read = |cursor: &mut Cursor<'_>| Ok((cursor.integer("a")?, cursor.integer("b")?));
@@ -116,13 +117,13 @@ mod tests {
                 }
             }
         }
-        let line = (rows.len() as u64 == count).then(|| cursor.line());
+        let line = (rows.len() as u64 == count).then(|| cursor.location());
         let mut rest = Vec::new();
         while cursor.next_row() {
-            let line = cursor.line();
+            let line = cursor.location();
             rest.push((line, std::iter::from_fn(|| cursor.token()).flatten().copied().collect()));
         }
-        rest.push((cursor.line(), Vec::new()));
+        rest.push((cursor.location(), Vec::new()));
         (rows, line, rest)
     }
 

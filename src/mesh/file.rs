@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use super::atomic::{self, Job};
+use super::binary::Order;
 use super::gmsh;
 use super::implied::Implied;
 use super::patch::Patch;
@@ -9,7 +10,7 @@ use super::sniff::{self, Content};
 use super::source::{Parsed, Source};
 use super::text;
 use super::triangle::{self, Names};
-use crate::error::{ReadError, WriteError};
+use crate::error::{Location, ReadError, WriteError};
 use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,19 +24,29 @@ pub enum Format {
     Triangle,
     /// gmsh's `.msh`, versions 2.0 to 2.2, as text.
     Gmsh22,
+    /// gmsh's `.msh`, versions 2.0 to 2.2, in binary.
+    Gmsh22Binary,
     /// gmsh's `.msh`, version 4.1, as text.
     Gmsh41,
+    /// gmsh's `.msh`, version 4.1, in binary.
+    Gmsh41Binary,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 3] = [Format::Triangle, Format::Gmsh22, Format::Gmsh41];
+    pub const ALL: [Format; 5] = [
+        Format::Triangle,
+        Format::Gmsh22,
+        Format::Gmsh22Binary,
+        Format::Gmsh41,
+        Format::Gmsh41Binary,
+    ];
 
     /// Endings that promise this format, the usual one first.
     fn endings(self) -> &'static [&'static str] {
         match self {
             Format::Triangle => &[".node", ".ele"],
-            Format::Gmsh22 | Format::Gmsh41 => &[".msh"],
+            _ => &[".msh"],
         }
     }
 
@@ -43,7 +54,7 @@ impl Format {
     fn part_with_triangles(self) -> usize {
         match self {
             Format::Triangle => 1,
-            Format::Gmsh22 | Format::Gmsh41 => 0,
+            _ => 0,
         }
     }
 
@@ -57,7 +68,9 @@ impl fmt::Display for Format {
         f.write_str(match self {
             Format::Triangle => "Triangle .node/.ele",
             Format::Gmsh22 => "gmsh 2.2 ASCII",
+            Format::Gmsh22Binary => "gmsh 2.2 binary",
             Format::Gmsh41 => "gmsh 4.1 ASCII",
+            Format::Gmsh41Binary => "gmsh 4.1 binary",
         })
     }
 }
@@ -67,21 +80,21 @@ impl fmt::Display for Format {
 pub struct Place {
     /// The file.
     pub path: PathBuf,
-    /// One-based line.
-    pub line: usize,
+    /// Where in it.
+    pub location: Location,
     /// The file's own number or tag for it.
     pub label: u64,
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.path.display(), self.line)
+        write!(f, "{}{}", self.path.display(), self.location)
     }
 }
 
-/// A mesh with the text it was read from.
+/// A mesh with the file it was read from.
 ///
-/// The text is kept, so that [`write`](Self::write) replaces the coordinates of moved vertices and
+/// Its content is kept, so that [`write`](Self::write) replaces the coordinates of moved vertices and
 /// nothing else: numbering, comments, attributes, physical groups, third coordinates, node and
 /// element data, line ends come back byte for byte.
 pub struct MeshFile {
@@ -90,6 +103,8 @@ pub struct MeshFile {
     notes: Vec<String>,
     /// Where the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
+    /// Of the bytes of its numbers, if they are not text.
+    order: Option<Order>,
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
     /// `.ele` and, if there is one, `.poly`.
     sources: Vec<Source>,
@@ -120,9 +135,11 @@ impl MeshFile {
         let file = match sniff::content(&given)? {
             Content::Gmsh => {
                 let (version, parsed) = gmsh::parse(&given)?;
-                let format = match version {
-                    gmsh::Version::V2 => Format::Gmsh22,
-                    gmsh::Version::V4 => Format::Gmsh41,
+                let format = match (version, parsed.order) {
+                    (gmsh::Version::V2, None) => Format::Gmsh22,
+                    (gmsh::Version::V2, Some(_)) => Format::Gmsh22Binary,
+                    (gmsh::Version::V4, None) => Format::Gmsh41,
+                    (gmsh::Version::V4, Some(_)) => Format::Gmsh41Binary,
                 };
                 Self::new(format, parsed, vec![given])
             }
@@ -153,15 +170,21 @@ impl MeshFile {
     }
 
     fn new(format: Format, parsed: Parsed, mut sources: Vec<Source>) -> MeshFile {
-        let Parsed { mesh, x_at, labels, notes } = parsed;
+        let Parsed { mesh, x_at, order, labels, rows, notes } = parsed;
         let part = format.part_with_triangles();
         let bytes = &mut sources[part].bytes;
-        let lists_vertices = x_at.last().filter(|_| part == 0);
-        let from = lists_vertices.map_or(0, |&last| text::line_end(bytes, last));
-        let implied = labels
-            .map(|labels| Implied::take_out(bytes, from, labels, &mesh.triangles))
-            .unwrap_or_default();
-        MeshFile { mesh, format, notes, x_at, sources, implied }
+        let implied = match (labels, order) {
+            (None, _) => Implied::default(),
+            (Some(labels), None) => {
+                let lists_vertices = x_at.last().filter(|_| part == 0);
+                let from = lists_vertices.map_or(0, |&last| text::line_end(bytes, last));
+                Implied::take_lines_out(bytes, from, labels, &mesh.triangles)
+            }
+            (Some(labels), Some(order)) => {
+                Implied::take_rows_out(bytes, &rows, order, labels, &mesh.triangles)
+            }
+        };
+        MeshFile { mesh, format, notes, x_at, order, sources, implied }
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -186,11 +209,9 @@ impl MeshFile {
 
     /// The value that a coordinate will have once written and read back.
     ///
-    /// Text keeps all bits of a finite number.
+    /// Text keeps all bits of a finite number, as do the binary formats read so far.
     pub fn stored(&self, x: f64) -> f64 {
-        match self.format {
-            Format::Triangle | Format::Gmsh22 | Format::Gmsh41 => x,
-        }
+        x
     }
 
     /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.
@@ -202,11 +223,11 @@ impl MeshFile {
     pub fn vertex_place(&self, index: u32) -> Place {
         let x_at = self.x_at[index as usize];
         let source = &self.sources[0];
-        let (line, label) = match self.format {
+        let (location, label) = match self.format {
             Format::Triangle => triangle::vertex_place(source, x_at),
-            Format::Gmsh22 | Format::Gmsh41 => gmsh::vertex_place(source, index as usize),
+            _ => gmsh::vertex_place(source, index as usize),
         };
-        Place { path: source.path.clone(), line, label }
+        Place { path: source.path.clone(), location, label }
     }
 
     /// Where triangle `index` (zero-based, as in [`Mesh::triangles`]) lists its vertices.
@@ -222,11 +243,11 @@ impl MeshFile {
         let whole = self.implied.whole(&kept.bytes, &self.mesh.triangles);
         let whole = whole.map(|bytes| Source { path: path.clone(), bytes });
         let source = whole.as_ref().unwrap_or(kept);
-        let (line, label) = match self.format {
+        let (location, label) = match self.format {
             Format::Triangle => triangle::triangle_place(source, index),
-            Format::Gmsh22 | Format::Gmsh41 => gmsh::triangle_place(source, index),
+            _ => gmsh::triangle_place(source, index),
         };
-        Place { path, line, label }
+        Place { path, location, label }
     }
 
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -252,7 +273,7 @@ impl MeshFile {
                 let (bytes, old) = (&source.bytes, &self.mesh.points);
                 // Only the first part holds vertices.
                 let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-                let patch = Patch { bytes, x_at, old, new: points };
+                let patch = Patch { bytes, x_at, order: self.order, old, new: points };
                 let has_triangles = part == self.format.part_with_triangles();
                 let content = move |out: &mut (dyn Write + Send)| {
                     let patched = patch.write(out)?;
@@ -301,7 +322,7 @@ impl MeshFile {
                 let Names { node, ele, poly } = Names::of(path);
                 [node, ele, poly].into_iter().take(self.sources.len()).collect()
             }
-            Format::Gmsh22 | Format::Gmsh41 => vec![path.to_owned()],
+            _ => vec![path.to_owned()],
         })
     }
 

@@ -1,15 +1,16 @@
-//! Rows of a text that the mesh itself tells: they are made again when they are written, rather than kept.
+//! Rows of a file that the mesh itself tells: they are made again when they are written, rather than kept.
 //!
-//! The list of triangles is the larger half of a mesh's text, and its rows mostly differ in nothing but consecutive
+//! The list of triangles is the larger half of a mesh's file, and its rows mostly differ in nothing but consecutive
 //! numbers and the corners. A row is left out only if it was made again and found the same, byte for byte.
 
+use super::binary::Order;
 use super::patch::write_blocks;
 use super::text::{integer, line_end, skip_blanks, token_end};
 use rayon::prelude::*;
 use std::io::{self, Write};
 use std::ops::Range;
 
-/// How much text one thread looks through at a time.
+/// How much of a file one thread looks through at a time.
 const CHUNK: usize = 1 << 20;
 /// Shorter runs of rows are kept as they are.
 const WORTH: usize = 32;
@@ -25,17 +26,32 @@ pub(super) struct Labels {
     pub(super) vertex: u64,
 }
 
-/// What was left out of a text.
+/// Rows of a binary file, each of one triangle: its number, and at its end its corners.
+#[derive(Clone, Debug)]
+pub(super) struct Rows {
+    /// Where they stand.
+    pub(super) bytes: Range<usize>,
+    /// The first triangle.
+    pub(super) first: usize,
+    /// Bytes of a row.
+    pub(super) size: usize,
+    /// Bytes before the triangle's number in a row.
+    pub(super) number_at: usize,
+    /// Bytes of a number.
+    pub(super) width: usize,
+}
+
+/// What was left out of a file.
 #[derive(Default)]
 pub(super) struct Implied {
     labels: Labels,
-    /// In the order of the text.
+    /// In the order of the file.
     gaps: Vec<Gap>,
 }
 
 /// Rows of consecutive triangles that were left out.
 struct Gap {
-    /// Where they belong in what is left of the text.
+    /// Where they belong in what is left of the file.
     at: usize,
     triangles: Range<usize>,
     form: Form,
@@ -49,8 +65,8 @@ struct Run {
 }
 
 impl Implied {
-    /// Leaves out of `bytes`, from the line at `from` on, what rows of triangles it can.
-    pub(super) fn take_out(
+    /// Leaves out of a text, from the line at `from` on, what rows of triangles it can.
+    pub(super) fn take_lines_out(
         bytes: &mut Vec<u8>,
         from: usize,
         labels: Labels,
@@ -63,9 +79,45 @@ impl Implied {
             chunks.push(start..end);
             start = end;
         }
-        let runs =
-            chunks.into_par_iter().flat_map_iter(|lines| runs(bytes, lines, labels, triangles));
-        let runs: Vec<Run> = runs.collect();
+        let next = |at| {
+            let end = line_end(bytes, at);
+            (end, Form::of_line(&bytes[at..end], labels, triangles))
+        };
+        let runs = chunks
+            .into_par_iter()
+            .flat_map_iter(|lines| runs(bytes, lines, labels, triangles, next))
+            .collect();
+        Self::take_runs_out(bytes, labels, runs)
+    }
+
+    /// Leaves out of a binary file what it can of these rows, which stand in the order of the file.
+    pub(super) fn take_rows_out(
+        bytes: &mut Vec<u8>,
+        rows: &[Rows],
+        order: Order,
+        labels: Labels,
+        triangles: &[[u32; 3]],
+    ) -> Implied {
+        let chunks = rows.iter().flat_map(|rows| {
+            let Range { start, end } = rows.bytes;
+            let size = (CHUNK / rows.size).max(1) * rows.size;
+            (start..end).step_by(size).map(move |at| (rows, at..end.min(at + size)))
+        });
+        let chunks: Vec<_> = chunks.collect();
+        let runs = chunks
+            .into_par_iter()
+            .flat_map_iter(|(rows, chunk)| {
+                runs(bytes, chunk, labels, triangles, |at| {
+                    let end = at + rows.size;
+                    let t = rows.first + (at - rows.bytes.start) / rows.size;
+                    (end, Form::of_row(&bytes[at..end], rows, order).map(|form| (t, form)))
+                })
+            })
+            .collect();
+        Self::take_runs_out(bytes, labels, runs)
+    }
+
+    fn take_runs_out(bytes: &mut Vec<u8>, labels: Labels, runs: Vec<Run>) -> Implied {
         let left_out: usize = runs.iter().map(|run| run.bytes.len()).sum();
         if left_out < bytes.len() / 8 {
             return Implied::default();
@@ -83,7 +135,7 @@ impl Implied {
         Implied { labels, gaps }
     }
 
-    /// Writes the text from `start` in `bytes` on, of which rows were left out after that.
+    /// Writes the file from `start` in `bytes` on, of which rows were left out after that.
     pub(super) fn write(
         &self,
         out: &mut (dyn Write + Send),
@@ -97,20 +149,20 @@ impl Implied {
             written = *at;
             write_blocks(out, rows.len().div_ceil(BLOCK), |block| {
                 let first = rows.start + block * BLOCK;
-                let mut text = Vec::with_capacity(BLOCK * 40);
+                let mut content = Vec::with_capacity(BLOCK * 40);
                 let mut row = [0; 256];
                 let listed = first..rows.end.min(first + BLOCK);
                 for (t, &corners) in listed.clone().zip(&triangles[listed]) {
                     let length = form.put_row(&mut row, self.labels, t, corners);
-                    text.extend_from_slice(&row[..length]);
+                    content.extend_from_slice(&row[..length]);
                 }
-                text
+                content
             })?;
         }
         out.write_all(&bytes[written..])
     }
 
-    /// The text as it was before rows were left out of it, if any were.
+    /// The file as it was before rows were left out of it, if any were.
     pub(super) fn whole(&self, bytes: &[u8], triangles: &[[u32; 3]]) -> Option<Vec<u8>> {
         if self.gaps.is_empty() {
             return None;
@@ -121,13 +173,20 @@ impl Implied {
     }
 }
 
-/// The runs in some lines of the text that are worth it.
-fn runs(bytes: &[u8], lines: Range<usize>, labels: Labels, triangles: &[[u32; 3]]) -> Vec<Run> {
-    let bytes = &bytes[..lines.end];
+/// The runs in some rows of a file that are worth it. Of the row at an offset, `next` tells where it ends, and the
+/// triangle it seems to list and the form it has.
+fn runs(
+    bytes: &[u8],
+    rows: Range<usize>,
+    labels: Labels,
+    triangles: &[[u32; 3]],
+    next: impl Fn(usize) -> (usize, Option<(usize, Form)>),
+) -> Vec<Run> {
+    let bytes = &bytes[..rows.end];
     let mut runs: Vec<Run> = Vec::new();
     let mut row = [0; 256];
-    let mut at = lines.start;
-    while at < lines.end {
+    let mut at = rows.start;
+    while at < rows.end {
         // Its last run may yet be too short.
         if let Some(run) = runs.last_mut().filter(|run| run.bytes.end == at)
             && let Some(&corners) = triangles.get(run.triangles.end)
@@ -143,9 +202,12 @@ fn runs(bytes: &[u8], lines: Range<usize>, labels: Labels, triangles: &[[u32; 3]
         if runs.last().is_some_and(|run| run.triangles.len() < WORTH) {
             runs.pop();
         }
-        let end = line_end(bytes, at);
-        if let Some((t, form)) = Form::of(&bytes[at..end], labels, triangles) {
-            runs.push(Run { bytes: at..end, triangles: t..t + 1, form });
+        let (end, listed) = next(at);
+        if let Some((t, form)) = listed {
+            let length = form.put_row(&mut row, labels, t, triangles[t]);
+            if bytes[at..end] == row[..length] {
+                runs.push(Run { bytes: at..end, triangles: t..t + 1, form });
+            }
         }
         at = end;
     }
@@ -153,12 +215,23 @@ fn runs(bytes: &[u8], lines: Range<usize>, labels: Labels, triangles: &[[u32; 3]
     runs
 }
 
-/// What stands in a row before the triangle's number, before each of its corners, and after them.
-struct Form([Box<[u8]>; 5]);
+struct Form {
+    /// What stands in a row before the triangle's number, before each of its corners, and after them.
+    between: [Box<[u8]>; 5],
+    numbers: Numbers,
+}
+
+/// How numbers are written.
+#[derive(Clone, Copy)]
+enum Numbers {
+    Digits,
+    /// So many bytes.
+    Bytes(usize, Order),
+}
 
 impl Form {
     /// The triangle that a line, its end included, seems to list, and the form it has.
-    fn of(line: &[u8], labels: Labels, triangles: &[[u32; 3]]) -> Option<(usize, Form)> {
+    fn of_line(line: &[u8], labels: Labels, triangles: &[[u32; 3]]) -> Option<(usize, Form)> {
         let mut tokens = Vec::new();
         let mut at = skip_blanks(line, 0);
         while token_end(line, at) > at {
@@ -180,21 +253,48 @@ impl Form {
             b.end..c.start,
             c.end..line.len(),
         ];
+        Some((t, Form::new(line, between, Numbers::Digits)?))
+    }
+
+    /// The form of a row of a binary file.
+    fn of_row(row: &[u8], rows: &Rows, order: Order) -> Option<Form> {
+        let width = rows.width;
+        let corners = row.len() - 3 * width;
+        let [b, c] = [corners + width, corners + 2 * width];
+        let between =
+            [0..rows.number_at, rows.number_at + width..corners, b..b, c..c, row.len()..row.len()];
+        Form::new(row, between, Numbers::Bytes(width, order))
+    }
+
+    /// None if the row is longer than what is made again.
+    fn new(row: &[u8], between: [Range<usize>; 5], numbers: Numbers) -> Option<Form> {
         let fits = between.iter().map(Range::len).sum::<usize>() <= LONGEST_BETWEEN;
-        fits.then(|| (t, Form(between.map(|part| line[part].into()))))
+        fits.then(|| Form { between: between.map(|part| row[part].into()), numbers })
     }
 
     /// Makes the row of a triangle. Returns its length.
     #[inline]
     fn put_row(&self, row: &mut Row, labels: Labels, t: usize, corners: [u32; 3]) -> usize {
-        let Form([lead, before_a, before_b, before_c, end]) = self;
+        let [lead, before_a, before_b, before_c, end] = &self.between;
         let at = put(row, 0, lead);
-        let mut at = put_number(row, at, labels.triangle.wrapping_add(t as u64));
+        let mut at = self.numbers.put(row, at, labels.triangle.wrapping_add(t as u64));
         for (before, corner) in [before_a, before_b, before_c].into_iter().zip(corners) {
             at = put(row, at, before);
-            at = put_number(row, at, labels.vertex + u64::from(corner));
+            at = self.numbers.put(row, at, labels.vertex + u64::from(corner));
         }
         put(row, at, end)
+    }
+}
+
+impl Numbers {
+    /// Puts a number there. Returns where it ends.
+    #[inline]
+    fn put(self, row: &mut Row, at: usize, number: u64) -> usize {
+        match self {
+            Numbers::Digits => put_number(row, at, number),
+            Numbers::Bytes(width, Order::Little) => put(row, at, &number.to_le_bytes()[..width]),
+            Numbers::Bytes(width, Order::Big) => put(row, at, &number.to_be_bytes()[8 - width..]),
+        }
     }
 }
 
@@ -249,7 +349,7 @@ mod tests {
     /// Bytes kept of a text that must come back from them.
     fn kept(text: &str, labels: Labels, triangles: &[[u32; 3]]) -> usize {
         let mut bytes = text.as_bytes().to_vec();
-        let implied = Implied::take_out(&mut bytes, 0, labels, triangles);
+        let implied = Implied::take_lines_out(&mut bytes, 0, labels, triangles);
         let whole = implied.whole(&bytes, triangles).unwrap_or_else(|| bytes.clone());
         assert!(whole == text.as_bytes(), "{text:.200}");
         bytes.len()
@@ -283,6 +383,8 @@ mod tests {
         assert_eq!(kept(&zeros, labels, &triangles), zeros.len());
         let plus = text(&|t, [a, b, c]| format!("{t} +{a} +{b} +{c}\n"));
         assert_eq!(kept(&plus, labels, &triangles), plus.len());
+        let odd_first = plain.replacen("1 ", "01 ", 1);
+        assert!(kept(&odd_first, labels, &triangles) < 200);
         let others = text(&|t, [a, b, c]| format!("{t} {a} {c} {b}\n"));
         assert_eq!(kept(&others, labels, &triangles), others.len());
         let twice = text(&|t, [a, b, c]| format!("{} {a} {b} {c}\n", t / 2 + 1));
@@ -298,6 +400,39 @@ mod tests {
             let mut row = [b'x'; 256];
             let end = put_number(&mut row, 3, number);
             assert_eq!(str::from_utf8(&row[..end]).unwrap(), format!("xxx{number}"));
+        }
+    }
+
+    #[test]
+    fn rows_of_numbers_left_out_come_back() {
+        let triangles = triangles(3 * BLOCK as u32 + 5);
+        let labels = Labels { triangle: 7, vertex: 1 };
+        for order in [Order::Little, Order::Big] {
+            // A header like that of version 2.2 before each row, and the rows of version 4.1.
+            for (lead, width) in [(12, 4), (0, 8)] {
+                let mut whole = b"$Elements\n".to_vec();
+                let start = whole.len();
+                for (t, corners) in triangles.iter().enumerate() {
+                    whole.extend((0..lead).map(|i| i as u8 + 2));
+                    let [a, b, c] = corners.map(|v| u64::from(v) + 1);
+                    // Two are out of the order.
+                    let tag = if t % 9000 == 8999 { 1 } else { t as u64 + 7 };
+                    for number in [tag, a, b, c] {
+                        match order {
+                            Order::Little => whole.extend(&number.to_le_bytes()[..width]),
+                            Order::Big => whole.extend(&number.to_be_bytes()[8 - width..]),
+                        }
+                    }
+                }
+                let size = lead + 4 * width;
+                let bytes = start..whole.len();
+                let rows = [Rows { bytes, first: 0, size, number_at: lead, width }];
+                whole.extend(b"\n$EndElements");
+                let mut kept = whole.clone();
+                let implied = Implied::take_rows_out(&mut kept, &rows, order, labels, &triangles);
+                assert_eq!(kept.len(), 10 + size + 13);
+                assert!(implied.whole(&kept, &triangles).unwrap() == whole);
+            }
         }
     }
 

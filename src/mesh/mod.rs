@@ -2,6 +2,7 @@
 
 mod ahead;
 mod atomic;
+mod binary;
 mod file;
 mod gmsh;
 mod implied;

@@ -1,5 +1,6 @@
-//! Writes a text again with single tokens replaced.
+//! Writes a file again with single coordinates replaced.
 
+use super::binary::Order;
 use super::text::{skip_blanks, token_end};
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -8,12 +9,14 @@ use std::ops::Range;
 /// How many vertices one thread makes the new text of at a time.
 const BLOCK: usize = 2048;
 
-/// A text, and which of its tokens are to be replaced.
+/// A file's content, and which of its coordinates are to be replaced.
 pub(super) struct Patch<'a> {
-    /// The text as it was read.
+    /// The content as it was read.
     pub(super) bytes: &'a [u8],
-    /// Where each vertex's x starts, ascending; its y is the token after it.
+    /// Where each vertex's x starts, ascending; its y is the token or number after it.
     pub(super) x_at: &'a [usize],
+    /// Of the bytes of the numbers, if they are not text.
+    pub(super) order: Option<Order>,
     /// The coordinates as they were read.
     pub(super) old: &'a [[f64; 2]],
     /// The coordinates to be written.
@@ -21,7 +24,7 @@ pub(super) struct Patch<'a> {
 }
 
 impl Patch<'_> {
-    /// Copies the text to `out` up to the last coordinate, with those replaced whose bits differ between `old` and
+    /// Copies the content to `out` up to the last coordinate, with those replaced whose bits differ between `old` and
     /// `new`. Returns where it stopped.
     pub(super) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<usize> {
         let vertices = self.x_at.len();
@@ -31,9 +34,30 @@ impl Patch<'_> {
         Ok(self.start_of(vertices))
     }
 
-    /// The new text of some vertices, up to the first one after them.
+    /// The new content of some vertices, up to the first one after them.
     fn block(&self, vertices: Range<usize>) -> Vec<u8> {
-        let Patch { bytes, x_at, old, new } = self;
+        match self.order {
+            None => self.block_of_text(vertices),
+            Some(order) => self.block_of_numbers(order, vertices),
+        }
+    }
+
+    fn block_of_numbers(&self, order: Order, vertices: Range<usize>) -> Vec<u8> {
+        let start = self.start_of(vertices.start);
+        let mut out = self.bytes[start..self.start_of(vertices.end)].to_vec();
+        for v in vertices {
+            let numbers = out[self.x_at[v] - start..].as_chunks_mut().0;
+            for ((old, new), number) in self.old[v].iter().zip(self.new[v]).zip(numbers) {
+                if old.to_bits() != new.to_bits() {
+                    *number = order.bytes(new);
+                }
+            }
+        }
+        out
+    }
+
+    fn block_of_text(&self, vertices: Range<usize>) -> Vec<u8> {
+        let Patch { bytes, x_at, old, new, .. } = self;
         let mut copied = self.start_of(vertices.start);
         let end_of_block = self.start_of(vertices.end);
         let mut out = Vec::with_capacity((end_of_block - copied) * 5 / 4);
@@ -55,12 +79,15 @@ impl Patch<'_> {
         out
     }
 
-    /// Where the text of a vertex starts, if the first one's reaches back to the start of the file. One after the
+    /// Where the content of a vertex starts, if the first one's reaches back to the start of the file. One after the
     /// last vertex it is where the last one's ends.
     fn start_of(&self, vertex: usize) -> usize {
         match vertex.checked_sub(1) {
             None => 0,
             Some(before) if vertex == self.x_at.len() => {
+                if self.order.is_some() {
+                    return self.x_at[before] + 16;
+                }
                 let y_at = skip_blanks(self.bytes, token_end(self.bytes, self.x_at[before]));
                 token_end(self.bytes, y_at)
             }
@@ -69,7 +96,7 @@ impl Patch<'_> {
     }
 }
 
-/// Writes blocks of text in their order. All threads make some while the system takes those made before.
+/// Writes blocks of a file in their order. All threads make some while the system takes those made before.
 pub(super) fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,
@@ -95,7 +122,7 @@ mod tests {
 
     fn patched(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let mut out = Vec::new();
-        let end = Patch { bytes, x_at, old, new }.write(&mut out).unwrap();
+        let end = Patch { bytes, x_at, order: None, old, new }.write(&mut out).unwrap();
         out.extend_from_slice(&bytes[end..]);
         out
     }

@@ -1,8 +1,9 @@
 //! The bytes of one file, and what a format's reader makes of them.
 
 use super::Mesh;
-use super::implied::Labels;
-use crate::error::ReadError;
+use super::binary::Order;
+use super::implied::{Labels, Rows};
+use crate::error::{Location, ReadError};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -16,10 +17,14 @@ pub(super) struct Source {
 /// What a reader returns.
 pub(super) struct Parsed {
     pub(super) mesh: Mesh,
-    /// Offset of each vertex's x token in the text that holds the vertices, ascending.
+    /// Offset of each vertex's x in the file that holds the vertices, ascending.
     pub(super) x_at: Vec<usize>,
+    /// Of the bytes of its numbers, if they are not text.
+    pub(super) order: Option<Order>,
     /// How triangles and vertices are numbered, if the latter are consecutively.
     pub(super) labels: Option<Labels>,
+    /// Of a binary file, the rows of the triangles, in its order.
+    pub(super) rows: Vec<Rows>,
     /// One-line remarks for the user.
     pub(super) notes: Vec<String>,
 }
@@ -44,14 +49,12 @@ impl Source {
     #[cold]
     pub(super) fn error_at(
         &self,
-        line: usize,
+        location: Location,
         problem: impl Into<String>,
         remedy: impl Into<String>,
     ) -> ReadError {
-        // Nothing was read of a file without lines, yet editors count from one.
-        let line = line.max(1);
         let path = self.path.clone();
-        ReadError::Content { path, line, problem: problem.into(), remedy: remedy.into() }
+        ReadError::Content { path, location, problem: problem.into(), remedy: remedy.into() }
     }
 
     #[cold]

@@ -1,7 +1,7 @@
 //! Rows and tokens of a text file.
 
 use super::source::Source;
-use crate::error::ReadError;
+use crate::error::{Location, ReadError};
 use std::fmt::Display;
 
 /// What to do about a single wrong line.
@@ -16,24 +16,28 @@ pub(super) struct Cursor<'a> {
     /// The source's bytes up to where this cursor ends.
     bytes: &'a [u8],
     at: usize,
+    /// How many lines were begun. Before the first one and after bytes were taken, a line starts at `at`.
     line: usize,
+    /// In a binary file, where the bytes last taken start.
+    taken: Option<usize>,
 }
 
 impl<'a> Cursor<'a> {
     /// Stands before the first row.
     pub(super) fn new(source: &'a Source) -> Self {
         let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        Cursor { source, bytes: &source.bytes, at, line: 0 }
+        Cursor { source, bytes: &source.bytes, at, line: 0, taken: None }
     }
 
     /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
     /// lines from their own first.
     pub(super) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
-        let mut at = if self.line > 0 { line_end(self.bytes, self.at) } else { self.at };
+        let mut at = self.next_line();
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
             let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
-            parts.push(Cursor { source: self.source, bytes: &self.bytes[..end], at, line: 0 });
+            let bytes = &self.bytes[..end];
+            parts.push(Cursor { source: self.source, bytes, at, line: 0, taken: None });
             at = end;
         }
         parts
@@ -45,18 +49,52 @@ impl<'a> Cursor<'a> {
         self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
-    /// One-based number of the line it stands on, which is the last one once the rows are used up.
-    pub(super) fn line(&self) -> usize {
-        self.line
+    /// The line it stands on, which is the last one once the rows are used up; or where in a binary file it stands,
+    /// which is at the start of the bytes last taken.
+    pub(super) fn location(&self) -> Location {
+        match self.taken {
+            // Nothing was read of a file without lines, yet editors count from one.
+            None => Location::Line(self.line.max(1)),
+            Some(start) if self.line == 0 => Location::Byte(start),
+            Some(_) => Location::Byte(self.at),
+        }
+    }
+
+    /// Where something stands whose first byte is the one at `at`.
+    pub(super) fn location_of(&self, at: usize) -> Location {
+        match self.taken {
+            None => Location::Line(self.source.line_of(at)),
+            Some(_) => Location::Byte(at),
+        }
+    }
+
+    /// Takes so many bytes that start on the next line, or where those last taken end. From then on the file counts
+    /// as binary. None if there are fewer.
+    #[inline]
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let start = self.next_line();
+        (self.at, self.line, self.taken) = (start, 0, Some(start));
+        let taken = self.bytes[start..].get(..count)?;
+        self.at += count;
+        Some(taken)
+    }
+
+    /// Where the bytes last taken start.
+    #[inline]
+    pub(super) fn taken(&self) -> usize {
+        self.taken.unwrap_or(self.at)
+    }
+
+    #[inline]
+    fn next_line(&self) -> usize {
+        if self.line > 0 { line_end(self.bytes, self.at) } else { self.at }
     }
 
     /// Moves to the first token of the next row. False when there is none.
     pub(super) fn next_row(&mut self) -> bool {
         let bytes = self.bytes;
         loop {
-            if self.line > 0 {
-                self.at = line_end(self.bytes, self.at);
-            }
+            self.at = self.next_line();
             if self.at == bytes.len() {
                 return false;
             }
@@ -110,14 +148,20 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Reads how many vertices there are. Their indices have to fit into 32 bits.
+    /// Reads how many vertices there are.
     pub(super) fn vertex_count(&mut self) -> Result<u64, ReadError> {
         let count = self.integer("the number of vertices")?;
+        self.check_vertex_count(count)?;
+        Ok(count)
+    }
+
+    /// Fails where there are more vertices than 32-bit indices can tell apart.
+    pub(super) fn check_vertex_count(&self, count: u64) -> Result<(), ReadError> {
         if count > u64::from(u32::MAX) {
             let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
             return Err(self.error(problem, "Correct the count, or split the mesh"));
         }
-        Ok(count)
+        Ok(())
     }
 
     /// Reads one coordinate, `axis` of `owner` in messages.
@@ -149,7 +193,7 @@ impl<'a> Cursor<'a> {
     /// An error on the current line.
     #[cold]
     pub(super) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
-        self.source.error_at(self.line, problem, remedy)
+        self.source.error_at(self.location(), problem, remedy)
     }
 
     #[cold]
@@ -268,7 +312,7 @@ mod tests {
         let mut cursor = Cursor::new(&source);
         let mut rows = Vec::new();
         while cursor.next_row() {
-            let mut row = vec![cursor.line().to_string().into_bytes()];
+            let mut row = vec![cursor.line.to_string().into_bytes()];
             while let Some(token) = cursor.token() {
                 row.push(token.to_vec());
             }
@@ -276,7 +320,7 @@ mod tests {
         }
         assert_eq!(rows, [&b"3 a b"[..], b"4 d", b"6 \xFF f"]);
         assert!(!cursor.next_row());
-        assert_eq!(cursor.line(), 6);
+        assert_eq!(cursor.location(), Location::Line(6));
     }
 
     #[test]

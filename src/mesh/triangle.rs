@@ -8,7 +8,7 @@ use super::ahead::take_rows;
 use super::implied::Labels;
 use super::source::{Parsed, Source, fixed_note};
 use super::text::{CORRECT, CUT_OFF, Cursor};
-use crate::error::ReadError;
+use crate::error::{Location, ReadError};
 use std::path::{Path, PathBuf};
 
 /// The names of a mesh's files.
@@ -55,24 +55,31 @@ pub(super) fn parse(
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
     let labels = Some(Labels { triangle: triangle_place(ele, 0).1, vertex: numbers.first });
-    Ok(Parsed { mesh: Mesh { points, triangles, fixed }, x_at, labels, notes })
+    Ok(Parsed {
+        mesh: Mesh { points, triangles, fixed },
+        x_at,
+        order: None,
+        labels,
+        rows: Vec::new(),
+        notes,
+    })
 }
 
 /// Line and number of a vertex whose x stands at `x_at`.
-pub(super) fn vertex_place(node: &Source, x_at: usize) -> (usize, u64) {
+pub(super) fn vertex_place(node: &Source, x_at: usize) -> (Location, u64) {
     let start = memchr::memrchr(b'\n', &node.bytes[..x_at]).map_or(0, |end| end + 1);
     let number = std::str::from_utf8(&node.bytes[start..x_at]).unwrap_or_default().trim();
-    (node.line_of(x_at), super::text::integer(number.as_bytes()).unwrap_or_default())
+    let line = Location::Line(node.line_of(x_at));
+    (line, super::text::integer(number.as_bytes()).unwrap_or_default())
 }
 
 /// Line and number of the triangle with this index, in a file that was read before.
-pub(super) fn triangle_place(ele: &Source, index: usize) -> (usize, u64) {
+pub(super) fn triangle_place(ele: &Source, index: usize) -> (Location, u64) {
     let mut cursor = Cursor::new(ele);
     for _ in 0..index + 2 {
         cursor.next_row();
     }
-    let line = cursor.line();
-    (line, cursor.integer("its number").unwrap_or_default())
+    (cursor.location(), cursor.integer("its number").unwrap_or_default())
 }
 
 /// How the vertices of a file are numbered: `count` of them from `first` on.

@@ -204,6 +204,37 @@ fn gmsh_files_keep_all_but_coordinates() {
     }
 }
 
+#[test]
+fn binary_files_are_smoothed_like_text() {
+    let mesh = disturbed();
+    let folder = Folder::new(&[
+        ("2.msh", &support::write_msh22(&mesh)),
+        ("4.msh", &support::write_msh41(&mesh)),
+    ]);
+    folder.line("2.msh 2-out.msh --engine cpu").clean();
+    let smoothed = folder.mesh("2-out.msh");
+    for big in [false, true] {
+        for (name, before, after) in [
+            (
+                "2",
+                support::write_msh22_binary(&mesh, big, true),
+                support::write_msh22_binary(&smoothed, big, true),
+            ),
+            (
+                "4",
+                support::write_msh41_binary(&mesh, big),
+                support::write_msh41_binary(&smoothed, big),
+            ),
+        ] {
+            fs::write(folder.path("in.msh"), before).unwrap();
+            folder.line("in.msh out.msh --engine cpu").clean();
+            assert!(fs::read(folder.path("out.msh")).unwrap() == after, "{name} {big}");
+            let told = folder.line("quality out.msh").clean().out;
+            assert!(told.contains("out.msh"), "{told}");
+        }
+    }
+}
+
 /// Every edge between two vertices of the middle row of the small mesh.
 fn middle_row() -> Vec<[u32; 2]> {
     let first = 4 * 11;

@@ -1,7 +1,8 @@
 //! Damaged files.
 
+use super::binary::{msh22, msh41};
 use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
-use gpu_smooth::MeshFile;
+use gpu_smooth::{Location, MeshFile, Place};
 use std::fs;
 
 /// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
@@ -18,18 +19,27 @@ fn damaged_files_never_panic() {
     };
     let folder = triangle();
     fs::write(folder.path("a.msh"), "").unwrap();
-    let samples: [(&str, &str); 5] = [
-        ("la.1.node", NODE),
-        ("la.1.ele", ELE),
-        ("la.1.poly", POLY),
-        ("a.msh", GMSH22),
-        ("a.msh", GMSH41),
+    let binary = [msh22(false), msh22(true), msh41(false), msh41(true)];
+    let samples: [(&str, &[u8]); 9] = [
+        ("la.1.node", NODE.as_bytes()),
+        ("la.1.ele", ELE.as_bytes()),
+        ("la.1.poly", POLY.as_bytes()),
+        ("a.msh", GMSH22.as_bytes()),
+        ("a.msh", GMSH41.as_bytes()),
+        ("a.msh", &binary[0]),
+        ("a.msh", &binary[1]),
+        ("a.msh", &binary[2]),
+        ("a.msh", &binary[3]),
     ];
     let bytes = b"0123456789 \n\r\t#$.-+eEdDnaifE\"\0\xFF";
+    let inside = |place: Place| match place.location {
+        Location::Line(line) => line > 1,
+        Location::Byte(at) => at > 20,
+    };
     let mut read = 0;
-    for round in 0..4000 {
-        let (name, text) = samples[round % samples.len()];
-        let mut damaged = text.as_bytes().to_vec();
+    for round in 0..7200 {
+        let (name, content) = samples[round % samples.len()];
+        let mut damaged = content.to_vec();
         for _ in 0..=random(3) {
             let at = random(damaged.len());
             match random(5) {
@@ -46,10 +56,10 @@ fn damaged_files_never_panic() {
             read += 1;
             let mesh = file.mesh();
             for vertex in 0..mesh.points.len() {
-                assert!(file.vertex_place(vertex as u32).line > 1);
+                assert!(inside(file.vertex_place(vertex as u32)));
             }
             for triangle in 0..mesh.triangles.len() {
-                assert!(file.triangle_place(triangle).line > 1);
+                assert!(inside(file.triangle_place(triangle)));
             }
             let vertices = mesh.triangles.iter().flatten().chain(&mesh.fixed);
             assert!(vertices.into_iter().all(|&vertex| (vertex as usize) < mesh.points.len()));
@@ -59,7 +69,7 @@ fn damaged_files_never_panic() {
                 assert_eq!(fs::read(folder.path(out)).unwrap(), damaged);
             }
         }
-        fs::write(folder.path(name), text).unwrap();
+        fs::write(folder.path(name), content).unwrap();
     }
-    assert!((400..3600).contains(&read), "{read} of 4000 damaged files were read");
+    assert!((700..6500).contains(&read), "{read} of 7200 damaged files were read");
 }

@@ -95,11 +95,8 @@ fn gmsh_errors_name_line_and_remedy() {
         assert!(GMSH22.contains(from), "{from}");
         assert_gmsh_error(&GMSH22.replacen(from, to, 1), parts);
     };
-    v2(
-        "2.2 0 8",
-        "2.2 1 8",
-        &["a.msh:2: binary .msh is not read yet. Save as ASCII (Mesh.Binary=0)"],
-    );
+    v2("2.2 0 8", "2.2 1 8", &["a.msh, byte 20: the mark of the byte order is one in neither"]);
+    v2("2.2 0 8", "2.2 2 8", &["a.msh:2: the file type is 2, neither 0 nor 1"]);
     v2("2.2 0 8", "4 0 8", &["a.msh:2: gmsh's format version 4 is not read. Save as version 4.1"]);
     v2(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat",
@@ -152,7 +149,8 @@ fn gmsh_errors_name_line_and_remedy() {
 
 #[test]
 fn other_files_are_refused_by_name() {
-    let formats = "Formats read: Triangle .node/.ele, gmsh 2.2 ASCII, gmsh 4.1 ASCII";
+    let formats =
+        "Formats read: Triangle .node/.ele, gmsh 2.2 ASCII, gmsh 2.2 binary, gmsh 4.1 ASCII";
     assert_gmsh_error(" 3 1 3\n 0.0 0.0 1\n", &["a.msh: not read yet: FreeFem .msh. ", formats]);
     assert_error(&[("a.vtk", "# vtk DataFile Version 2.0\n")], &["not read yet: legacy VTK. "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);

@@ -1,7 +1,7 @@
 //! Lists long enough to be read and written on several threads: nothing about them differs from short ones.
 
 use super::Folder;
-use gpu_smooth::MeshFile;
+use gpu_smooth::{Location, MeshFile};
 use std::fmt::Write;
 
 /// Vertices along a side.
@@ -50,12 +50,12 @@ impl Text {
     }
 }
 
-fn points() -> Vec<[f64; 2]> {
+pub(crate) fn points() -> Vec<[f64; 2]> {
     let at = |i: usize| [(i % SIDE) as f64 + 0.3 / (i + 1) as f64, (i / SIDE) as f64 * 1.1];
     (0..SIDE * SIDE).map(at).collect()
 }
 
-fn triangles() -> Vec<[u32; 3]> {
+pub(crate) fn triangles() -> Vec<[u32; 3]> {
     let cells = (0..SIDE * (SIDE - 1)).filter(|i| i % SIDE != SIDE - 1);
     let halves = cells.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]);
     halves.map(|triangle| triangle.map(|v| v as u32)).collect()
@@ -142,10 +142,12 @@ fn long_lists_are_read_as_they_stand() {
             assert!(file.mesh().points == points(), "{name}");
             assert!(file.mesh().triangles == triangles(), "{name}");
             for v in [0, 17, 20_000, SIDE * SIDE - 1] {
-                assert_eq!(file.vertex_place(v as u32).line, vertices.vertex_lines[v], "{name}");
+                let line = Location::Line(vertices.vertex_lines[v]);
+                assert_eq!(file.vertex_place(v as u32).location, line, "{name}");
             }
             for t in [0, 33, 50_000] {
-                assert_eq!(file.triangle_place(t).line, elements.triangle_lines[t], "{name}");
+                let line = Location::Line(elements.triangle_lines[t]);
+                assert_eq!(file.triangle_place(t).location, line, "{name}");
             }
         }
     }

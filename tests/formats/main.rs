@@ -1,10 +1,13 @@
 //! Reading and writing mesh files: what comes back byte for byte, and what each error says.
 
+mod binary;
 mod damage;
 mod errors;
 mod long;
+#[path = "../support/mod.rs"]
+mod support;
 
-use gpu_smooth::{Format, MeshFile};
+use gpu_smooth::{Format, Location, MeshFile};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -84,7 +87,7 @@ fn triangle_numbers_may_start_at_zero() {
     assert_eq!(file.mesh().fixed, [0, 1, 2, 2, 0]);
     assert_eq!(file.triangle_place(0).label, 0);
     let place = file.vertex_place(2);
-    assert_eq!((place.line, place.label), (4, 2));
+    assert_eq!((place.location, place.label), (Location::Line(4), 2));
 }
 
 #[test]
@@ -102,7 +105,23 @@ fn gmsh_maps_tags_and_fixes_what_is_not_a_triangle() {
     assert_eq!(file.mesh().triangles, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     // Vertex 0 is in a block of a model point, too.
     assert_eq!(file.mesh().fixed, [0, 0, 1]);
-    assert!(file.notes().is_empty());
+    assert_eq!(file.notes().len(), 1);
+}
+
+#[test]
+fn gmsh_parameters_are_kept_and_told_of() {
+    let parametric = ("2 1 1 4\n9", "2 1 0 4\n9");
+    let without = GMSH41.replace(parametric.0, parametric.1);
+    assert_ne!(without, GMSH41);
+    let in_version_2 = GMSH22
+        .replace("$Nodes\n", "$ParametricNodes\n")
+        .replace("$EndNodes", "$EndParametricNodes");
+    for (text, tells) in [(GMSH41, true), (&without, false), (GMSH22, false), (&in_version_2, true)]
+    {
+        let folder = Folder::new(&[("a.msh", text)]);
+        let notes = folder.read("a.msh").notes().join("\n");
+        assert_eq!(notes.contains("nodes have parameters on surfaces"), tells, "{notes}");
+    }
 }
 
 #[test]
@@ -111,7 +130,7 @@ fn gmsh_vertices_on_curves_of_the_model_are_fixed() {
     let folder = Folder::new(&[("a.msh", &text)]);
     let file = folder.read("a.msh");
     assert_eq!(file.mesh().fixed, [0, 1, 2, 3, 4, 0, 1]);
-    assert!(file.notes()[0].contains("all of them stay fixed"), "{:?}", file.notes());
+    assert!(file.notes().join("").contains("all of them stay fixed"), "{:?}", file.notes());
 }
 
 #[test]
@@ -119,17 +138,17 @@ fn places_name_file_line_and_label() {
     let folder = triangle();
     let file = folder.read("la.1");
     let (vertex, triangle) = (file.vertex_place(4), file.triangle_place(2));
-    assert_eq!((vertex.line, vertex.label), (9, 5));
-    assert_eq!((triangle.line, triangle.label), (5, 3));
+    assert_eq!((vertex.location, vertex.label), (Location::Line(9), 5));
+    assert_eq!((triangle.location, triangle.label), (Location::Line(5), 3));
     assert!(triangle.to_string().ends_with("la.1.ele:5"), "{triangle}");
 
     let folder = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
     let (a, b) = (folder.read("a.msh"), folder.read("b.msh"));
-    let of = |place: gpu_smooth::Place| (place.line, place.label);
-    assert_eq!(of(a.vertex_place(0)), (10, 900_000_000_000));
-    assert_eq!(of(a.triangle_place(1)), (22, 4));
-    assert_eq!(of(b.vertex_place(4)), (22, 6));
-    assert_eq!(of(b.triangle_place(3)), (32, 5));
+    let of = |place: gpu_smooth::Place| (place.location, place.label);
+    assert_eq!(of(a.vertex_place(0)), (Location::Line(10), 900_000_000_000));
+    assert_eq!(of(a.triangle_place(1)), (Location::Line(22), 4));
+    assert_eq!(of(b.vertex_place(4)), (Location::Line(22), 6));
+    assert_eq!(of(b.triangle_place(3)), (Location::Line(32), 5));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! Each user of this module (a test, an example, a bench) is a crate of its own that needs only part of it.
 #![allow(dead_code, unreachable_pub, unused_imports)]
 
+pub mod binary;
 pub mod check;
 pub mod disturb;
 pub mod generate;
@@ -13,6 +14,7 @@ pub mod rng;
 pub mod trig;
 pub mod write;
 
+pub use binary::{Binary, write_msh22_binary, write_msh41_binary};
 pub use check::{
     area, boundary, edge_uses, f_imr, is_ccw, is_valid, min_angle, mover_count, orientations,
     same_orientations, worst_imr,

@@ -14,7 +14,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness}
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     after_help = "Boundary vertices and those on constraint lines stay where they are. Formats: \
-                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII).\n\n\
+                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary).\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \

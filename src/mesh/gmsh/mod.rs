@@ -1,27 +1,40 @@
-//! gmsh's `.msh` in ASCII, versions 2.2 and 4.1.
+//! gmsh's `.msh`, versions 2.2 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
 //! `$MeshFormat`, `$Nodes` and `$Elements` are looked at.
 
+mod binary2;
+mod binary4;
 mod kind;
 mod reader;
 mod tags;
-mod v2;
-mod v4;
+mod text2;
+mod text4;
+mod words;
 
 pub(super) use reader::{parse, triangle_place, vertex_place};
 
 use super::ahead::take_rows;
+use super::binary::Order;
 use super::source::Source;
 use super::text::{CUT_OFF, Cursor, quoted};
-use crate::error::ReadError;
+use crate::error::{Location, ReadError};
 use kind::Kind;
+use std::ops::Range;
 
-/// The layouts of the sections.
+/// How the sections are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Version {
     V2,
     V4,
+}
+
+/// How a file's numbers are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Layout {
+    version: Version,
+    /// Of the bytes of its numbers, if they are not text.
+    order: Option<Order>,
 }
 
 /// Takes what the sections hold, in the order of the file.
@@ -34,8 +47,10 @@ trait Sink {
     /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
     /// where the file says so.
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    /// Nodes on surfaces of the model have parameters there.
+    fn parametric(&mut self) {}
     /// No more nodes follow.
-    fn end_nodes(&mut self, _source: &Source) -> Result<(), ReadError> {
+    fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
         Ok(())
     }
     /// About this many elements follow.
@@ -48,33 +63,50 @@ trait Sink {
         kind: Kind,
         nodes: &[u64],
     ) -> Result<(), ReadError>;
+    /// Where the last elements of a binary file, all of this kind, stand: what [`Rows`](super::implied::Rows) tells of triangles.
+    fn rows(
+        &mut self,
+        _kind: Kind,
+        _bytes: Range<usize>,
+        _size: usize,
+        _tag_at: usize,
+        _width: usize,
+    ) {
+    }
 }
 
 /// Feeds a file's nodes and elements to the sink.
-fn walk(source: &Source, sink: &mut impl Sink) -> Result<Version, ReadError> {
+fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
     let cursor = &mut Cursor::new(source);
-    let mut version = None;
+    let mut layout = None;
     let (mut nodes, mut elements) = (false, false);
     while cursor.next_row() {
         // Like gmsh, ignore what stands between sections.
         let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
             continue;
         };
-        let opened = cursor.line();
+        let opened = cursor.location();
         match name {
             b"MeshFormat" => {
-                version = Some(mesh_format(cursor)?);
+                layout = Some(mesh_format(cursor)?);
                 end_of_section(cursor, "MeshFormat", opened, "one line")?;
             }
             b"Nodes" | b"ParametricNodes" => {
                 once(cursor, &mut nodes, "Nodes")?;
-                let count = match known(cursor, version)? {
-                    Version::V2 => v2::nodes(cursor, sink)?,
-                    Version::V4 => v4::nodes(cursor, sink)?,
+                let Layout { version, order } = known(cursor, layout)?;
+                let parametric = name == b"ParametricNodes";
+                if parametric {
+                    sink.parametric();
+                }
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::nodes(cursor, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, sink)?,
+                    (Version::V2, Some(order)) => binary2::nodes(cursor, order, parametric, sink)?,
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, sink)?,
                 };
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
-                sink.end_nodes(source)?;
+                sink.end_nodes(cursor)?;
             }
             b"Elements" => {
                 once(cursor, &mut elements, "Elements")?;
@@ -82,9 +114,12 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Version, ReadError> {
                     let problem = "$Elements stands before $Nodes";
                     return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
                 }
-                let count = match known(cursor, version)? {
-                    Version::V2 => v2::elements(cursor, sink)?,
-                    Version::V4 => v4::elements(cursor, sink)?,
+                let Layout { version, order } = known(cursor, layout)?;
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::elements(cursor, sink)?,
+                    (Version::V4, None) => text4::elements(cursor, sink)?,
+                    (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
+                    (Version::V4, Some(order)) => binary4::elements(cursor, order, sink)?,
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
             }
@@ -96,8 +131,8 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Version, ReadError> {
         }
     }
     let missing = if !nodes { "$Nodes" } else { "$Elements" };
-    match version {
-        Some(version) if nodes && elements => Ok(version),
+    match layout {
+        Some(layout) if nodes && elements => Ok(layout),
         _ => Err(source.error(
             format!("it has no {missing} section"),
             "The file is cut off or was saved without its mesh: save it again",
@@ -105,7 +140,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Version, ReadError> {
     }
 }
 
-fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Version, ReadError> {
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Layout, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
     let version = match name {
@@ -118,8 +153,15 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Version, ReadError> {
         }
     };
     match cursor.integer("the file type")? {
-        0 => Ok(version),
-        1 => Err(cursor.error("binary .msh is not read yet", "Save as ASCII (Mesh.Binary=0)")),
+        0 => Ok(Layout { version, order: None }),
+        1 => match cursor.integer("the size of a number")? {
+            8 => Ok(Layout { version, order: Some(words::byte_order(cursor)?) }),
+            size => {
+                let problem =
+                    format!("its numbers have {size} bytes, and only those of 8 are read");
+                Err(cursor.error(problem, "Save as ASCII (Mesh.Binary=0)"))
+            }
+        },
         other => {
             let problem = format!("the file type is {other}, neither 0 nor 1");
             Err(cursor.error(problem, "Save the mesh again with gmsh"))
@@ -127,9 +169,9 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Version, ReadError> {
     }
 }
 
-fn known(cursor: &Cursor<'_>, version: Option<Version>) -> Result<Version, ReadError> {
+fn known(cursor: &Cursor<'_>, layout: Option<Layout>) -> Result<Layout, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
-    version.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
+    layout.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
 }
 
 fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
@@ -169,11 +211,28 @@ fn ahead<'a, S: Sink, T: Send>(
     take_rows(cursor, count, read, |row| take(nowhere, sink, row))
 }
 
+/// Whether a block of so many fits into what the section's count leaves.
+fn block_fits(cursor: &Cursor<'_>, size: u64, left: u64, what: &str) -> Result<(), ReadError> {
+    if size <= left {
+        return Ok(());
+    }
+    let problem = format!("a block of {size} {what} where the section's count leaves {left}");
+    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
+}
+
+fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if done == count {
+        return Ok(());
+    }
+    let problem = format!("the blocks hold {done} of the {count} {what} the section announces");
+    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
+}
+
 /// Moves past the line that ends a section of which all that was announced is read.
 fn end_of_section(
     cursor: &mut Cursor<'_>,
     name: &str,
-    opened: usize,
+    opened: Location,
     announced: &str,
 ) -> Result<(), ReadError> {
     if cursor.next_row() && !cursor.is_at(b'$') {
@@ -186,7 +245,7 @@ fn end_of_section(
     }
 }
 
-fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: usize) -> Result<(), ReadError> {
+fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: Location) -> Result<(), ReadError> {
     while cursor.next_row() {
         if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)
         {
@@ -196,7 +255,7 @@ fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: usize) -> Result<(
     Err(no_end(cursor, &quoted(name), opened))
 }
 
-fn no_end(cursor: &Cursor<'_>, name: &str, opened: usize) -> ReadError {
+fn no_end(cursor: &Cursor<'_>, name: &str, opened: Location) -> ReadError {
     let problem = format!("${name} has no $End{name}");
     cursor.source.error_at(opened, problem, CUT_OFF)
 }

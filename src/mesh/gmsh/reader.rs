@@ -1,39 +1,46 @@
 //! What becomes of the nodes and elements: a mesh, or the place of one of them.
 
 use super::super::Mesh;
-use super::super::implied::Labels;
+use super::super::implied::{Labels, Rows};
 use super::super::source::{Parsed, Source, fixed_note};
 use super::super::text::{CORRECT, Cursor};
 use super::kind::Kind;
 use super::tags::TagMap;
 use super::{Sink, Version, walk};
-use crate::error::ReadError;
+use crate::error::{Location, ReadError};
+use std::ops::Range;
 
 /// Reads a mesh.
 pub(in crate::mesh) fn parse(source: &Source) -> Result<(Version, Parsed), ReadError> {
     let mut reader = Reader::default();
-    let version = walk(source, &mut reader)?;
-    let Reader { mesh, x_at, map, first_triangle, quadrilaterals, on_lower, .. } = reader;
+    let layout = walk(source, &mut reader)?;
+    let Reader {
+        mesh, x_at, map, first_triangle, rows, quadrilaterals, parametric, on_lower, ..
+    } = reader;
     let vertex = map.and_then(|map| map.first_of_run());
     let labels = vertex.map(|vertex| Labels { triangle: first_triangle, vertex });
     let mut notes = Vec::new();
     if quadrilaterals > 0 {
         notes.push(fixed_note(quadrilaterals, "quadrilateral", ""));
     }
+    if parametric {
+        let note = "nodes have parameters on surfaces of the model, which stay as they are where nodes move";
+        notes.push(note.into());
+    }
     if on_lower == mesh.points.len() {
         let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
         notes.push(note.into());
     }
-    Ok((version, Parsed { mesh, x_at, labels, notes }))
+    Ok((layout.version, Parsed { mesh, x_at, order: layout.order, labels, rows, notes }))
 }
 
-/// Line and tag of a vertex, in a file that was read before.
-pub(in crate::mesh) fn vertex_place(source: &Source, index: usize) -> (usize, u64) {
+/// Location and tag of a vertex, in a file that was read before.
+pub(in crate::mesh) fn vertex_place(source: &Source, index: usize) -> (Location, u64) {
     find(source, Locator { nodes_before: index, triangles_before: usize::MAX, place: None })
 }
 
-/// Line and tag of a triangle, in a file that was read before.
-pub(in crate::mesh) fn triangle_place(source: &Source, index: usize) -> (usize, u64) {
+/// Location and tag of a triangle, in a file that was read before.
+pub(in crate::mesh) fn triangle_place(source: &Source, index: usize) -> (Location, u64) {
     find(source, Locator { nodes_before: usize::MAX, triangles_before: index, place: None })
 }
 
@@ -46,7 +53,9 @@ struct Reader {
     map: Option<TagMap>,
     /// The tag of the first triangle.
     first_triangle: u64,
+    rows: Vec<Rows>,
     quadrilaterals: u64,
+    parametric: bool,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
 }
@@ -73,7 +82,11 @@ impl Sink for Reader {
         self.mesh.points.push(at);
     }
 
-    fn end_nodes(&mut self, source: &Source) -> Result<(), ReadError> {
+    fn parametric(&mut self) {
+        self.parametric = true;
+    }
+
+    fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         let tags = std::mem::take(&mut self.tags);
         match TagMap::new(&tags) {
             Ok(map) => {
@@ -83,7 +96,8 @@ impl Sink for Reader {
             Err(second) => {
                 let problem = format!("these are the second coordinates of node {}", tags[second]);
                 let remedy = "Give each node a tag of its own";
-                Err(source.error_at(source.line_of(self.x_at[second]), problem, remedy))
+                let location = cursor.location_of(self.x_at[second]);
+                Err(cursor.source.error_at(location, problem, remedy))
             }
         }
     }
@@ -130,25 +144,47 @@ impl Sink for Reader {
             }
         }
     }
+
+    fn rows(&mut self, kind: Kind, bytes: Range<usize>, size: usize, tag_at: usize, width: usize) {
+        if kind != Kind::Triangle {
+            return;
+        }
+        match self.rows.last_mut() {
+            Some(last)
+                if (last.bytes.end, last.size, last.number_at) == (bytes.start, size, tag_at) =>
+            {
+                last.bytes.end = bytes.end;
+            }
+            _ => {
+                let first = self.mesh.triangles.len() - bytes.len() / size;
+                self.rows.push(Rows { bytes, first, size, number_at: tag_at, width });
+            }
+        }
+    }
 }
 
 /// Finds one node or triangle again. Places are for errors only, so none is kept for each.
 struct Locator {
     nodes_before: usize,
     triangles_before: usize,
-    place: Option<(usize, u64)>,
+    place: Option<(Location, u64)>,
 }
 
-fn find(source: &Source, mut locator: Locator) -> (usize, u64) {
+fn find(source: &Source, mut locator: Locator) -> (Location, u64) {
     // It was read before without error.
     let _ = walk(source, &mut locator);
-    locator.place.unwrap_or((1, 0))
+    locator.place.unwrap_or((Location::Line(1), 0))
 }
 
 impl Locator {
-    fn count_down(before: &mut usize, place: &mut Option<(usize, u64)>, line: usize, tag: u64) {
+    fn count_down(
+        before: &mut usize,
+        place: &mut Option<(Location, u64)>,
+        cursor: &Cursor<'_>,
+        tag: u64,
+    ) {
         if *before == 0 && place.is_none() {
-            *place = Some((line, tag));
+            *place = Some((cursor.location(), tag));
         }
         *before = before.saturating_sub(1);
     }
@@ -156,7 +192,7 @@ impl Locator {
 
 impl Sink for Locator {
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        Self::count_down(&mut self.nodes_before, &mut self.place, cursor.line(), tag);
+        Self::count_down(&mut self.nodes_before, &mut self.place, cursor, tag);
     }
 
     fn element(
@@ -167,7 +203,7 @@ impl Sink for Locator {
         _: &[u64],
     ) -> Result<(), ReadError> {
         if kind == Kind::Triangle {
-            Self::count_down(&mut self.triangles_before, &mut self.place, cursor.line(), tag);
+            Self::count_down(&mut self.triangles_before, &mut self.place, cursor, tag);
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::super::text::Cursor;
 use super::kind::{Kind, node_tags};
-use super::{Sink, ahead, row};
+use super::{Sink, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
 use std::fmt::Display;
 
@@ -18,8 +18,12 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         row(cursor, block, blocks, "node blocks")?;
         let dimension = cursor.integer("the dimension of a node block")?;
         cursor.token(); // The entity's own tag, which may be negative.
-        cursor.integer("whether the nodes are parametric")?;
-        let size = block_size(cursor, count - done, "nodes")?;
+        let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+        if parametric && dimension >= 2 {
+            sink.parametric();
+        }
+        let size = cursor.integer("the number of nodes of a block")?;
+        block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
         let plain = ahead(cursor, size, sink, node_tag, |_, _, tag| {
@@ -60,7 +64,8 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
         cursor.token();
         let kind = cursor.integer("the type of an element block")?;
         let kind = Kind::new(cursor, kind)?;
-        let size = block_size(cursor, count - done, "elements")?;
+        let size = cursor.integer("the number of elements of a block")?;
+        block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>| element(cursor, kind);
         let plain = ahead(cursor, size, sink, read, |cursor, sink, (tag, nodes)| {
             sink.element(cursor, tag, kind, &nodes[..kind.nodes()]).is_ok()
@@ -97,22 +102,4 @@ fn point(
 fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<(u64, [u64; 4]), ReadError> {
     let tag = cursor.integer("an element tag")?;
     Ok((tag, node_tags(cursor, kind, tag)?))
-}
-
-/// Reads the size of a block, of which the section's count leaves `left`.
-fn block_size(cursor: &mut Cursor<'_>, left: u64, what: &str) -> Result<u64, ReadError> {
-    let size = cursor.integer(format_args!("the number of {what} of a block"))?;
-    if size > left {
-        let problem = format!("a block of {size} {what} where the section's count leaves {left}");
-        return Err(cursor.error(problem, "Correct the counts, or save the mesh again"));
-    }
-    Ok(size)
-}
-
-fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
-    if done == count {
-        return Ok(());
-    }
-    let problem = format!("the blocks hold {done} of the {count} {what} the section announces");
-    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
 }
