@@ -32,7 +32,8 @@ fn main() {
         let plate = support::triangulate(&outline, vertices).unwrap();
         let starts = [
             ("perturbed", support::perturb_random(&plate, 1.0, 1)),
-            ("distorted", support::distort_smooth(&plate, 1.0)),
+            ("distorted", support::distort_smooth(&plate, 0.9)),
+            ("to collapse", support::distort_smooth(&plate, 1.0)),
         ];
         for (start, mesh) in &starts {
             for (name, backend) in &backends {

@@ -1,5 +1,5 @@
-// The sum over a free vertex's free neighbors of what each carries to it. A kernel says what that is in
-// `carried(v, k)`.
+// The sum over a free vertex's free neighbors of what each carries. A kernel says what that is in
+// `carried(k)`.
 
 fn around(v: u32) -> vec2<f32> {
     var sum = vec2(0.0);
@@ -7,7 +7,7 @@ fn around(v: u32) -> vec2<f32> {
     for (var i = ring_place(ring_start[v]); i < end; i++) {
         let k = ring[i];
         if k < op.free {
-            sum += carried(v, k);
+            sum += carried(k);
         }
     }
     return sum;

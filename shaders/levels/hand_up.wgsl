@@ -8,8 +8,8 @@ fn value_at(v: u32) -> vec2<f32> {
     return vectors[op.x + aggregate];
 }
 
-fn carried(v: u32, k: u32) -> vec2<f32> {
-    return value_at(k) * edge_weight(v, k);
+fn carried(k: u32) -> vec2<f32> {
+    return value_at(k) * root(k);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -22,6 +22,6 @@ fn hand_up(
         return;
     }
     let v = op.first + index;
-    let share = SMOOTHING * values[op.diagonal + v];
+    let share = SMOOTHING * values[op.diagonal + v] * root(v);
     direction[v] = value_at(v) * (1.0 - SMOOTHING) + around(v) * share;
 }

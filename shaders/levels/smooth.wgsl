@@ -1,8 +1,8 @@
 // What each free vertex hands down: the gradient, smoothed as the prolongation is. It stands where the correction
 // will.
 
-fn carried(v: u32, k: u32) -> vec2<f32> {
-    return gradient[k] * (values[op.diagonal + k] * edge_weight(v, k));
+fn carried(k: u32) -> vec2<f32> {
+    return gradient[k] * (values[op.diagonal + k] * root(k));
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -15,5 +15,5 @@ fn smooth_gradient(
         return;
     }
     let v = op.first + index;
-    direction[v] = gradient[v] * (1.0 - SMOOTHING) + around(v) * SMOOTHING;
+    direction[v] = gradient[v] * (1.0 - SMOOTHING) + around(v) * (SMOOTHING * root(v));
 }

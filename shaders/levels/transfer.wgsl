@@ -1,5 +1,5 @@
 // Between the free vertices and the first coarse level. The graph Laplacian on the free vertices is never stored:
-// `entries` are the sizes of the elements at each vertex, `a` is twice the stiffness of the metric.
+// the weight of an edge is the product of the roots of its vertices, which are the `entries`.
 
 @group(0) @binding(2) var<storage, read> ring_start: array<u32>;
 @group(0) @binding(3) var<storage, read> ring: array<u32>;
@@ -9,7 +9,7 @@
 @group(0) @binding(7) var<storage, read_write> direction: array<vec2<f32>>;
 @group(0) @binding(8) var<storage, read_write> vectors: array<vec2<f32>>;
 
-// Weight of the edge between two free vertices.
-fn edge_weight(v: u32, k: u32) -> f32 {
-    return op.a / (values[op.entries + v] + values[op.entries + k]);
+// Of a free vertex the root of the stiffness of the metric over the size of its elements.
+fn root(v: u32) -> f32 {
+    return values[op.entries + v];
 }

@@ -1,6 +1,6 @@
 //! Corrections from coarser levels, on the CPU.
 
-use glam::{DVec2, Vec2, Vec3, Vec3Swizzles};
+use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
@@ -22,16 +22,14 @@ pub(super) fn correction(
         let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
-    let (sizes, stiffness) = hierarchy.sizes();
-    let around = |v: usize, values: &[Vec3]| -> Vec2 {
-        let sum =
-            |sum: Vec2, k: usize| sum + values[k].xy() * (stiffness / (sizes[v] + values[k].z));
-        ring(v).fold(Vec2::ZERO, sum)
+    let root = hierarchy.roots();
+    // The values are those of the neighbors times their roots.
+    let around = |v: usize, values: &[Vec2]| -> Vec2 {
+        root[v] * ring(v).fold(Vec2::ZERO, |sum, k| sum + values[k])
     };
     let diagonal = hierarchy.inverse_diagonal();
     let restricted = {
-        let scaled =
-            rows(gradient.len(), |v| (gradient[v].as_vec2() * diagonal[v]).extend(sizes[v]));
+        let scaled = rows(gradient.len(), |v| gradient[v].as_vec2() * (diagonal[v] * root[v]));
         let smoothed = rows(gradient.len(), |v| {
             gradient[v].as_vec2() * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
         });
@@ -42,15 +40,13 @@ pub(super) fn correction(
         })
     };
     let coarse = solve(hierarchy.levels(), &restricted);
-    let handed = rows(gradient.len(), |v| {
-        let value = match hierarchy.aggregate_of()[v] {
-            NONE => Vec2::ZERO,
-            aggregate => coarse[aggregate as usize],
-        };
-        value.extend(sizes[v])
-    });
+    let own = |v: usize| match hierarchy.aggregate_of()[v] {
+        NONE => Vec2::ZERO,
+        aggregate => coarse[aggregate as usize],
+    };
+    let handed = rows(gradient.len(), |v| own(v) * root[v]);
     rows(gradient.len(), |v| {
-        handed[v].xy() * (1.0 - SMOOTHING) + around(v, &handed) * (SMOOTHING * diagonal[v])
+        own(v) * (1.0 - SMOOTHING) + around(v, &handed) * (SMOOTHING * diagonal[v])
     })
 }
 

@@ -236,23 +236,15 @@ impl Levels {
         let partials = objective_invocations(problem.triangles().len());
         let sums = layout.vector(4 * partials as usize);
 
-        let (sizes, doubled_stiffness) = hierarchy.sizes();
         let (values, [entries, diagonal]) =
-            layout.values.place([sizes, hierarchy.inverse_diagonal()])?;
+            layout.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
         let (of_page, [of]) = layout.structure.place([hierarchy.aggregate_of()])?;
         let (members, [starts, columns]) =
             layout.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = layout.vector(aggregates as usize);
         let free = problem.free_count() as u32;
-        let fine = LevelOp {
-            rows: free,
-            free,
-            entries,
-            diagonal,
-            a: doubled_stiffness,
-            ..LevelOp::default()
-        };
+        let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
         // A step on the free vertices, by what one-rings are bound at once.
         let by_rings = |layout: &mut Layout<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
             for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {

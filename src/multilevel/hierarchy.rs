@@ -33,9 +33,8 @@ pub(crate) struct Hierarchy {
     aggregates: Aggregates,
     member_start: Vec<u32>,
     member: Vec<u32>,
-    size: Vec<f32>,
+    root: Vec<f32>,
     inverse_diagonal: Vec<f32>,
-    doubled_stiffness: f32,
     levels: Vec<Level>,
 }
 
@@ -64,17 +63,21 @@ impl Hierarchy {
         let aggregates =
             Aggregates::new(free, |v| neighbors(problem, v).filter(move |&k| (k as usize) < free));
         let (member_start, member) = aggregates.members();
-        let (factor, size) = match stiffness {
-            Stiffness::BySize(factor) => (factor, element_sizes(problem, positions)),
-            Stiffness::Uniform(factor) => (factor, vec![2.0 * problem.mean_area() as f32; free]),
+        let root = match stiffness {
+            Stiffness::BySize(factor) => {
+                let sizes = element_sizes(problem, positions);
+                sizes.into_par_iter().map(|size| (factor as f32 / size).sqrt()).collect()
+            }
+            Stiffness::Uniform(factor) => {
+                vec![(factor / (2.0 * problem.mean_area())).sqrt() as f32; free]
+            }
         };
         let mut hierarchy = Self {
             aggregates,
             member_start,
             member,
-            size,
+            root,
             inverse_diagonal: Vec::new(),
-            doubled_stiffness: 2.0 * factor as f32,
             levels: Vec::new(),
         };
         hierarchy.inverse_diagonal = (0..free)
@@ -127,16 +130,15 @@ impl Hierarchy {
     /// Weight of the edge from a free vertex to a neighbor.
     #[inline]
     pub(crate) fn weight(&self, v: usize, k: usize) -> f32 {
-        let near = self.size[v];
-        // Of fixed vertices no size is kept: they take that of whoever asks.
-        let far = self.size.get(k).copied().unwrap_or(near);
-        self.doubled_stiffness / (near + far)
+        let near = self.root[v];
+        // Of fixed vertices none is kept: they take that of whoever asks.
+        near * self.root.get(k).copied().unwrap_or(near)
     }
 
-    /// The size of elements at each free vertex, and twice the stiffness: a weight is the latter over the
-    /// sum of two sizes.
-    pub(crate) fn sizes(&self) -> (&[f32], f32) {
-        (&self.size, self.doubled_stiffness)
+    /// Of each free vertex the root of the stiffness over the size of its elements: the weight of an edge is the product
+    /// of two of them.
+    pub(crate) fn roots(&self) -> &[f32] {
+        &self.root
     }
 
     /// The aggregate of each free vertex, [`NONE`] if it has no free neighbor.
