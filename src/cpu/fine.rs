@@ -100,6 +100,10 @@ impl FineLevel for CpuFine<'_> {
         Ok(self.positions.clone())
     }
 
+    fn hierarchy(&mut self) -> Option<Hierarchy> {
+        self.hierarchy.take()
+    }
+
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         self.hierarchy = Some(hierarchy);
         Ok(())

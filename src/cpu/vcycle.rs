@@ -136,6 +136,16 @@ mod tests {
         Hierarchy::new(problem, problem.positions(), stiffness)
     }
 
+    /// The same, made for elements up to thirty times smaller and fitted to these.
+    fn resized(problem: &Problem) -> Hierarchy {
+        let positions = problem.positions();
+        let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let stretched = |p: &DVec2| *p * (1.0 + 1.5 * *p * *p / (extent * extent));
+        let stretched: Vec<DVec2> = positions.iter().map(stretched).collect();
+        let stiffness = Metric::Imr.properties().stiffness.unwrap();
+        Hierarchy::new(problem, &stretched, stiffness).resized(problem, positions, stiffness)
+    }
+
     /// Something that looks like noise.
     fn noise(count: usize, seed: f64) -> Vec<DVec2> {
         let at = |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos());
@@ -159,12 +169,12 @@ mod tests {
     #[test]
     fn a_correction_is_symmetric_and_descends() {
         let problem = square();
-        let hierarchy = hierarchy(&problem);
-        for seed in [0.37, 1.1, 2.9] {
+        let hierarchies = [hierarchy(&problem), resized(&problem)];
+        for (seed, hierarchy) in [0.37, 1.1, 2.9].into_iter().zip(hierarchies.iter().cycle()) {
             let (a, b) =
                 (noise(problem.free_count(), seed), noise(problem.free_count(), seed + 0.2));
             let (to_a, to_b) =
-                (correction(&hierarchy, &problem, &a), correction(&hierarchy, &problem, &b));
+                (correction(hierarchy, &problem, &a), correction(hierarchy, &problem, &b));
             assert!(dot(&a, &to_a) < 0.0 && dot(&b, &to_b) < 0.0);
             let (across, back) = (dot(&a, &to_b), dot(&b, &to_a));
             let scale = (dot(&a, &to_a) * dot(&b, &to_b)).sqrt();
@@ -176,7 +186,11 @@ mod tests {
     fn smooth_errors_are_corrected_nearly_whole() {
         // A wave over the whole square, which sweeps alone would take thousands for.
         let problem = square();
-        let hierarchy = hierarchy(&problem);
+        assert_corrects_a_wave(&problem, &hierarchy(&problem));
+        assert_corrects_a_wave(&problem, &resized(&problem));
+    }
+
+    fn assert_corrects_a_wave(problem: &Problem, hierarchy: &Hierarchy) {
         let positions = problem.positions();
         let low = positions.iter().copied().reduce(DVec2::min).unwrap();
         let high = positions.iter().copied().reduce(DVec2::max).unwrap();
@@ -192,7 +206,7 @@ mod tests {
         };
         let free = problem.free_count();
         let gradient: Vec<DVec2> = (0..free).map(laplacian).collect();
-        let step = correction(&hierarchy, &problem, &gradient);
+        let step = correction(hierarchy, problem, &gradient);
         // As far along the step as a line search would go.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
         let length = -dot(&wave[..free], &step) / squared;

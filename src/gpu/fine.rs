@@ -27,6 +27,8 @@ pub(crate) struct GpuFine<'a> {
     mesh: MeshBuffers,
     run: Run,
     levels: Option<Levels>,
+    /// What the levels were made from.
+    hierarchy: Option<Hierarchy>,
     waiting: Waiting,
 }
 
@@ -48,7 +50,8 @@ impl<'a> GpuFine<'a> {
         let stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
         let run = Run::new(gpu, problem, &mesh, Plan { stop, ..plan.clone() }, false)?;
         let metric = plan.scheme.base();
-        Ok(Self { gpu, problem, start, metric, mesh, run, levels: None, waiting })
+        let (levels, hierarchy) = (None, None);
+        Ok(Self { gpu, problem, start, metric, mesh, run, levels, hierarchy, waiting })
     }
 
     fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
@@ -99,6 +102,10 @@ impl FineLevel for GpuFine<'_> {
         Ok(moved_positions(moved, self.start))
     }
 
+    fn hierarchy(&mut self) -> Option<Hierarchy> {
+        self.hierarchy.take()
+    }
+
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         // Two at once would be more than the mesh itself.
         self.levels = None;
@@ -110,6 +117,7 @@ impl FineLevel for GpuFine<'_> {
             self.metric,
             &hierarchy,
         )?);
+        self.hierarchy = Some(hierarchy);
         Ok(())
     }
 

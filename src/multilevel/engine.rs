@@ -19,10 +19,10 @@ const OMEGA_BEFORE: f64 = 1.5;
 const OMEGA_BETWEEN: f64 = 1.3;
 /// Every over-relaxation a run uses beside 1 and the metric's own.
 pub(crate) const OMEGAS: [f64; 2] = [OMEGA_BEFORE, OMEGA_BETWEEN];
-/// The hierarchy is built anew after this many corrections, once, if meanwhile f has lost more than the share
-/// below of what it had above its ideal: then sizes of elements have changed.
-const REBUILD_AFTER: u32 = 2;
-const REBUILD_IF: f64 = 0.15;
+/// The hierarchy is fitted to the sizes of elements again after this many corrections, once, if meanwhile f has
+/// lost more than the share below of what it had above its ideal: then they have changed.
+const RESIZE_AFTER: u32 = 2;
+const RESIZE_IF: f64 = 0.15;
 /// A correction taken at a shorter length than this helps no more than one refused,
 const SHORT: f64 = 0.05;
 /// and after so many of them in a row there are sweeps alone again, this many at least,
@@ -46,6 +46,9 @@ pub(crate) trait FineLevel {
 
     /// Normalized positions of all vertices.
     async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
+
+    /// Gives back the levels it was given, if any.
+    fn hierarchy(&mut self) -> Option<Hierarchy>;
 
     /// Takes the levels below, or [`GpuError::Limit`] if there is no room for them: the run then goes on without.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
@@ -194,9 +197,13 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
     ) -> Result<Objectives, GpuError> {
         let built = self.excess(since);
         let lost = built - self.excess(self.history.len() - 1);
-        if proposed == 0 || proposed == REBUILD_AFTER && lost > REBUILD_IF * built {
+        if proposed == 0 || proposed == RESIZE_AFTER && lost > RESIZE_IF * built {
             let positions = self.fine.positions().await?;
-            let hierarchy = Hierarchy::new(self.problem, &positions, self.stiffness);
+            // What does not serve any more goes first.
+            let hierarchy = match self.fine.hierarchy().filter(|_| proposed > 0) {
+                Some(before) => before.resized(self.problem, &positions, self.stiffness),
+                None => Hierarchy::new(self.problem, &positions, self.stiffness),
+            };
             match self.fine.set_hierarchy(hierarchy) {
                 Err(error @ GpuError::Limit { .. }) => {
                     self.left_out = Some(error);

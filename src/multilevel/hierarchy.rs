@@ -63,15 +63,7 @@ impl Hierarchy {
         let aggregates =
             Aggregates::new(free, |v| neighbors(problem, v).filter(move |&k| (k as usize) < free));
         let (member_start, member) = aggregates.members();
-        let root = match stiffness {
-            Stiffness::BySize(factor) => {
-                let sizes = element_sizes(problem, positions);
-                sizes.into_par_iter().map(|size| (factor as f32 / size).sqrt()).collect()
-            }
-            Stiffness::Uniform(factor) => {
-                vec![(factor / (2.0 * problem.mean_area())).sqrt() as f32; free]
-            }
-        };
+        let root = roots(problem, positions, stiffness);
         let mut hierarchy = Self {
             aggregates,
             member_start,
@@ -80,15 +72,47 @@ impl Hierarchy {
             inverse_diagonal: Vec::new(),
             levels: Vec::new(),
         };
-        hierarchy.inverse_diagonal = (0..free)
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|v| {
-                1.0 / neighbors(problem, v).map(|k| hierarchy.weight(v, k as usize)).sum::<f32>()
-            })
-            .collect();
+        hierarchy.inverse_diagonal = hierarchy.diagonal_inverted(problem);
         hierarchy.levels = levels(hierarchy.first_coarse_operator(problem));
         hierarchy
+    }
+
+    /// The same levels for elements of the sizes they now have. Couplings of aggregates change as those of their
+    /// members do on average, which is nearly Galerkin's operator again for a small part of the work: sizes
+    /// change by factors that hardly differ from one aggregate to the next.
+    pub(crate) fn resized(
+        mut self,
+        problem: &Problem,
+        positions: &[DVec2],
+        stiffness: Stiffness,
+    ) -> Self {
+        let root = roots(problem, positions, stiffness);
+        let mean = |members: &[u32]| {
+            let factor = |&v: &u32| root[v as usize] / self.root[v as usize];
+            members.iter().map(factor).sum::<f32>() / members.len() as f32
+        };
+        let mut factors: Vec<f32> = (self.member_start.par_windows(2).with_min_len(256))
+            .map(|range| mean(&self.member[range[0] as usize..range[1] as usize]))
+            .collect();
+        self.root = root;
+        self.inverse_diagonal = self.diagonal_inverted(problem);
+        for Level { operator, inverse_diagonal, coarser } in &mut self.levels {
+            operator.scale_couplings(&factors);
+            *inverse_diagonal = operator.diagonal_inverted();
+            match coarser {
+                Coarser::Level { restriction, .. } => factors = restriction.means(&factors),
+                Coarser::Direct(inverse) => *inverse = dense::inverse(operator),
+                Coarser::Nothing => {}
+            }
+        }
+        self
+    }
+
+    fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
+        let diagonal =
+            |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
+        let free = 0..problem.free_count();
+        free.into_par_iter().with_min_len(256).map(|v| 1.0 / diagonal(v)).collect()
     }
 
     /// Galerkin's operator on the aggregates. The prolongation to the vertices is not kept: it follows from
@@ -172,9 +196,7 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
     let mut levels = Vec::new();
     loop {
         let n = operator.rows();
-        let diagonal =
-            |i: usize| operator.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
-        let inverse_diagonal: Vec<f32> = (0..n).map(|i| 1.0 / diagonal(i)).collect();
+        let inverse_diagonal = operator.diagonal_inverted();
         if n <= DIRECT {
             let coarser = Coarser::Direct(dense::inverse(&operator));
             levels.push(Level { operator, inverse_diagonal, coarser });
@@ -220,6 +242,20 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
 fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
     let start = problem.ring_start();
     problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
+}
+
+/// Of each free vertex the root of the stiffness over the size of its elements.
+fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f32> {
+    match stiffness {
+        Stiffness::BySize(factor) => {
+            let sizes = element_sizes(problem, positions);
+            sizes.into_par_iter().map(|size| (factor as f32 / size).sqrt()).collect()
+        }
+        Stiffness::Uniform(factor) => {
+            let root = (factor / (2.0 * problem.mean_area())).sqrt();
+            vec![root as f32; problem.free_count()]
+        }
+    }
 }
 
 /// The mean doubled area of the triangles at each free vertex, averaged once with its neighbors.

@@ -99,6 +99,47 @@ impl Sparse {
         columns.zip(self.value[range].iter().copied())
     }
 
+    /// The reciprocals of the diagonal.
+    pub(super) fn diagonal_inverted(&self) -> Vec<f32> {
+        let diagonal =
+            |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
+        (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
+    }
+
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. What the matrix makes of
+    /// a constant changes by the square of the row's factor.
+    pub(super) fn scale_couplings(&mut self, factors: &[f32]) {
+        for row in 0..self.rows() {
+            let range = self.start[row] as usize..self.start[row + 1] as usize;
+            let (mut of_constant, mut couplings) = (0.0, 0.0);
+            let mut diagonal = range.start;
+            for entry in range {
+                of_constant += self.value[entry];
+                match self.column[entry] as usize {
+                    column if column == row => diagonal = entry,
+                    column => {
+                        self.value[entry] *= factors[row] * factors[column];
+                        couplings += self.value[entry];
+                    }
+                }
+            }
+            self.value[diagonal] = of_constant * factors[row] * factors[row] - couplings;
+        }
+    }
+
+    /// Of each row the mean of `values`, weighted by the sizes of its entries.
+    pub(super) fn means(&self, values: &[f32]) -> Vec<f32> {
+        let mean = |row: usize| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (column, entry) in self.row(row) {
+                sum += entry.abs() * values[column];
+                weights += entry.abs();
+            }
+            sum / weights
+        };
+        (0..self.rows()).map(mean).collect()
+    }
+
     /// The transpose; its rows' entries ascend by column.
     pub(super) fn transposed(&self, columns: usize) -> Self {
         let mut start = vec![0u32; columns + 1];
