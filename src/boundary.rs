@@ -2,7 +2,7 @@
 
 use crate::topology::Topology;
 
-impl Topology {
+impl Topology<'_> {
     /// The edges of one triangle only, each from and to a vertex, with the mesh on its left. In no particular
     /// order.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {

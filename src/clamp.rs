@@ -8,7 +8,7 @@ use crate::validity;
 /// Room for rounding, relative to an inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
-impl Topology {
+impl Topology<'_> {
     /// Moves vertices straight toward new places, all by the same share of their ways, as far as the triangles
     /// allow; returns the share, 1 being all the way. For handles and boundaries that a user drags:
     /// one call for each frame, the sweeps mending the mesh in between.

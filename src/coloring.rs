@@ -34,14 +34,14 @@ impl Coloring {
     ///
     /// Vertices far apart in the mesh's numbering are colored independently, with those between
     /// them colored first.
-    pub fn new(topology: &Topology) -> Self {
+    pub fn new(topology: &Topology<'_>) -> Self {
         let numbering: Vec<u32> = (0..topology.free().len() as u32).collect();
         Self::in_blocks(topology, &numbering, BLOCK)
     }
 
     /// The same along a curve that all free vertices are on: the more of a vertex's neighbors are near it on the
     /// curve, the faster.
-    pub(crate) fn along(topology: &Topology, curve: &[u32]) -> Self {
+    pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
         match curve.len() {
             // What is one block takes its colors from the numbering alone.
             0..=BLOCK => Self::new(topology),
@@ -49,7 +49,7 @@ impl Coloring {
         }
     }
 
-    fn in_blocks(topology: &Topology, curve: &[u32], block: usize) -> Self {
+    fn in_blocks(topology: &Topology<'_>, curve: &[u32], block: usize) -> Self {
         let places = Places::new(topology, curve);
         let (colors, count) = match curve.len() <= block {
             true => places.color_serially(),
@@ -70,7 +70,7 @@ impl Coloring {
     }
 
     /// Whether every free vertex, and no other, has a color unlike those of its neighbors.
-    pub fn is_proper(&self, topology: &Topology) -> bool {
+    pub fn is_proper(&self, topology: &Topology<'_>) -> bool {
         let differs = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.colors[v as usize]);
             let same = |p: u32, q: u32| p == q && p != UNCOLORED;
@@ -87,14 +87,14 @@ const NOWHERE: u32 = u32::MAX;
 
 /// The free vertices by their places on a curve.
 struct Places<'a> {
-    topology: &'a Topology,
+    topology: &'a Topology<'a>,
     curve: &'a [u32],
     /// The place of each vertex.
     of: Vec<u32>,
 }
 
 impl<'a> Places<'a> {
-    fn new(topology: &'a Topology, curve: &'a [u32]) -> Self {
+    fn new(topology: &'a Topology<'a>, curve: &'a [u32]) -> Self {
         let free = topology.free();
         let of = atomics(free.len(), NOWHERE);
         curve.par_iter().enumerate().filter(|&(_, &v)| free[v as usize]).for_each(|(place, &v)| {
@@ -377,7 +377,7 @@ mod tests {
     use crate::mesh::Mesh;
 
     /// Squares with their diagonals one way or the other, so that vertices have 4 to 8 neighbors.
-    fn squares(side: u32) -> Topology {
+    fn squares(side: u32) -> Topology<'static> {
         let points = (0..(side + 1).pow(2)).map(|v| [v % (side + 1), v / (side + 1)]);
         let triangles = (0..side * side).flat_map(|square| {
             let a = square / side * (side + 1) + square % side;
@@ -388,7 +388,8 @@ mod tests {
             }
         });
         let points = points.map(|p| p.map(f64::from)).collect();
-        Topology::new(&Mesh { points, triangles: triangles.collect(), fixed: vec![] }).unwrap()
+        let mesh = Mesh { points, triangles: triangles.collect(), fixed: vec![] };
+        Topology::new(&mesh).unwrap().into_owned()
     }
 
     /// The vertices of [`squares`] tile by tile.
@@ -435,7 +436,8 @@ mod tests {
         let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
         let triangles = around.map(|t| t.map(|v| v % 7)).collect();
         let points = (0..7).map(|i| [f64::from(i), f64::from(i * i)]).collect();
-        let topology = Topology::new(&Mesh { points, triangles, fixed: vec![] }).unwrap();
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
         assert_eq!(topology.free_count(), 7);
         let curve: Vec<u32> = (0..7).collect();
         for block in [1, 2, 7] {

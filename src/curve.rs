@@ -15,7 +15,7 @@ const CELLS: usize = 1 << 8;
 const CROWD: usize = 1 << 14;
 
 /// The vertices that some triangle uses, along the Z-order curve of their positions.
-pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
+pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
     let (low, high) = bounds(mesh, topology);
     let scale = f64::from(u32::MAX) / (high - low).max_element();
     let key = |v: u32| {
@@ -55,7 +55,7 @@ fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(
 }
 
 /// The bounding box of the vertices in use.
-pub(crate) fn bounds(mesh: &Mesh, topology: &Topology) -> (DVec2, DVec2) {
+pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
     (0..mesh.points.len() as u32)

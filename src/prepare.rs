@@ -12,7 +12,7 @@ use crate::topology::Topology;
 ///
 /// # Errors
 /// [`MeshError`] for a mesh that cannot be smoothed.
-pub fn prepare(mesh: &Mesh) -> Result<(Topology, Problem), MeshError> {
+pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;
     let curve = along_curve(mesh, &topology);

@@ -38,14 +38,14 @@ impl Problem {
     pub(crate) const BLOCK: usize = 512;
 
     /// Lays out a mesh with its topology and coloring.
-    pub fn new(mesh: &Mesh, topology: &Topology, coloring: &Coloring) -> Self {
+    pub fn new(mesh: &Mesh, topology: &Topology<'_>, coloring: &Coloring) -> Self {
         Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
     }
 
     /// The same, given the vertices in use along a curve.
     pub(crate) fn along(
         mesh: &Mesh,
-        topology: &Topology,
+        topology: &Topology<'_>,
         coloring: &Coloring,
         curve: &[u32],
     ) -> Self {
@@ -147,7 +147,7 @@ impl Problem {
 }
 
 /// Center of the bounding box, and the power of two that brings the mean area into [0.5, 2).
-fn normalization(mesh: &Mesh, topology: &Topology) -> (DVec2, f64) {
+fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64) {
     let (low, high) = bounds(mesh, topology);
     // Halved before they are added: the sum of two large coordinates may overflow.
     let center = low * 0.5 + high * 0.5;
@@ -170,7 +170,7 @@ fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
 
 /// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
 fn rings(
-    topology: &Topology,
+    topology: &Topology<'_>,
     vertices: &[u32],
     curve: &[u32],
     number: &[u32],
@@ -194,7 +194,7 @@ fn rings(
 
 /// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
 /// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
-fn triangles(topology: &Topology, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
+fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
     let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
@@ -212,7 +212,11 @@ fn triangles(topology: &Topology, vertices: usize, number: &[u32]) -> Vec<[u32; 
 }
 
 /// The vertices in the order [`Problem`] promises, and the range of each color.
-fn order(topology: &Topology, coloring: &Coloring, curve: &[u32]) -> (Vec<u32>, Vec<Range<u32>>) {
+fn order(
+    topology: &Topology<'_>,
+    coloring: &Coloring,
+    curve: &[u32],
+) -> (Vec<u32>, Vec<Range<u32>>) {
     const CHUNK: usize = 1 << 14;
     let colors = coloring.count() as usize;
     // Fixed vertices come last.

@@ -58,7 +58,7 @@ impl Tally {
 
 impl Quality {
     /// Measures `points` with the triangles of `topology`.
-    pub fn of(points: &[[f64; 2]], topology: &Topology) -> Self {
+    pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Self {
         let triangles = topology.triangles();
         let areas = triangles.par_chunks(1024);
         let areas: Vec<f64> = areas

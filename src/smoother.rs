@@ -32,7 +32,7 @@ pub enum Backend {
 /// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
     mesh: &'a Mesh,
-    topology: Topology,
+    topology: Topology<'a>,
     problem: Problem,
     prepare: Duration,
 }
@@ -87,12 +87,14 @@ impl<'a> Smoother<'a> {
     /// [`MeshError`] if the mesh is not one that can be smoothed.
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
-        let (topology, problem) = prepare(mesh)?;
+        let (mut topology, problem) = prepare(mesh)?;
+        // What runs are given is the problem. Only a vertex that goes back needs its star again.
+        topology.forget_stars();
         Ok(Self { mesh, topology, problem, prepare: start.elapsed() })
     }
 
     /// The mesh's windings, boundary and free vertices.
-    pub fn topology(&self) -> &Topology {
+    pub fn topology(&self) -> &Topology<'a> {
         &self.topology
     }
 

@@ -1,6 +1,8 @@
 //! What hangs together in a mesh: consistent windings, the boundary, one-rings.
 
 use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use crate::error::MeshError;
 use crate::groups::Groups;
@@ -8,19 +10,20 @@ use crate::mesh::Mesh;
 use crate::stars::{close, outer_edge, stars};
 use crate::validity;
 
-/// The triangles of a mesh made counter-clockwise, and its free vertices.
+/// The triangles of a mesh made counter-clockwise, and its free vertices. Triangles that are so already stay those
+/// of the mesh, which is borrowed for them.
 #[derive(Clone, Debug)]
-pub struct Topology {
-    triangles: Vec<[u32; 3]>,
+pub struct Topology<'m> {
+    triangles: Cow<'m, [[u32; 3]]>,
     free: Vec<bool>,
-    /// The triangles at each vertex.
-    stars: Groups,
+    /// The triangles at each vertex, unless nobody has asked for them since they were forgotten.
+    stars: OnceLock<Groups>,
 }
 
 /// No triangle lies across this edge.
 const NONE: u32 = u32::MAX;
 
-impl Topology {
+impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
     /// Windings are made consistent across shared edges, and each edge-connected part
@@ -30,7 +33,7 @@ impl Topology {
     /// # Errors
     /// What is no 2D triangle mesh at all: see [`MeshError`]. Whether it is feasible and has a free
     /// vertex is for [`check_smoothable`](Self::check_smoothable) to say.
-    pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+    pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let mut stars = stars(points.len(), triangles);
@@ -39,16 +42,22 @@ impl Topology {
         // What most meshes are, all consistent and counter-clockwise, is seen from the stars alone.
         let triangles =
             if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
-                triangles.par_iter().copied().collect()
+                Cow::Borrowed(triangles.as_slice())
             } else {
                 let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
                 close(&wound, &mut stars, &mut free);
-                wound
+                Cow::Owned(wound)
             };
         for &v in fixed {
             free[v as usize] = false;
         }
-        Ok(Self { triangles, free, stars })
+        Ok(Self { triangles, free, stars: stars.into() })
+    }
+
+    /// The same with triangles of its own, which does not borrow the mesh.
+    pub fn into_owned(self) -> Topology<'static> {
+        let Self { triangles, free, stars } = self;
+        Topology { triangles: Cow::Owned(triangles.into_owned()), free, stars }
     }
 
     /// Checks that there is something to smooth, and that smoothing can keep what it needs.
@@ -81,7 +90,19 @@ impl Topology {
 
     /// The triangles at a vertex: counter-clockwise around a free one, starting with the least.
     pub fn star(&self, vertex: u32) -> &[u32] {
-        self.stars.of(vertex as usize)
+        self.stars.get_or_init(|| self.find_stars()).of(vertex as usize)
+    }
+
+    /// Gives up the memory of the stars. They are found again when one is asked for.
+    pub(crate) fn forget_stars(&mut self) {
+        self.stars.take();
+    }
+
+    #[cold]
+    fn find_stars(&self) -> Groups {
+        let mut stars = stars(self.free.len(), &self.triangles);
+        close(&self.triangles, &mut stars, &mut vec![false; self.free.len()]);
+        stars
     }
 
     /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the

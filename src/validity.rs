@@ -43,7 +43,7 @@ pub(crate) fn check(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<(), M
 ///
 /// This is the certificate: afterwards every triangle of `topology` is positive by exact
 /// arithmetic on these values, provided `before` was so.
-pub fn certify(topology: &Topology, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
+pub fn certify(topology: &Topology<'_>, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
     let triangles = topology.triangles();
     let mut suspects = infeasible(points, triangles);
     let mut returned = 0;

@@ -221,7 +221,7 @@ fn a_clamped_move_keeps_triangles_as_good_as_asked() {
 #[test]
 fn a_move_out_of_an_inverted_triangle_is_not_hindered_by_it() {
     let mut mesh = support::lattice(4, 4);
-    let topology = Topology::new(&mesh).unwrap();
+    let topology = Topology::new(&mesh).unwrap().into_owned();
     let middle = topology.free().iter().position(|&free| free).unwrap();
     let home = mesh.points[middle];
     mesh.points[middle] = [home[0] + 1.4, home[1]];

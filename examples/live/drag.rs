@@ -17,7 +17,7 @@ pub(crate) struct Holes {
 }
 
 impl Holes {
-    pub(crate) fn new(topology: &Topology, points: &[[f64; 2]]) -> Self {
+    pub(crate) fn new(topology: &Topology<'_>, points: &[[f64; 2]]) -> Self {
         let mut of = vec![None; points.len()];
         let mut loops = Vec::new();
         for vertices in topology.boundary_loops() {
@@ -45,7 +45,7 @@ pub(crate) struct Drag {
 impl Drag {
     /// Takes hold of the nearest vertex within `radius`, or of the hole that it bounds.
     pub(crate) fn grab(
-        topology: &Topology,
+        topology: &Topology<'_>,
         holes: &Holes,
         points: &[[f64; 2]],
         at: [f64; 2],
@@ -83,7 +83,7 @@ impl Drag {
     /// moves.
     pub(crate) fn step(
         &self,
-        topology: &Topology,
+        topology: &Topology<'_>,
         points: &[[f64; 2]],
     ) -> Result<Option<Vec<[f64; 2]>>, MeshError> {
         let from = points[self.grip as usize];
@@ -104,7 +104,7 @@ impl Drag {
     }
 
     /// The mean length of the edges around what is held.
-    fn edge_length(&self, topology: &Topology, points: &[[f64; 2]]) -> f64 {
+    fn edge_length(&self, topology: &Topology<'_>, points: &[[f64; 2]]) -> f64 {
         let perimeter = |&t: &u32| {
             let [p, q, r] = topology.triangles()[t as usize].map(|v| points[v as usize]);
             distance(p, q) + distance(q, r) + distance(r, p)

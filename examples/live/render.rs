@@ -28,7 +28,7 @@ impl Renderer {
     pub(crate) fn new(
         (device, queue): (wgpu::Device, wgpu::Queue),
         format: wgpu::TextureFormat,
-        topology: &Topology,
+        topology: &Topology<'_>,
         vertices: wgpu::Buffer,
         panel: &Panel,
     ) -> Self {
@@ -175,7 +175,7 @@ struct Uniform {
 }
 
 /// Each edge once.
-fn edges(topology: &Topology) -> Vec<[u32; 2]> {
+fn edges(topology: &Topology<'_>) -> Vec<[u32; 2]> {
     let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[v, w]| [v.min(w), v.max(w)]);
     let mut edges: Vec<_> = topology.triangles().iter().flat_map(of).collect();
     edges.sort_unstable();

@@ -16,7 +16,7 @@ const STRIDE: u64 = 8;
 pub(crate) struct Smoothing {
     pub(crate) gpu: Gpu,
     pub(crate) mesh: Mesh,
-    pub(crate) topology: Topology,
+    pub(crate) topology: Topology<'static>,
     /// The vertices that are drawn.
     pub(crate) vertices: wgpu::Buffer,
     /// The same on the host, as the last frame left them.
@@ -38,7 +38,7 @@ pub(crate) struct Smoothing {
 
 impl Smoothing {
     pub(crate) fn new(gpu: Gpu, mesh: Mesh, scheme: Scheme) -> Result<Self> {
-        let topology = Topology::new(&mesh)?;
+        let topology = Topology::new(&mesh)?.into_owned();
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
         let sweeps = Sweeps::new(&device_mesh, &options(&scheme))?;
         // Every scheme that a key may choose, so that no frame waits for a compiler.

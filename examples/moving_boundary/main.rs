@@ -131,7 +131,7 @@ fn plate(vertices: usize) -> Result<Mesh> {
 }
 
 /// The vertices on the edge of the hole: of the boundary's loops, the one that goes around clockwise.
-fn hole(topology: &Topology, points: &[[f64; 2]]) -> Vec<u32> {
+fn hole(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<u32> {
     let mut loops = topology.boundary_loops().into_iter();
     loops.find(|vertices| signed_area(points, vertices) < 0.0).unwrap_or_default()
 }
