@@ -2,9 +2,10 @@
 
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 use super::newton::Step;
-use super::objective::{feasible_mean_excess, mean_excess};
+use super::objective::{Along, mean_excess, mean_excess_along};
 use super::{sweep, vcycle};
 use crate::engine::Objectives;
 use crate::gpu::GpuError;
@@ -24,11 +25,8 @@ pub(crate) struct CpuFine<'a> {
     step: Step,
     positions: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
-    gradient: Vec<DVec2>,
+    gradient: Vec<Vec2>,
     direction: Vec<Vec2>,
-    /// The positions last tried, and how far along the correction they are.
-    trial: Vec<DVec2>,
-    trial_length: f64,
     /// Room for a sweep to work in.
     moved: Vec<DVec2>,
 }
@@ -50,29 +48,21 @@ impl<'a> CpuFine<'a> {
             hierarchy: None,
             gradient: Vec::new(),
             direction: Vec::new(),
-            trial: positions.clone(),
-            trial_length: 0.0,
             moved: Vec::new(),
             positions,
         }
     }
 
-    fn try_length(&mut self, length: f64) -> Option<f64> {
-        let from = self.positions.par_chunks(CHUNK).zip(self.direction.par_chunks(CHUNK));
-        self.trial.par_chunks_mut(CHUNK).zip(from).for_each(|(to, (from, along))| {
-            for ((to, from), along) in to.iter_mut().zip(from).zip(along) {
-                *to = *from + along.as_dvec2() * length;
-            }
-        });
-        self.trial_length = length;
-        feasible_mean_excess(self.metric, self.problem, &self.positions, &self.trial)
+    fn try_length(&self, length: f64) -> Option<f64> {
+        let Self { positions, direction, .. } = self;
+        mean_excess_along(self.metric, self.problem, &Along { positions, direction, length })
     }
 
     /// The derivative of the mean excess along the correction.
     fn slope(&self) -> f64 {
         let parts = self.gradient.par_chunks(CHUNK).zip(self.direction.par_chunks(CHUNK));
-        let dot = |(g, d): (&[DVec2], &[Vec2])| -> f64 {
-            g.iter().zip(d).map(|(g, d)| g.dot(d.as_dvec2())).sum()
+        let dot = |(g, d): (&[Vec2], &[Vec2])| -> f64 {
+            g.iter().zip(d).map(|(g, d)| g.as_dvec2().dot(d.as_dvec2())).sum()
         };
         // Added up in order, whatever the threads.
         let parts: Vec<f64> = parts.map(dot).collect();
@@ -96,8 +86,8 @@ impl FineLevel for CpuFine<'_> {
         Ok(())
     }
 
-    async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        Ok(self.positions.clone())
+    async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
+        Ok(Cow::Borrowed(&self.positions))
     }
 
     fn hierarchy(&mut self) -> Option<Hierarchy> {
@@ -130,10 +120,12 @@ impl FineLevel for CpuFine<'_> {
     }
 
     async fn take(&mut self, length: f64) -> Result<(), GpuError> {
-        if length != self.trial_length {
-            self.try_length(length);
-        }
-        std::mem::swap(&mut self.positions, &mut self.trial);
+        let along = self.direction.par_chunks(CHUNK);
+        self.positions.par_chunks_mut(CHUNK).zip(along).for_each(|(positions, along)| {
+            for (position, along) in positions.iter_mut().zip(along) {
+                *position += along.as_dvec2() * length;
+            }
+        });
         Ok(())
     }
 }

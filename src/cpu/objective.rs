@@ -2,12 +2,12 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-use crate::cpu::lanes::{LANES, Lanes, Mask};
+use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::cpu::newton::shape_guard;
-use crate::cpu::patch::points;
+use crate::cpu::patch::{inverse_mean_ratio, points};
 use crate::metric::{Corner, Metric, specialize};
 use crate::problem::Problem;
 
@@ -27,52 +27,98 @@ pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]
     sums.iter().sum::<f64>() / problem.triangles().len() as f64
 }
 
-/// The same where no triangle is inverted or flat, nor breaks the metric's shape guard and is worse than at
-/// `before`; `None` else.
-pub(super) fn feasible_mean_excess(
+/// The free vertices some way along a direction.
+pub(super) struct Along<'a> {
+    pub(super) positions: &'a [DVec2],
+    /// Of each free vertex.
+    pub(super) direction: &'a [Vec2],
+    pub(super) length: f64,
+}
+
+/// The same there, or `None` where a triangle is inverted or flat, or breaks the metric's shape guard and is worse than
+/// without the step.
+pub(super) fn mean_excess_along(
     metric: Metric,
     problem: &Problem,
-    before: &[DVec2],
-    positions: &[DVec2],
+    along: &Along<'_>,
 ) -> Option<f64> {
     let level = Level::new();
-    let feasible = |chunk: &[[u32; 3]]| {
-        let feasible = dispatch!(level, simd => all_positive(simd, positions, chunk));
-        feasible && chunk.iter().all(|t| keeps_guard(metric, before, positions, t))
+    let sum = |chunk: &[[u32; 3]]| {
+        specialize!(metric, METRIC => {
+            dispatch!(level, simd => {
+                excess_along(simd, METRIC, problem.mean_area(), along, chunk)
+            })
+        })
     };
-    let feasible = problem.triangles().par_chunks(CHUNK).all(feasible);
-    feasible.then(|| mean_excess(metric, problem, positions))
+    let sums: Vec<Option<f64>> = problem.triangles().par_chunks(CHUNK).map(sum).collect();
+    let sum: Option<f64> = sums.into_iter().sum();
+    sum.map(|sum| sum / problem.triangles().len() as f64)
 }
 
-/// Whether all triangles are counter-clockwise.
+/// The sum over some triangles with a step, if all of them bear it.
 #[inline(always)]
-fn all_positive<S: Simd>(simd: S, positions: &[DVec2], triangles: &[[u32; 3]]) -> bool {
-    let (fours, rest) = triangles.as_chunks::<LANES>();
-    let mut positive = Mask::splat(simd, true);
-    for [t, u, v, w] in fours {
-        let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
-        let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
-        let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        let (ax, ay, bx, by) = (q[0] - p[0], q[1] - p[1], r[0] - p[0], r[1] - p[1]);
-        positive &= (ax * by - ay * bx).simd_gt(0.0);
-    }
-    positive.all_true() && rest.iter().all(|t| triangle(positions, t).doubled_area() > 0.0)
-}
-
-fn keeps_guard(metric: Metric, before: &[DVec2], positions: &[DVec2], t: &[u32; 3]) -> bool {
+fn excess_along<S: Simd>(
+    simd: S,
+    metric: Metric,
+    mean_area: f64,
+    along: &Along<'_>,
+    triangles: &[[u32; 3]],
+) -> Option<f64> {
     let guard = shape_guard(metric);
-    if guard.is_infinite() {
-        return true;
+    let (fours, rest) = triangles.as_chunks::<LANES>();
+    let mut sum = Lanes::splat(simd, 0.0);
+    let mut borne = Mask::splat(simd, true);
+    for [t, u, v, w] in fours {
+        let (p, moved_p) = along.points(simd, [t[0], u[0], v[0], w[0]]);
+        let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
+        let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
+        let now = corner(moved_p, moved_q, moved_r, mean_area);
+        borne &= now.doubled_area().simd_gt(0.0);
+        if guard.is_finite() {
+            let before = corner(p, q, r, mean_area);
+            let shape = inverse_mean_ratio(&now);
+            borne &= shape.simd_le(guard) | shape.simd_le(inverse_mean_ratio(&before));
+        }
+        sum += metric.excess(&now);
     }
-    let shape = |positions| Metric::Ar.quality(&triangle(positions, t));
-    let now = shape(positions);
-    now <= guard || now <= shape(before)
+    let mut last = 0.0;
+    for t in rest {
+        let corner =
+            |[p, q, r]: [DVec2; 3]| Corner { a: (q - p).into(), b: (r - p).into(), mean_area };
+        let before = t.map(|v| along.positions[v as usize]);
+        let now = t.map(|v| along.positions[v as usize] + along.step(v) * along.length);
+        let (before, now) = (corner(before), corner(now));
+        let shape = Metric::Ar.quality(&now);
+        if now.doubled_area() <= 0.0 || shape > guard && shape > Metric::Ar.quality(&before) {
+            return None;
+        }
+        last += metric.excess(&now);
+    }
+    borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
 
-/// A triangle, for what no mean area matters to.
-fn triangle(positions: &[DVec2], t: &[u32; 3]) -> Corner<f64> {
-    let [p, q, r] = t.map(|v| positions[v as usize]);
-    Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
+#[inline(always)]
+fn corner<S: Simd>(p: Points<S>, q: Points<S>, r: Points<S>, mean_area: f64) -> Corner<Lanes<S>> {
+    Corner { a: [q[0] - p[0], q[1] - p[1]], b: [r[0] - p[0], r[1] - p[1]], mean_area }
+}
+
+impl Along<'_> {
+    /// Where some vertices are, and where they go.
+    #[inline(always)]
+    fn points<S: Simd>(&self, simd: S, vertices: [u32; LANES]) -> (Points<S>, Points<S>) {
+        let [x, y] = points(simd, self.positions, vertices);
+        let [a, b, c, d] = vertices;
+        let ([a, b], [c, d]) = ([self.step(a), self.step(b)], [self.step(c), self.step(d)]);
+        let dx = Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]);
+        let dy = Lanes::simd_from(simd, [a.y, b.y, c.y, d.y]);
+        ([x, y], [x + dx * self.length, y + dy * self.length])
+    }
+
+    /// The direction of a vertex: none, if it is fixed.
+    #[inline(always)]
+    fn step(&self, vertex: u32) -> DVec2 {
+        self.direction.get(vertex as usize).map_or(DVec2::ZERO, |step| step.as_dvec2())
+    }
 }
 
 /// The sum over some triangles.
@@ -90,8 +136,7 @@ fn excess<S: Simd>(
         let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-        sum += metric.excess(&Corner { a, b, mean_area });
+        sum += metric.excess(&corner(p, q, r, mean_area));
     }
     let mut last = 0.0;
     for t in rest {

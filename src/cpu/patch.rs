@@ -158,7 +158,7 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
 
 /// The inverse mean ratio where the area is positive, for the shape guard.
 #[inline(always)]
-fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
+pub(crate) fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
     corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()
 }
 

@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
 use super::lanes::{LANES, Points};
@@ -23,6 +23,25 @@ enum Visit<'s> {
     Gradient { sharpness: u32 },
 }
 
+/// What a visit leaves at a vertex.
+trait Found: Send {
+    fn new(found: [f64; 2]) -> Self;
+}
+
+impl Found for DVec2 {
+    #[inline(always)]
+    fn new(found: [f64; 2]) -> Self {
+        found.into()
+    }
+}
+
+impl Found for Vec2 {
+    #[inline(always)]
+    fn new(found: [f64; 2]) -> Self {
+        DVec2::from(found).as_vec2()
+    }
+}
+
 /// One visit of every free vertex, color by color. `moved` is room to work in.
 pub(super) fn sweep(
     metric: Metric,
@@ -41,15 +60,15 @@ pub(super) fn sweep(
     }
 }
 
-/// The gradient of Σ q² at each free vertex, into `found`.
+/// The gradient of Σ q² at each free vertex, into `found`. Single precision does for finding a direction.
 pub(super) fn gradient(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     sharpness: u32,
-    found: &mut Vec<DVec2>,
+    found: &mut Vec<Vec2>,
 ) {
-    found.resize(problem.free_count(), DVec2::ZERO);
+    found.resize(problem.free_count(), Vec2::ZERO);
     // Vertices of one degree stand together within a color.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
@@ -58,13 +77,13 @@ pub(super) fn gradient(
     }
 }
 
-fn visit(
+fn visit<T: Found>(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
     what: &Visit<'_>,
-    found: &mut [DVec2],
+    found: &mut [T],
 ) {
     let level = Level::new();
     found.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, found)| {
@@ -79,14 +98,14 @@ fn visit(
 
 /// Visits the vertices from `first` on and writes where they go, or the gradient there.
 #[inline(always)]
-fn visit_all<S: Simd>(
+fn visit_all<S: Simd, T: Found>(
     simd: S,
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
     what: &Visit<'_>,
-    found: &mut [DVec2],
+    found: &mut [T],
 ) {
     let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
     let mut done = 0;
@@ -109,7 +128,7 @@ fn visit_all<S: Simd>(
         };
         let count = count as usize;
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
-            *found = DVec2::new(x[lane], y[lane]);
+            *found = T::new([x[lane], y[lane]]);
         }
         done += count;
     }

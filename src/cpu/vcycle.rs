@@ -1,6 +1,6 @@
 //! Corrections from coarser levels, on the CPU.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
@@ -11,11 +11,7 @@ const GRAIN: usize = 512;
 
 /// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
 /// descent.
-pub(super) fn correction(
-    hierarchy: &Hierarchy,
-    problem: &Problem,
-    gradient: &[DVec2],
-) -> Vec<Vec2> {
+pub(super) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
     let ring = |v: usize| {
@@ -29,9 +25,9 @@ pub(super) fn correction(
     };
     let diagonal = hierarchy.inverse_diagonal();
     let restricted = {
-        let scaled = rows(gradient.len(), |v| gradient[v].as_vec2() * (diagonal[v] * root[v]));
+        let scaled = rows(gradient.len(), |v| gradient[v] * (diagonal[v] * root[v]));
         let smoothed = rows(gradient.len(), |v| {
-            gradient[v].as_vec2() * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
+            gradient[v] * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
         });
         let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
         rows(first.operator.rows(), |aggregate| {
@@ -119,6 +115,7 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::metric::Metric;
     use crate::prepare::prepare;
+    use glam::DVec2;
 
     /// A square of right triangles, of two sizes, large enough for three coarse levels.
     fn square() -> Problem {
@@ -147,13 +144,14 @@ mod tests {
     }
 
     /// Something that looks like noise.
-    fn noise(count: usize, seed: f64) -> Vec<DVec2> {
-        let at = |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos());
+    fn noise(count: usize, seed: f64) -> Vec<Vec2> {
+        let at =
+            |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos()).as_vec2();
         (0..count).map(at).collect()
     }
 
-    fn dot(a: &[DVec2], b: &[Vec2]) -> f64 {
-        a.iter().zip(b).map(|(a, b)| a.dot(b.as_dvec2())).sum()
+    fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a.as_dvec2().dot(b.as_dvec2())).sum()
     }
 
     #[test]
@@ -205,11 +203,12 @@ mod tests {
             ring.map(|k| (wave[v] - wave[k]) * f64::from(hierarchy.weight(v, k))).sum()
         };
         let free = problem.free_count();
-        let gradient: Vec<DVec2> = (0..free).map(laplacian).collect();
+        let gradient: Vec<Vec2> = (0..free).map(|v| laplacian(v).as_vec2()).collect();
         let step = correction(hierarchy, problem, &gradient);
         // As far along the step as a line search would go.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
-        let length = -dot(&wave[..free], &step) / squared;
+        let along: f64 = wave.iter().zip(&step).map(|(w, s)| w.dot(s.as_dvec2())).sum();
+        let length = -along / squared;
         let left =
             wave.iter().zip(&step).map(|(w, s)| (*w + s.as_dvec2() * length).length_squared());
         let whole: f64 = wave[..free].iter().map(|w| w.length_squared()).sum();

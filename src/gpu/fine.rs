@@ -1,6 +1,7 @@
 //! The mesh itself in a multilevel run on a device.
 
 use glam::DVec2;
+use std::borrow::Cow;
 
 use super::buffers::MeshBuffers;
 use super::device::{Gpu, GpuError, scoped};
@@ -96,10 +97,10 @@ impl FineLevel for GpuFine<'_> {
         self.submit(|passes| self.run.encode_relaxed_sweep(passes, omega))
     }
 
-    async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+    async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
         let free = self.problem.free_count();
         let moved = self.mesh.read_positions(self.gpu, free, self.waiting).await?;
-        Ok(moved_positions(moved, self.start))
+        Ok(Cow::Owned(moved_positions(moved, self.start)))
     }
 
     fn hierarchy(&mut self) -> Option<Hierarchy> {

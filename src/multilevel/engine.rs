@@ -1,6 +1,7 @@
 //! A multilevel run, wherever the mesh itself is.
 
 use glam::DVec2;
+use std::borrow::Cow;
 
 use super::hierarchy::Hierarchy;
 use super::search::Search;
@@ -45,7 +46,7 @@ pub(crate) trait FineLevel {
     async fn sweep(&mut self, omega: f64) -> Result<(), GpuError>;
 
     /// Normalized positions of all vertices.
-    async fn positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
+    async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError>;
 
     /// Gives back the levels it was given, if any.
     fn hierarchy(&mut self) -> Option<Hierarchy>;
@@ -167,7 +168,7 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
 
     /// As [`Engine::best_positions`](crate::Engine::best_positions): no step raises the objective.
     pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        self.fine.positions().await
+        Ok(self.fine.positions().await?.into_owned())
     }
 
     async fn sweep_before(&mut self, until: usize) -> Result<Objectives, GpuError> {
@@ -198,12 +199,14 @@ impl<'a, F: FineLevel> MultilevelEngine<'a, F> {
         let built = self.excess(since);
         let lost = built - self.excess(self.history.len() - 1);
         if proposed == 0 || proposed == RESIZE_AFTER && lost > RESIZE_IF * built {
-            let positions = self.fine.positions().await?;
             // What does not serve any more goes first.
-            let hierarchy = match self.fine.hierarchy().filter(|_| proposed > 0) {
+            let before = self.fine.hierarchy().filter(|_| proposed > 0);
+            let positions = self.fine.positions().await?;
+            let hierarchy = match before {
                 Some(before) => before.resized(self.problem, &positions, self.stiffness),
                 None => Hierarchy::new(self.problem, &positions, self.stiffness),
             };
+            drop(positions);
             match self.fine.set_hierarchy(hierarchy) {
                 Err(error @ GpuError::Limit { .. }) => {
                     self.left_out = Some(error);
