@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::aggregate::{Aggregates, NONE};
 use super::dense;
-use super::sparse::{RowSum, Sparse};
+use super::sparse::Sparse;
 use crate::metric::Stiffness;
 use crate::problem::Problem;
 
@@ -60,10 +60,13 @@ impl Hierarchy {
     /// Builds the levels for elements of the sizes they have at `positions`.
     pub(crate) fn new(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Self {
         let free = problem.free_count();
-        let aggregates =
-            Aggregates::new(free, |v| neighbors(problem, v).filter(move |&k| (k as usize) < free));
+        let free_neighbors = |v| neighbors(problem, v).filter(move |&k| (k as usize) < free);
+        // The former goes vertex by vertex.
+        let (aggregates, root) = rayon::join(
+            || Aggregates::new(free, free_neighbors),
+            || roots(problem, positions, stiffness),
+        );
         let (member_start, member) = aggregates.members();
-        let root = roots(problem, positions, stiffness);
         let mut hierarchy = Self {
             aggregates,
             member_start,
@@ -122,33 +125,26 @@ impl Hierarchy {
         let of = &self.aggregates.of;
         let free_neighbors =
             |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
+        // With the weights of edges taken apart, A = R (E - N) R: R are the roots, E is diagonal and N one for each
+        // edge. So P goes with R, and around a vertex ones are summed.
+        let (root, inverse) = (&self.root, &self.inverse_diagonal);
+        let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {
             if of[v] != NONE {
-                sum.add(of[v], 1.0 - SMOOTHING);
+                sum.add(of[v], (1.0 - SMOOTHING) * root[v]);
             }
-            let share = SMOOTHING * self.inverse_diagonal[v];
+            let share = SMOOTHING * inverse_e(v);
             for k in free_neighbors(v).filter(|&k| of[k] != NONE) {
-                sum.add(of[k], share * self.weight(v, k));
+                sum.add(of[k], share * root[k]);
             }
         });
-        let column = |aggregate: usize, sum: &mut RowSum| {
-            let range =
-                self.member_start[aggregate] as usize..self.member_start[aggregate + 1] as usize;
-            for &member in &self.member[range] {
-                sum.add(member, 1.0 - SMOOTHING);
-                for k in free_neighbors(member as usize) {
-                    let share = SMOOTHING * self.inverse_diagonal[k];
-                    sum.add(k as u32, share * self.weight(k, member as usize));
-                }
-            }
-        };
-        let row = |v: usize, factor: f32, sum: &mut RowSum| {
-            sum.add(v as u32, factor / self.inverse_diagonal[v]);
+        let restriction = prolongation.transposed(self.aggregates.count);
+        Sparse::galerkin(&prolongation, &restriction, |v, factor, sum| {
+            sum.add(v as u32, factor / inverse_e(v));
             for k in free_neighbors(v) {
-                sum.add(k as u32, -factor * self.weight(v, k));
+                sum.add(k as u32, -factor);
             }
-        };
-        Sparse::galerkin(&prolongation, self.aggregates.count, column, row)
+        })
     }
 
     /// Weight of the edge from a free vertex to a neighbor.
@@ -221,14 +217,9 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
             }
         });
         let restriction = prolongation.transposed(groups.count);
-        let coarse = Sparse::galerkin(
-            &prolongation,
-            groups.count,
-            |group, sum| restriction.row(group).for_each(|(i, value)| sum.add(i as u32, value)),
-            |i, factor, sum| {
-                operator.row(i).for_each(|(k, value)| sum.add(k as u32, factor * value));
-            },
-        );
+        let coarse = Sparse::galerkin(&prolongation, &restriction, |i, factor, sum| {
+            operator.row(i).for_each(|(k, value)| sum.add(k as u32, factor * value));
+        });
         levels.push(Level {
             operator,
             inverse_diagonal,

@@ -16,25 +16,22 @@ impl Sparse {
         Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
     }
 
-    /// Galerkin's product Pᵀ A P by rows. `column` adds a column of P to a sum, `row` a multiple of a row of A.
+    /// Galerkin's product Pᵀ A P by rows, of P and its transpose. `row` adds a multiple of a row of A to a sum.
     pub(super) fn galerkin(
         prolongation: &Self,
-        columns: usize,
-        column: impl Fn(usize, &mut RowSum) + Sync,
+        restriction: &Self,
         row: impl Fn(usize, f32, &mut RowSum) + Sync,
     ) -> Self {
-        // The support of a column is small: nothing larger than a row is ever stored.
-        Self::from_rows_with(columns, <(RowSum, RowSum)>::default, |coarse, (of_p, of_ap), sum| {
-            column(coarse, of_p);
-            for (k, value) in of_p.entries() {
-                row(k as usize, value, of_ap);
+        // The support of a row is small: nothing larger than it is ever stored.
+        Self::from_rows_with(restriction.rows(), RowSum::default, |coarse, of_ap, sum| {
+            for (k, value) in restriction.row(coarse) {
+                row(k, value, of_ap);
             }
             for (k, value) in of_ap.entries() {
                 for (column, share) in prolongation.row(k as usize) {
                     sum.add(column as u32, value * share);
                 }
             }
-            of_p.clear();
             of_ap.clear();
         })
     }
@@ -193,7 +190,7 @@ impl RowSum {
     }
 
     /// Adds to the entry of a column.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add(&mut self, column: u32, value: f32) {
         let mask = self.slots.len() - 1;
         let mut at = (column.wrapping_mul(0x9e37_79b1) >> self.shift) as usize;
@@ -225,6 +222,8 @@ impl RowSum {
         self.taken.clear();
     }
 
+    #[cold]
+    #[inline(never)]
     fn grow(&mut self) {
         let mut larger = Self::with_bits(32 - self.shift + 1);
         self.entries().for_each(|(column, value)| larger.add(column, value));
