@@ -89,9 +89,8 @@ fn excess_along<S: Simd>(
         let now = t.map(|v| along.positions[v as usize] + along.step(v) * along.length);
         let (before, now) = (corner(before), corner(now));
         let shape = Metric::Ar.quality(&now);
-        if now.doubled_area() <= 0.0 || shape > guard && shape > Metric::Ar.quality(&before) {
-            return None;
-        }
+        let kept = guard.is_infinite() || shape <= guard || shape <= Metric::Ar.quality(&before);
+        borne &= Mask::splat(simd, now.doubled_area() > 0.0 && kept);
         last += metric.excess(&now);
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
@@ -144,4 +143,38 @@ fn excess<S: Simd>(
         last += metric.excess(&Corner { a: (q - p).into(), b: (r - p).into(), mean_area });
     }
     (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::prepare::prepare;
+
+    #[test]
+    fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
+        // Six triangles around a vertex: four side by side, and two.
+        let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+        let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
+        points.push([0.1, 0.2]);
+        let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
+        let (_, problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
+        let positions = problem.positions();
+        for metric in [Metric::Imr, Metric::Rms] {
+            let along = |direction: Vec2, length: f64| {
+                let direction = &[direction];
+                mean_excess_along(metric, &problem, &Along { positions, direction, length })
+            };
+            let mut moved = positions.to_vec();
+            moved[0] += DVec2::new(0.25, -0.5) * 0.3;
+            let there = mean_excess(metric, &problem, &moved);
+            assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
+            // Out of the hexagon through each of its sides, and nowhere.
+            for k in 0..6 {
+                let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
+                assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");
+            }
+            assert_eq!(along(Vec2::NAN, 1.0), None);
+        }
+    }
 }
