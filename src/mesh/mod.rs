@@ -7,6 +7,7 @@ mod file;
 mod gmsh;
 mod implied;
 mod patch;
+mod row;
 mod sniff;
 mod source;
 mod text;

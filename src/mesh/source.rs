@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use super::binary::Order;
-use super::implied::{Labels, Rows};
+use super::row::{Labels, Rows};
 use crate::error::{Location, ReadError};
 use std::fs;
 use std::io::ErrorKind;

@@ -5,7 +5,7 @@
 
 use super::Mesh;
 use super::ahead::take_rows;
-use super::implied::Labels;
+use super::row::Labels;
 use super::source::{Parsed, Source, fixed_note};
 use super::text::{CORRECT, CUT_OFF, Cursor};
 use crate::error::{Location, ReadError};

@@ -57,7 +57,7 @@ pub(super) fn elements(
         let size = words.natural(cursor, "a number of elements")?;
         block_fits(cursor, size, count - done, "elements")?;
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
-        let bytes = 4 * (1 + groups + kind.nodes());
+        let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let start = cursor.taken();
         for at in 0..size {
             let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;

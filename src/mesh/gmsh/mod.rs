@@ -63,7 +63,7 @@ trait Sink {
         kind: Kind,
         nodes: &[u64],
     ) -> Result<(), ReadError>;
-    /// Where the last elements of a binary file, all of this kind, stand: what [`Rows`](super::implied::Rows) tells of triangles.
+    /// Where the last elements of a binary file, all of this kind, stand: what [`Rows`](super::row::Rows) tells of triangles.
     fn rows(
         &mut self,
         _kind: Kind,

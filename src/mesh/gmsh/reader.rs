@@ -1,7 +1,7 @@
 //! What becomes of the nodes and elements: a mesh, or the place of one of them.
 
 use super::super::Mesh;
-use super::super::implied::{Labels, Rows};
+use super::super::row::{Labels, Rows};
 use super::super::source::{Parsed, Source, fixed_note};
 use super::super::text::{CORRECT, Cursor};
 use super::kind::Kind;
