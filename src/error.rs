@@ -184,5 +184,66 @@ pub enum SmoothError {
     },
     /// The GPU cannot start or go on.
     #[error(transparent)]
-    Gpu(#[from] crate::gpu::GpuError),
+    Gpu(#[from] crate::error::GpuError),
+}
+
+/// The GPU engine cannot start or go on.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter, or none of that name.
+    #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
+    NoAdapter {
+        /// The name that was asked for.
+        wanted: Option<String>,
+        /// The names there are, separated by commas.
+        available: String,
+    },
+    /// The adapter would not give a device.
+    #[error("the adapter {adapter} gave no device: {message}")]
+    NoDevice {
+        /// The adapter.
+        adapter: String,
+        /// What wgpu said.
+        message: String,
+    },
+    /// A limit of the device is too low for this mesh.
+    #[error("{what} needs {needed}, but the device's {limit} is {available}")]
+    Limit {
+        /// What does not fit.
+        what: String,
+        /// How much it needs.
+        needed: u64,
+        /// The limit's name in wgpu.
+        limit: &'static str,
+        /// Its value on this device.
+        available: u64,
+    },
+    /// A feature that this takes was not asked for when the device was made.
+    #[error("{what} needs a device made with the feature {feature}")]
+    Feature {
+        /// What takes it.
+        what: &'static str,
+        /// Its name in wgpu.
+        feature: &'static str,
+    },
+    /// The device has no memory left.
+    #[error("the device is out of memory: {0}")]
+    OutOfMemory(String),
+    /// A buffer of the application cannot be used as asked.
+    #[error("the application's buffer cannot be used: {0}")]
+    Buffer(String),
+    /// wgpu refused a call: a bug in this library, or a device made with other limits.
+    #[error("the device refused: {0}")]
+    Refused(String),
+    /// The device was lost or destroyed; the run is lost with it.
+    #[error("the device was lost: {0}")]
+    Lost(String),
+}
+
+fn lacking(wanted: Option<&str>, available: &str) -> String {
+    match wanted {
+        None => " was found".into(),
+        Some(name) if available.is_empty() => format!(" was found, so none called '{name}'"),
+        Some(name) => format!(" has '{name}' in its name; there are: {available}"),
+    }
 }

@@ -78,51 +78,39 @@
 //! changes no bit of the result; but positions, which every kernel sees whole, take two bindings at the most: where
 //! 128 MiB are the limit, 16 million vertices. [`Gpu::check_size`] tells before anything is done.
 
-mod boundary;
-mod clamp;
-mod coloring;
 mod cpu;
-mod curve;
-mod drive;
-mod dual;
-mod engine;
 mod error;
+mod file;
 pub mod gpu;
-mod groups;
+mod layout;
 mod mesh;
 mod metric;
-mod multilevel;
-mod opening;
-mod options;
-mod plan;
-mod prepare;
-mod problem;
+mod parallel;
 mod quality;
-mod scheme;
+mod run;
 mod smoother;
-mod stars;
 mod topology;
-pub mod validity;
 
-pub use boundary::signed_area;
-pub use coloring::{Coloring, UNCOLORED};
+/// Exact predicates on plain lists of points and triangles.
+pub mod validity {
+    pub use crate::topology::{certify, infeasible};
+}
+
 pub use cpu::CpuEngine;
-pub use drive::{Observer, Phase, Progress};
-pub use dual::{Dual, Real};
-pub use engine::{Engine, Objectives};
-pub use error::{Location, MeshError, ReadError, SmoothError, WriteError};
+pub use error::{GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
+pub use file::{Format, MeshFile, Place};
 pub use gpu::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, MeshSize, ObjectiveValues, Sweeps,
-    Timestamps, VertexBuffer,
+    BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
+    VertexBuffer,
 };
-pub use mesh::{Format, Mesh, MeshFile, Place};
-pub use metric::{Corner, Metric, Properties, Stiffness, UnknownMetric};
-pub use options::{Desired, Goal, Method, Options};
-pub use plan::{Derivatives, Plan, Sharpness, Stop, StopRule};
-pub use prepare::prepare;
-pub use problem::Problem;
+pub use layout::{Coloring, Problem, UNCOLORED, prepare};
+pub use mesh::Mesh;
+pub use metric::{Corner, Dual, Metric, Properties, Real, Scheme, Stiffness, UnknownMetric};
 pub use quality::Quality;
-pub use scheme::Scheme;
+pub use run::{
+    Derivatives, Desired, Engine, Goal, Method, Objectives, Observer, Options, Phase, Plan,
+    Progress, Sharpness, Stop, StopRule,
+};
 pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
-pub use topology::Topology;
+pub use topology::{Topology, signed_area};
 pub use wgpu;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::metric::{Corner, Metric};
 use crate::topology::Topology;
-use crate::validity;
+use crate::topology::predicates;
 
 /// Statistics of a mesh in double precision, inversions counted by exact predicates.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,10 +62,10 @@ impl Quality {
         let triangles = topology.triangles();
         let areas = triangles.par_chunks(1024);
         let areas: Vec<f64> = areas
-            .map(|chunk| chunk.iter().map(|t| validity::doubled_area(points, t)).sum())
+            .map(|chunk| chunk.iter().map(|t| predicates::doubled_area(points, t)).sum())
             .collect();
         let mean_area = 0.5 * areas.iter().sum::<f64>() / triangles.len() as f64;
-        let inverted = validity::infeasible(points, triangles);
+        let inverted = predicates::infeasible(points, triangles);
 
         let tallies: Vec<Tally> = triangles
             .par_chunks(1024)

@@ -6,20 +6,19 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 
 use crate::cpu::mean_excess;
-use crate::drive::{Observer, Phase, Place, Run};
-use crate::engine::Objectives;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
+use crate::layout::Problem;
+use crate::layout::prepare;
 use crate::mesh::Mesh;
 use crate::metric::Metric;
-use crate::options::{Desired, Goal, Options};
-use crate::plan::{Sharpness, Stop};
-use crate::prepare::prepare;
-use crate::problem::Problem;
+use crate::metric::Scheme;
 use crate::quality::Quality;
-use crate::scheme::Scheme;
-use crate::topology::Topology;
-use crate::validity;
+use crate::run::Objectives;
+use crate::run::{Desired, Goal, Options};
+use crate::run::{Observer, Phase, Place, Run};
+use crate::run::{Sharpness, Stop};
+use crate::topology::{Topology, certify};
 
 /// Where sweeps are done.
 pub enum Backend {
@@ -123,7 +122,7 @@ impl<'a> Smoother<'a> {
     /// returns how many; see [`validity::certify`]. To be called when `points` were rounded again
     /// after [`Self::run`].
     pub fn certify(&self, points: &mut [[f64; 2]]) -> usize {
-        validity::certify(&self.topology, &self.mesh.points, points)
+        certify(&self.topology, &self.mesh.points, points)
     }
 
     /// Smooths the mesh. Blocks until the run ends; `observe` is called every few sweeps and may end

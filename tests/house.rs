@@ -1,5 +1,6 @@
 //! The house rules that a compiler does not check.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,92 +20,178 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What each module of the library may use of the others: data flows one way.
-const MAY_USE: &[(&str, &[&str])] = &[
-    ("dual", &[]),
-    ("metric", &["dual"]),
-    ("scheme", &["metric"]),
-    ("plan", &["metric", "scheme"]),
-    ("error", &["gpu"]),
-    ("options", &["error", "metric", "plan", "scheme"]),
-    ("mesh", &["error"]),
-    ("validity", &["error", "topology", "mesh"]),
-    ("clamp", &["error", "metric", "topology", "validity"]),
-    ("groups", &[]),
-    ("stars", &["groups"]),
-    ("topology", &["error", "groups", "mesh", "stars", "validity"]),
-    ("boundary", &["topology"]),
-    ("curve", &["groups", "mesh", "topology"]),
-    ("coloring", &["groups", "topology", "mesh"]),
-    ("problem", &["coloring", "curve", "groups", "mesh", "topology"]),
-    ("engine", &["gpu", "metric", "plan"]),
-    ("multilevel", &["engine", "gpu", "metric", "plan", "problem"]),
-    (
-        "cpu",
-        &["dual", "engine", "gpu", "mesh", "metric", "multilevel", "plan", "prepare", "problem"],
-    ),
-    ("opening", &["cpu", "engine", "metric", "plan", "problem"]),
-    ("prepare", &["coloring", "curve", "error", "mesh", "problem", "topology"]),
-    (
-        "gpu",
-        &[
-            "engine",
-            "error",
-            "mesh",
-            "metric",
-            "multilevel",
-            "options",
-            "plan",
-            "prepare",
-            "problem",
-        ],
-    ),
-    ("quality", &["metric", "topology", "validity", "mesh"]),
-    (
-        "drive",
-        &["cpu", "engine", "error", "gpu", "multilevel", "opening", "options", "plan", "problem"],
-    ),
-    (
-        "smoother",
-        &[
-            "cpu", "drive", "engine", "error", "gpu", "mesh", "metric", "options", "plan",
-            "prepare", "problem", "quality", "scheme", "topology", "validity",
-        ],
-    ),
-];
-
-#[test]
-fn data_flows_one_way() {
+/// The files of the library by module path, without those that only declare modules and pass names on.
+fn modules() -> BTreeMap<String, String> {
     let source = root().join("src");
     let mut files = Vec::new();
     rust_files(&source, &mut files);
-    let mut checked = 0;
+    let mut modules = BTreeMap::new();
     for file in files {
-        let relative = file.strip_prefix(&source).unwrap();
-        let first = relative.components().next().unwrap().as_os_str().to_str().unwrap();
-        let module = first.trim_end_matches(".rs");
-        if module == "lib" || module == "bin" {
-            continue;
-        }
-        let (_, allowed) = MAY_USE
-            .iter()
-            .find(|(name, _)| *name == module)
-            .unwrap_or_else(|| panic!("{module} has no row in MAY_USE"));
-        let text = fs::read_to_string(&file).unwrap();
-        for used in text.split("crate::").skip(1) {
-            let used: String =
-                used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            // Names of types stand in links of the documentation, not in imports.
-            let is_module = MAY_USE.iter().any(|(name, _)| *name == used);
-            assert!(
-                !is_module || used == module || allowed.contains(&used.as_str()),
-                "{} may not use {used}",
-                relative.display()
-            );
-            checked += usize::from(is_module);
+        let relative = file.strip_prefix(&source).unwrap().with_extension("");
+        let parts: Vec<_> = relative.iter().map(|part| part.to_str().unwrap()).collect();
+        if parts[0] != "bin" {
+            modules.insert(parts.join("::"), fs::read_to_string(&file).unwrap());
         }
     }
-    assert!(checked > 50, "only {checked} imports were found: the test looks in the wrong place");
+    modules
+}
+
+/// The paths that a file imports from this crate, groups in braces taken apart. Tests inside a file may look anywhere.
+fn imports(text: &str) -> Vec<String> {
+    let text = text.split("#[cfg(test)]").next().unwrap();
+    let code: String = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let mut found = Vec::new();
+    for used in code.split("crate::").skip(1) {
+        let end = used.find(|c: char| !(c.is_alphanumeric() || "_:".contains(c)));
+        let path = &used[..end.unwrap_or(used.len())];
+        match (path.strip_suffix("::"), used[path.len()..].strip_prefix('{')) {
+            (Some(path), Some(names)) => {
+                let names = &names[..names.find('}').unwrap()];
+                let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
+                found.extend(names.map(|name| format!("{path}::{name}")));
+            }
+            _ => found.push(path.to_owned()),
+        }
+    }
+    found
+}
+
+/// The file that defines what a path names, through the names that `mod.rs` files pass on.
+fn defined_in(path: &str, modules: &BTreeMap<String, String>) -> Option<String> {
+    let parts: Vec<&str> = path.split("::").collect();
+    for length in (1..=parts.len()).rev() {
+        let module = parts[..length].join("::");
+        if modules.contains_key(&module) {
+            return Some(module);
+        }
+        let Some(text) = modules.get(&format!("{module}::mod")) else { continue };
+        let Some(name) = parts.get(length) else { return None };
+        // `pub use file::{A, B};` or `pub(crate) use file::A;`
+        for passed_on in text.split("use ").skip(1) {
+            let passed_on = &passed_on[..passed_on.find(';').unwrap_or(0)];
+            let words = passed_on.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+            if let Some(from) = words.clone().next()
+                && words.skip(1).any(|word| word == *name)
+            {
+                let from = if from == "crate" {
+                    passed_on.trim_start_matches("crate::").to_owned()
+                } else {
+                    format!("{module}::{from}")
+                };
+                return defined_in(&format!("{from}::{name}"), modules);
+            }
+        }
+        return None;
+    }
+    None
+}
+
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
+/// What each file uses of the others.
+fn uses() -> Uses {
+    let modules = modules();
+    let mut uses = Uses::new();
+    for (module, text) in &modules {
+        if module.ends_with("::mod") || module == "lib" {
+            continue;
+        }
+        let used = imports(text).into_iter().filter_map(|path| defined_in(&path, &modules));
+        uses.insert(module.clone(), used.filter(|used| used != module).collect());
+    }
+    uses
+}
+
+/// A circle among these, if there is one.
+fn circle(uses: &Uses) -> Option<Vec<String>> {
+    fn visit(at: &str, uses: &Uses, path: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
+        if let Some(start) = path.iter().position(|on_path| on_path == at) {
+            path.drain(..start);
+            return true;
+        }
+        if !done.insert(at.to_owned()) {
+            return false;
+        }
+        path.push(at.to_owned());
+        if uses.get(at).into_iter().flatten().any(|used| visit(used, uses, path, done)) {
+            return true;
+        }
+        path.pop();
+        false
+    }
+    let (mut path, mut done) = (Vec::new(), BTreeSet::new());
+    uses.keys().any(|module| visit(module, uses, &mut path, &mut done)).then_some(path)
+}
+
+/// The same by folder, `depth` folders deep; a file of the root is a folder of its own.
+fn by_folder(uses: &Uses, depth: usize) -> Uses {
+    let folder = |module: &str| {
+        let parts: Vec<&str> = module.split("::").collect();
+        parts[..depth.min((parts.len() - 1).max(1))].join("::")
+    };
+    let mut folders = Uses::new();
+    for (module, used) in uses {
+        let own = folder(module);
+        let others = used.iter().map(|used| folder(used)).filter(|used| *used != own);
+        folders.entry(own.clone()).or_default().extend(others);
+    }
+    folders
+}
+
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    let uses = uses();
+    let count: usize = uses.values().map(BTreeSet::len).sum();
+    assert!(count > 200, "only {count} imports were found: the test looks in the wrong place");
+    assert_eq!(circle(&uses), None);
+}
+
+#[test]
+fn no_folders_use_each_other_in_a_circle() {
+    let uses = uses();
+    for depth in [1, 2] {
+        assert_eq!(circle(&by_folder(&uses, depth)), None, "{depth} folders deep");
+    }
+}
+
+#[test]
+fn a_circle_is_found() {
+    let uses = |pairs: &[(&str, &str)]| {
+        let mut uses = Uses::new();
+        for (from, to) in pairs {
+            uses.entry((*from).into()).or_default().insert((*to).into());
+        }
+        uses
+    };
+    assert_eq!(circle(&uses(&[("a", "b"), ("a", "c"), ("b", "c")])), None);
+    let found = circle(&uses(&[("a", "b"), ("b", "c::d"), ("c::d", "b")]));
+    assert_eq!(found, Some(vec!["b".into(), "c::d".into()]));
+    let files = uses(&[("x::a", "y::b"), ("y::c", "x::d")]);
+    assert_eq!(circle(&files), None);
+    assert!(circle(&by_folder(&files, 1)).is_some());
+    let found =
+        imports("use crate::{a::B, c};\nuse crate::d::E; // crate::f\nlet x = crate::g::h(1);");
+    assert_eq!(found, ["::a::B", "::c", "d::E", "g::h"].map(|path| path.trim_start_matches("::")));
+}
+
+/// Rooms that stand on no other, and what no room but these may name.
+#[test]
+fn data_flows_one_way() {
+    let folders = by_folder(&uses(), 1);
+    let used_by = |folder: &str| folders[folder].iter().map(String::as_str).collect::<Vec<_>>();
+    assert!(used_by("mesh").is_empty());
+    assert!(used_by("error").is_empty());
+    assert!(used_by("metric").is_empty());
+    for room in ["file", "topology", "layout", "run"] {
+        for place in ["cpu", "gpu", "smoother"] {
+            assert!(!used_by(room).contains(&place), "{room} may not use {place}");
+        }
+    }
+    assert!(!used_by("cpu").contains(&"gpu") && !used_by("gpu").contains(&"cpu"));
 }
 
 #[test]

@@ -7,12 +7,12 @@ use std::borrow::Cow;
 use super::newton::Step;
 use super::objective::{Along, mean_excess, mean_excess_along};
 use super::{sweep, vcycle};
-use crate::engine::Objectives;
-use crate::gpu::GpuError;
+use crate::error::GpuError;
+use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::multilevel::{FineLevel, Hierarchy, Proposal};
-use crate::plan::{Derivatives, Plan};
-use crate::problem::Problem;
+use crate::run::Objectives;
+use crate::run::multilevel::{FineLevel, Hierarchy, Proposal};
+use crate::run::{Derivatives, Plan};
 
 /// Vertices that one task moves.
 const CHUNK: usize = 1 << 12;

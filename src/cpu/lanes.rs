@@ -6,7 +6,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x4, mask64x4};
 
-use crate::dual::Real;
+use crate::metric::Real;
 
 /// Numbers side by side.
 pub(crate) const LANES: usize = 4;

@@ -4,9 +4,10 @@ use fearless_simd::prelude::*;
 
 use crate::cpu::lanes::{Lanes, Mask, Points};
 use crate::cpu::patch::Patches;
-use crate::dual::{Dual, Real};
 use crate::metric::Metric;
-use crate::plan::{Derivatives, line_search};
+use crate::metric::{Dual, Real};
+use crate::run::Derivatives;
+use crate::run::plan::line_search;
 
 /// How a visit steps.
 #[derive(Clone, Copy)]

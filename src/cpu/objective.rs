@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::cpu::newton::shape_guard;
 use crate::cpu::patch::{inverse_mean_ratio, points};
+use crate::layout::Problem;
 use crate::metric::{Corner, Metric, specialize};
-use crate::problem::Problem;
 
 /// Triangles of one task.
 const CHUNK: usize = 1024;
@@ -28,16 +28,16 @@ pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]
 }
 
 /// The free vertices some way along a direction.
-pub(super) struct Along<'a> {
-    pub(super) positions: &'a [DVec2],
+pub(crate) struct Along<'a> {
+    pub(crate) positions: &'a [DVec2],
     /// Of each free vertex.
-    pub(super) direction: &'a [Vec2],
-    pub(super) length: f64,
+    pub(crate) direction: &'a [Vec2],
+    pub(crate) length: f64,
 }
 
 /// The same there, or `None` where a triangle is inverted or flat, or breaks the metric's shape guard and is worse than
 /// without the step.
-pub(super) fn mean_excess_along(
+pub(crate) fn mean_excess_along(
     metric: Metric,
     problem: &Problem,
     along: &Along<'_>,
@@ -148,8 +148,8 @@ fn excess<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::prepare;
     use crate::mesh::Mesh;
-    use crate::prepare::prepare;
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {

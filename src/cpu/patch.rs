@@ -4,10 +4,10 @@ use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
-use crate::dual::{Dual, Real};
+use crate::layout::Problem;
 use crate::metric::{Corner, Metric};
-use crate::plan::line_search;
-use crate::problem::Problem;
+use crate::metric::{Dual, Real};
+use crate::run::plan::line_search;
 
 /// The one-rings of four free vertices with the same number of neighbors.
 #[derive(Clone, Copy)]

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::lanes::{LANES, Points};
 use super::newton::{self, Step};
 use super::patch::{self, Patches};
+use crate::layout::Problem;
 use crate::metric::{Metric, specialize};
-use crate::problem::Problem;
 
 /// Vertices of one task.
 const CHUNK: usize = Problem::BLOCK;
@@ -43,7 +43,7 @@ impl Found for Vec2 {
 }
 
 /// One visit of every free vertex, color by color. `moved` is room to work in.
-pub(super) fn sweep(
+pub(crate) fn sweep(
     metric: Metric,
     problem: &Problem,
     positions: &mut [DVec2],
@@ -61,7 +61,7 @@ pub(super) fn sweep(
 }
 
 /// The gradient of Σ q² at each free vertex, into `found`. Single precision does for finding a direction.
-pub(super) fn gradient(
+pub(crate) fn gradient(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],

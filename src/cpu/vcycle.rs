@@ -3,15 +3,15 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
-use crate::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
-use crate::problem::Problem;
+use crate::layout::Problem;
+use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
 /// Rows that are not worth splitting among threads.
 const GRAIN: usize = 512;
 
 /// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
 /// descent.
-pub(super) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
+pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
     let ring = |v: usize| {
@@ -112,9 +112,9 @@ fn rows<T: Send>(count: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::prepare;
     use crate::mesh::Mesh;
     use crate::metric::Metric;
-    use crate::prepare::prepare;
     use glam::DVec2;
 
     /// A square of right triangles, of two sizes, large enough for three coarse levels.

@@ -8,36 +8,20 @@
 //! [`Smoother`](crate::Smoother) make what they need for themselves. The kernels are core WebGPU, see
 //! [`Kernel`].
 
-mod buffers;
 mod device;
 mod embed;
-mod engine;
-mod exchange;
-mod fine;
-mod kernel;
-mod layout;
-mod levels;
-mod limits;
-mod objective;
-mod pages;
-mod parts;
-mod passes;
-mod readback;
+mod encode;
+mod kernels;
+mod mesh;
 mod run;
-mod shaders;
-mod size;
-mod sweeps;
-mod timestamps;
+pub(crate) mod scope;
 
-pub use device::{AdapterSummary, Gpu, GpuError, adapters};
-pub use embed::DeviceMesh;
-pub use engine::GpuEngine;
-pub use exchange::{BoundVertices, VertexBuffer};
-pub(crate) use fine::GpuFine;
-pub use objective::{BoundObjective, ObjectiveValues};
-pub use passes::Encoder;
-pub(crate) use readback::Waiting;
-pub use shaders::{Interface, Kernel};
-pub use size::MeshSize;
-pub use sweeps::Sweeps;
-pub use timestamps::{Span, Spans, Timed, Timestamps};
+pub(crate) use device::Waiting;
+pub use device::{AdapterSummary, Gpu, MeshSize, adapters};
+pub use embed::{BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer};
+pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
+pub use kernels::{Interface, Kernel};
+pub use run::GpuEngine;
+pub(crate) use run::GpuFine;
+
+pub use crate::error::GpuError;

@@ -1,0 +1,81 @@
+//! The sections of version 2.2 in binary: counts as text, then nodes one by one, then elements in runs of one kind.
+
+use super::kind::Kind;
+use super::words::Words;
+use super::{Sink, block_fits, row};
+use crate::error::ReadError;
+use crate::file::binary::Order;
+use crate::file::text::Cursor;
+
+/// Reads `$Nodes` after its first line, or `$ParametricNodes`. Returns their number.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    parametric: bool,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
+    const TAG: usize = 4;
+    const NODE: usize = TAG + 24;
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, NODE));
+    for done in 0..count {
+        let progress = (done, count, "nodes");
+        let words = &mut Words::take(cursor, order, NODE, progress)?;
+        let tag = words.natural(cursor, "a node tag")?;
+        let at = words.point(cursor, tag)?;
+        sink.node(cursor, tag, 2, cursor.taken() + TAG, at);
+        if parametric {
+            // The dimension of its entity, the entity's tag, and a parameter for each dimension.
+            let entity = &mut Words::take(cursor, order, 8, progress)?;
+            let parameters = match entity.int() {
+                1 => 8,
+                2 => 16,
+                _ => 0,
+            };
+            Words::take(cursor, order, parameters, progress)?;
+        }
+    }
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns their number.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
+    const HEADER: usize = 12;
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.integer("the number of elements")?;
+    sink.expect_elements(cursor.capacity(count, 16));
+    let mut done = 0;
+    while done < count {
+        let words = &mut Words::take(cursor, order, HEADER, (done, count, "elements"))?;
+        let kind = words.natural(cursor, "the type of elements")?;
+        let kind = Kind::new(cursor, kind)?;
+        let size = words.natural(cursor, "a number of elements")?;
+        block_fits(cursor, size, count - done, "elements")?;
+        let groups = words.natural(cursor, "the number of an element's tags")? as usize;
+        let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
+        let start = cursor.taken();
+        for at in 0..size {
+            let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;
+            let tag = words.natural(cursor, "an element tag")?;
+            words.skip(4 * groups);
+            let mut nodes = [0; 4];
+            for node in &mut nodes[..kind.nodes()] {
+                *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
+            }
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
+        }
+        let elements = start + HEADER..start + HEADER + size as usize * bytes;
+        match size {
+            // As gmsh writes it: each element has a header of its own.
+            1 => sink.rows(kind, start..elements.end, HEADER + bytes, HEADER, 4),
+            _ => sink.rows(kind, elements, bytes, 0, 4),
+        }
+        done += size;
+    }
+    Ok(count)
+}

@@ -1,0 +1,88 @@
+//! The sections of version 4.1 in binary: blocks, one per entity of the model.
+
+use super::kind::Kind;
+use super::words::Words;
+use super::{Sink, all_in_blocks, block_fits};
+use crate::error::ReadError;
+use crate::file::binary::Order;
+use crate::file::text::Cursor;
+
+/// Three `int` and a `size_t`.
+const BLOCK_HEADER: usize = 20;
+
+/// Reads `$Nodes` after its first line. Returns their number.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
+    let [blocks, count] = counts(cursor, order)?;
+    cursor.check_vertex_count(count)?;
+    sink.expect_nodes(cursor.capacity(count, 32));
+    let mut done = 0;
+    for block in 0..blocks {
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
+        let dimension = words.natural(cursor, "the dimension of a node block")?;
+        words.int(); // The entity's own tag.
+        let parametric = words.int() != 0;
+        if parametric && dimension >= 2 {
+            sink.parametric();
+        }
+        let size = words.size();
+        block_fits(cursor, size, count - done, "nodes")?;
+        let progress = (done, count, "nodes");
+        let tags = &mut Words::take(cursor, order, (size as usize).saturating_mul(8), progress)?;
+        let parameters = if parametric { dimension.min(3) as usize } else { 0 };
+        for at in 0..size {
+            let progress = (done + at, count, "nodes");
+            let words = &mut Words::take(cursor, order, 8 * (3 + parameters), progress)?;
+            let tag = tags.size();
+            let at = words.point(cursor, tag)?;
+            sink.node(cursor, tag, dimension, cursor.taken(), at);
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns their number.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
+    let [blocks, count] = counts(cursor, order)?;
+    sink.expect_elements(cursor.capacity(count, 32));
+    let mut done = 0;
+    for block in 0..blocks {
+        let words =
+            &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
+        words.int(); // The entity's dimension, and its tag.
+        words.int();
+        let kind = words.natural(cursor, "the type of an element block")?;
+        let kind = Kind::new(cursor, kind)?;
+        let size = words.size();
+        block_fits(cursor, size, count - done, "elements")?;
+        let row = 8 * (1 + kind.nodes());
+        let start = cursor.taken() + BLOCK_HEADER;
+        for at in 0..size {
+            let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
+            let tag = words.size();
+            let mut nodes = [0; 4];
+            nodes[..kind.nodes()].fill_with(|| words.size());
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
+        }
+        sink.rows(kind, start..start + size as usize * row, row, 0, 8);
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "elements")?;
+    Ok(count)
+}
+
+/// How many blocks a section has, and how much they hold together.
+fn counts(cursor: &mut Cursor<'_>, order: Order) -> Result<[u64; 2], ReadError> {
+    // The lowest and the highest tag follow.
+    let words = &mut Words::take(cursor, order, 32, (0, 1, "counts"))?;
+    Ok([words.size(), words.size()])
+}

@@ -1,0 +1,261 @@
+//! gmsh's `.msh`, versions 2.2 and 4.1, in ASCII and in binary.
+//!
+//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
+//! `$MeshFormat`, `$Nodes` and `$Elements` are looked at.
+
+mod binary2;
+mod binary4;
+mod kind;
+mod reader;
+mod tags;
+mod text2;
+mod text4;
+mod words;
+
+pub(super) use reader::{parse, triangle_place, vertex_place};
+
+use crate::error::{Location, ReadError};
+use crate::file::binary::Order;
+use crate::file::parallel_rows::take_rows;
+use crate::file::source::Source;
+use crate::file::text::{CUT_OFF, Cursor, quoted};
+use kind::Kind;
+use std::ops::Range;
+
+/// How the sections are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Version {
+    V2,
+    V4,
+}
+
+/// How a file's numbers are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Layout {
+    version: Version,
+    /// Of the bytes of its numbers, if they are not text.
+    order: Option<Order>,
+}
+
+/// Takes what the sections hold, in the order of the file.
+trait Sink {
+    /// Whether it looks at the cursor only to fail. Then what is read ahead may be handed to it as well; where it
+    /// fails it has to be as before.
+    const TAKES_AHEAD: bool = false;
+    /// About this many nodes follow.
+    fn expect_nodes(&mut self, _count: usize) {}
+    /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
+    /// where the file says so.
+    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    /// Nodes on surfaces of the model have parameters there.
+    fn parametric(&mut self) {}
+    /// No more nodes follow.
+    fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+    /// About this many elements follow.
+    fn expect_elements(&mut self, _count: usize) {}
+    /// An element with its node tags.
+    fn element(
+        &mut self,
+        cursor: &Cursor<'_>,
+        tag: u64,
+        kind: Kind,
+        nodes: &[u64],
+    ) -> Result<(), ReadError>;
+    /// Where the last elements of a binary file, all of this kind, stand: what [`Rows`](crate::file::row_form::Rows) tells of triangles.
+    fn rows(
+        &mut self,
+        _kind: Kind,
+        _bytes: Range<usize>,
+        _size: usize,
+        _tag_at: usize,
+        _width: usize,
+    ) {
+    }
+}
+
+/// Feeds a file's nodes and elements to the sink.
+fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    let cursor = &mut Cursor::new(source);
+    let mut layout = None;
+    let (mut nodes, mut elements) = (false, false);
+    while cursor.next_row() {
+        // Like gmsh, ignore what stands between sections.
+        let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
+            continue;
+        };
+        let opened = cursor.location();
+        match name {
+            b"MeshFormat" => {
+                layout = Some(mesh_format(cursor)?);
+                end_of_section(cursor, "MeshFormat", opened, "one line")?;
+            }
+            b"Nodes" | b"ParametricNodes" => {
+                once(cursor, &mut nodes, "Nodes")?;
+                let Layout { version, order } = known(cursor, layout)?;
+                let parametric = name == b"ParametricNodes";
+                if parametric {
+                    sink.parametric();
+                }
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::nodes(cursor, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, sink)?,
+                    (Version::V2, Some(order)) => binary2::nodes(cursor, order, parametric, sink)?,
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, sink)?,
+                };
+                let name = str::from_utf8(name).unwrap_or_default();
+                end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
+                sink.end_nodes(cursor)?;
+            }
+            b"Elements" => {
+                once(cursor, &mut elements, "Elements")?;
+                if !nodes {
+                    let problem = "$Elements stands before $Nodes";
+                    return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
+                }
+                let Layout { version, order } = known(cursor, layout)?;
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::elements(cursor, sink)?,
+                    (Version::V4, None) => text4::elements(cursor, sink)?,
+                    (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
+                    (Version::V4, Some(order)) => binary4::elements(cursor, order, sink)?,
+                };
+                end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+            }
+            name if name.starts_with(b"End") => {
+                let problem = format!("${} ends a section that never began", quoted(name));
+                return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
+            }
+            name => skip_section(cursor, name, opened)?,
+        }
+    }
+    let missing = if !nodes { "$Nodes" } else { "$Elements" };
+    match layout {
+        Some(layout) if nodes && elements => Ok(layout),
+        _ => Err(source.error(
+            format!("it has no {missing} section"),
+            "The file is cut off or was saved without its mesh: save it again",
+        )),
+    }
+}
+
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Layout, ReadError> {
+    row(cursor, 0, 1, "format lines")?;
+    let name = cursor.token().unwrap_or_default();
+    let version = match name {
+        b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
+        b"4.1" => Version::V4,
+        _ => {
+            let problem = format!("gmsh's format version {} is not read", quoted(name));
+            let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
+            return Err(cursor.error(problem, remedy));
+        }
+    };
+    match cursor.integer("the file type")? {
+        0 => Ok(Layout { version, order: None }),
+        1 => match cursor.integer("the size of a number")? {
+            8 => Ok(Layout { version, order: Some(words::byte_order(cursor)?) }),
+            size => {
+                let problem =
+                    format!("its numbers have {size} bytes, and only those of 8 are read");
+                Err(cursor.error(problem, "Save as ASCII (Mesh.Binary=0)"))
+            }
+        },
+        other => {
+            let problem = format!("the file type is {other}, neither 0 nor 1");
+            Err(cursor.error(problem, "Save the mesh again with gmsh"))
+        }
+    }
+}
+
+fn known(cursor: &Cursor<'_>, layout: Option<Layout>) -> Result<Layout, ReadError> {
+    let problem = "no $MeshFormat section stands before this one";
+    layout.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
+}
+
+fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
+    if std::mem::replace(seen, true) {
+        let problem = format!("this is the second ${name} section");
+        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+    }
+    Ok(())
+}
+
+/// Moves to the next of `count` rows of a section, `done` of which were read.
+#[inline]
+fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if !cursor.next_row() {
+        return Err(cursor.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF));
+    }
+    if cursor.is_at(b'$') {
+        let problem = format!("the section ends after {done} of {count} {what}");
+        return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
+    }
+    Ok(())
+}
+
+/// Reads ahead of the rows that are taken one by one, if the sink can bear it. Returns how many of `count` it took.
+fn ahead<'a, S: Sink, T: Send>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    sink: &mut S,
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
+    mut take: impl FnMut(&Cursor<'a>, &mut S, T) -> bool,
+) -> u64 {
+    if !S::TAKES_AHEAD {
+        return 0;
+    }
+    // Errors are told by who takes the rows one by one.
+    let nowhere = &Cursor::new(cursor.source);
+    take_rows(cursor, count, read, |row| take(nowhere, sink, row))
+}
+
+/// Whether a block of so many fits into what the section's count leaves.
+fn block_fits(cursor: &Cursor<'_>, size: u64, left: u64, what: &str) -> Result<(), ReadError> {
+    if size <= left {
+        return Ok(());
+    }
+    let problem = format!("a block of {size} {what} where the section's count leaves {left}");
+    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
+}
+
+fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if done == count {
+        return Ok(());
+    }
+    let problem = format!("the blocks hold {done} of the {count} {what} the section announces");
+    Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
+}
+
+/// Moves past the line that ends a section of which all that was announced is read.
+fn end_of_section(
+    cursor: &mut Cursor<'_>,
+    name: &str,
+    opened: Location,
+    announced: &str,
+) -> Result<(), ReadError> {
+    if cursor.next_row() && !cursor.is_at(b'$') {
+        let problem = format!("${name} goes on after the {announced} it announces");
+        return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
+    }
+    match cursor.token().and_then(|token| token.strip_prefix(b"$End")) {
+        Some(end) if end == name.as_bytes() => Ok(()),
+        _ => Err(no_end(cursor, name, opened)),
+    }
+}
+
+fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: Location) -> Result<(), ReadError> {
+    while cursor.next_row() {
+        if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)
+        {
+            return Ok(());
+        }
+    }
+    Err(no_end(cursor, &quoted(name), opened))
+}
+
+fn no_end(cursor: &Cursor<'_>, name: &str, opened: Location) -> ReadError {
+    let problem = format!("${name} has no $End{name}");
+    cursor.source.error_at(opened, problem, CUT_OFF)
+}

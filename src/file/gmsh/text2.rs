@@ -1,0 +1,64 @@
+//! The sections of version 2.2: one line per node and per element.
+
+use super::kind::{Kind, node_tags};
+use super::{Sink, ahead, row};
+use crate::error::ReadError;
+use crate::file::text::Cursor;
+
+/// Reads `$Nodes` after its first line. Returns their number.
+pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+    let plain = ahead(cursor, count, sink, node, |cursor, sink, (tag, (x_at, at))| {
+        sink.node(cursor, tag, 2, x_at, at);
+        true
+    });
+    for done in plain..count {
+        row(cursor, done, count, "nodes")?;
+        let (tag, (x_at, at)) = node(cursor)?;
+        sink.node(cursor, tag, 2, x_at, at);
+    }
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns their number.
+pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.integer("the number of elements")?;
+    sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
+    let plain = ahead(cursor, count, sink, element, |cursor, sink, (tag, kind, tags)| {
+        sink.element(cursor, tag, kind, &tags[..kind.nodes()]).is_ok()
+    });
+    for done in plain..count {
+        row(cursor, done, count, "elements")?;
+        let (tag, kind, tags) = element(cursor)?;
+        sink.element(cursor, tag, kind, &tags[..kind.nodes()])?;
+    }
+    Ok(count)
+}
+
+#[inline]
+fn node(cursor: &mut Cursor<'_>) -> Result<(u64, (usize, [f64; 2])), ReadError> {
+    let tag = cursor.integer("a node tag")?;
+    let owner = format_args!("node {tag}");
+    let point = cursor.point(owner)?;
+    // z is kept, but that the row holds it shows that it is whole.
+    cursor.coordinate('z', owner)?;
+    Ok((tag, point))
+}
+
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<(u64, Kind, [u64; 4]), ReadError> {
+    let tag = cursor.integer("an element tag")?;
+    let kind = cursor.integer(format_args!("the type of element {tag}"))?;
+    let kind = Kind::new(cursor, kind)?;
+    let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
+    for _ in 0..groups {
+        if cursor.token().is_none() {
+            let problem = format!("element {tag} announces {groups} tags, and its line is shorter");
+            return Err(cursor.error(problem, crate::file::text::CORRECT));
+        }
+    }
+    Ok((tag, kind, node_tags(cursor, kind, tag)?))
+}

@@ -1,0 +1,105 @@
+//! The sections of version 4.1: blocks, one per entity of the model.
+
+use super::kind::{Kind, node_tags};
+use super::{Sink, ahead, all_in_blocks, block_fits, row};
+use crate::error::ReadError;
+use crate::file::text::Cursor;
+use std::fmt::Display;
+
+/// Reads `$Nodes` after its first line. Returns their number.
+pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let blocks = cursor.integer("the number of node blocks")?;
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
+    let mut done = 0;
+    let mut tags = Vec::new();
+    for block in 0..blocks {
+        row(cursor, block, blocks, "node blocks")?;
+        let dimension = cursor.integer("the dimension of a node block")?;
+        cursor.token(); // The entity's own tag, which may be negative.
+        let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+        if parametric && dimension >= 2 {
+            sink.parametric();
+        }
+        let size = cursor.integer("the number of nodes of a block")?;
+        block_fits(cursor, size, count - done, "nodes")?;
+        tags.clear();
+        tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
+        let plain = ahead(cursor, size, sink, node_tag, |_, _, tag| {
+            tags.push(tag);
+            true
+        });
+        for at in plain..size {
+            row(cursor, done + at, count, "node tags")?;
+            tags.push(node_tag(cursor)?);
+        }
+        let mut owners = tags.iter();
+        let read = |cursor: &mut Cursor<'_>| point(cursor, "a node");
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, (x_at, at)| {
+            let owner = owners.next();
+            owner.inspect(|&&tag| sink.node(cursor, tag, dimension, x_at, at)).is_some()
+        });
+        for (at, &tag) in (plain..).zip(owners) {
+            row(cursor, done + at, count, "nodes")?;
+            let (x_at, at) = point(cursor, format_args!("node {tag}"))?;
+            sink.node(cursor, tag, dimension, x_at, at);
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns their number.
+pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    row(cursor, 0, 1, "counts")?;
+    let blocks = cursor.integer("the number of element blocks")?;
+    let count = cursor.integer("the number of elements")?;
+    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    let mut done = 0;
+    for block in 0..blocks {
+        row(cursor, block, blocks, "element blocks")?;
+        cursor.token(); // The entity's dimension, and its tag, which may be negative.
+        cursor.token();
+        let kind = cursor.integer("the type of an element block")?;
+        let kind = Kind::new(cursor, kind)?;
+        let size = cursor.integer("the number of elements of a block")?;
+        block_fits(cursor, size, count - done, "elements")?;
+        let read = |cursor: &mut Cursor<'_>| element(cursor, kind);
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, (tag, nodes)| {
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()]).is_ok()
+        });
+        for at in plain..size {
+            row(cursor, done + at, count, "elements")?;
+            let (tag, nodes) = element(cursor, kind)?;
+            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "elements")?;
+    Ok(count)
+}
+
+#[inline]
+fn node_tag(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+    cursor.integer("a node tag")
+}
+
+/// Reads where a node's x stands, and x and y.
+#[inline]
+fn point(
+    cursor: &mut Cursor<'_>,
+    owner: impl Display + Copy,
+) -> Result<(usize, [f64; 2]), ReadError> {
+    let point = cursor.point(owner)?;
+    // z is kept, but that the row holds it shows that it is whole.
+    cursor.coordinate('z', owner)?;
+    Ok(point)
+}
+
+#[inline]
+fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<(u64, [u64; 4]), ReadError> {
+    let tag = cursor.integer("an element tag")?;
+    Ok((tag, node_tags(cursor, kind, tag)?))
+}

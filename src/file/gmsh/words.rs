@@ -1,0 +1,98 @@
+//! The numbers between the lines of a binary file.
+
+use crate::error::ReadError;
+use crate::file::binary::Order;
+use crate::file::text::{CUT_OFF, Cursor};
+use std::fmt::Display;
+
+/// What to do about numbers that cannot be.
+const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
+
+/// A few numbers of a binary file, taken at once, to be read one after the other.
+pub(super) struct Words<'a> {
+    order: Order,
+    bytes: &'a [u8],
+}
+
+impl<'a> Words<'a> {
+    /// Takes the next bytes, which hold one more of `count` such as `what`, `done` of which were read.
+    #[inline]
+    pub(super) fn take(
+        cursor: &mut Cursor<'a>,
+        order: Order,
+        size: usize,
+        (done, count, what): (u64, u64, &str),
+    ) -> Result<Words<'a>, ReadError> {
+        match cursor.take(size) {
+            Some(bytes) => Ok(Words { order, bytes }),
+            None => {
+                let problem = format!("the file ends after {done} of {count} {what}");
+                Err(cursor.error(problem, CUT_OFF))
+            }
+        }
+    }
+
+    /// The next bytes. Panics if there are not so many left: their number is known before they are taken.
+    #[inline]
+    fn next<const N: usize>(&mut self) -> [u8; N] {
+        let (next, rest) = self.bytes.split_first_chunk().expect("as many words as were taken");
+        self.bytes = rest;
+        *next
+    }
+
+    pub(super) fn skip(&mut self, size: usize) {
+        self.bytes = &self.bytes[size..];
+    }
+
+    /// gmsh's `int`.
+    #[inline]
+    pub(super) fn int(&mut self) -> i32 {
+        self.order.i32(self.next())
+    }
+
+    /// An `int` that cannot be negative, called `what` in messages.
+    #[inline]
+    pub(super) fn natural(
+        &mut self,
+        cursor: &Cursor<'_>,
+        what: impl Display,
+    ) -> Result<u64, ReadError> {
+        let number = self.int();
+        u64::try_from(number).map_err(|_| {
+            cursor.error(format!("{what} is {number}, not a whole number from 0"), DAMAGED)
+        })
+    }
+
+    /// gmsh's `size_t`.
+    #[inline]
+    pub(super) fn size(&mut self) -> u64 {
+        self.order.u64(self.next())
+    }
+
+    /// x, y and z of a node. Returns x and y; z is kept as it is.
+    #[inline]
+    pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 2], ReadError> {
+        let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
+        for (axis, x) in "xyz".chars().zip(point) {
+            if !x.is_finite() {
+                let problem = format!("{axis} of node {tag} is {x}, not a finite number");
+                return Err(cursor.error(problem, DAMAGED));
+            }
+        }
+        let [x, y, _] = point;
+        Ok([x, y])
+    }
+}
+
+/// Reads gmsh's mark of the byte order, an `int` of one.
+pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<Order, ReadError> {
+    match cursor.take(4) {
+        Some([1, 0, 0, 0]) => Ok(Order::Little),
+        Some([0, 0, 0, 1]) => Ok(Order::Big),
+        Some(_) => {
+            let problem = "the mark of the byte order is one in neither order";
+            Err(cursor.error(problem, DAMAGED))
+        }
+        None => Err(cursor.error("the file ends before the mark of the byte order", CUT_OFF)),
+    }
+}

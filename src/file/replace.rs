@@ -1,0 +1,245 @@
+//! Replaces files all at once or not at all.
+
+use crate::error::WriteError;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A file to be written: its path, and what writes its content.
+pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
+
+/// Writes all of the files, or leaves all that stood there as they were.
+///
+/// Each is first written beside its destination. Symbolic links are followed, permissions kept.
+pub(crate) fn replace(jobs: &[Job<'_>]) -> Result<(), WriteError> {
+    let staged = jobs.iter().map(|(path, content)| stage(path, content));
+    let mut staged = staged.collect::<Result<Vec<_>, _>>()?;
+    for next in 0..staged.len() {
+        let more_follow = next + 1 < staged.len();
+        if let Err(source) = staged[next].commit(more_follow) {
+            staged[..next].iter().for_each(Staged::revert);
+            return Err(refused(&staged[next].target, source));
+        }
+    }
+    Ok(())
+}
+
+/// Finds out, as far as can be told, whether a file can be written there.
+pub(crate) fn check(path: &Path) -> Result<(), WriteError> {
+    let (target, existing) = resolve(path).map_err(|source| refused(path, source))?;
+    match existing {
+        Some(existing) if existing.is_dir() => {
+            return Err(refused(path, ErrorKind::IsADirectory.into()));
+        }
+        // A device or pipe: only writing to it can tell.
+        Some(existing) if !existing.is_file() => return Ok(()),
+        Some(existing) if existing.permissions().readonly() => {
+            return Err(WriteError::Io {
+                path: target,
+                source: io::Error::new(ErrorKind::PermissionDenied, "the file is read-only"),
+                remedy: "Make it writable, or write to another name".into(),
+            });
+        }
+        _ => {}
+    }
+    let directory = directory_of(&target);
+    if !directory.is_dir() {
+        return Err(WriteError::Io {
+            path: directory.to_owned(),
+            source: io::Error::new(ErrorKind::NotFound, "no such directory"),
+            remedy: "Create the directory first, or write to another one".into(),
+        });
+    }
+    Temporary::create(directory).map(drop).map_err(|source| refused(directory, source))
+}
+
+fn refused(path: &Path, source: io::Error) -> WriteError {
+    let remedy = match source.kind() {
+        ErrorKind::IsADirectory => "Give the name of a file",
+        ErrorKind::NotFound => "Create the directory first, or write to another one",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "Write to a directory that you may change"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "Make room, or write to another disk",
+        _ => "Write to another place",
+    };
+    WriteError::Io { path: path.to_owned(), source, remedy: remedy.into() }
+}
+
+/// A written file that waits to take its place.
+struct Staged {
+    target: PathBuf,
+    /// None if the content went straight to a device or pipe.
+    content: Option<Temporary>,
+    existed: bool,
+    /// A second name of what stood there, while it may have to come back.
+    previous: Option<Temporary>,
+}
+
+fn stage(
+    path: &Path,
+    content: &dyn Fn(&mut (dyn Write + Send)) -> io::Result<()>,
+) -> Result<Staged, WriteError> {
+    let attempt = || {
+        let (target, existing) = resolve(path)?;
+        let existed = existing.is_some();
+        if existing.as_ref().is_some_and(|existing| !existing.is_file() && !existing.is_dir()) {
+            let mut out = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
+            content(&mut out)?;
+            out.flush()?;
+            return Ok(Staged { target, content: None, existed, previous: None });
+        }
+        let (temporary, file) = Temporary::create(directory_of(&target))?;
+        let mut out = BufWriter::with_capacity(1 << 18, file);
+        content(&mut out)?;
+        let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+        if let Some(existing) = existing {
+            file.set_permissions(existing.permissions())?;
+        }
+        // Otherwise a crash could leave the new name with none of the content.
+        file.sync_all()?;
+        Ok(Staged { target, content: Some(temporary), existed, previous: None })
+    };
+    attempt().map_err(|source| refused(path, source))
+}
+
+impl Staged {
+    fn commit(&mut self, revertible: bool) -> io::Result<()> {
+        let Some(content) = &self.content else { return Ok(()) };
+        let directory = directory_of(&self.target);
+        if revertible && self.existed {
+            let previous = Temporary::unused_name(directory);
+            // Without hard links there is no way back, yet nothing is known to fail either.
+            if fs::hard_link(&self.target, &previous).is_ok() {
+                self.previous = Some(Temporary(previous));
+            }
+        }
+        fs::rename(&content.0, &self.target)?;
+        // Makes the new name last; not every system lets a directory be opened for it.
+        if let Ok(directory) = File::open(directory) {
+            let _ = directory.sync_all();
+        }
+        Ok(())
+    }
+
+    fn revert(&self) {
+        // The error that led here is the one to report.
+        let _ = match &self.previous {
+            Some(previous) => fs::rename(&previous.0, &self.target),
+            None if self.content.is_some() && !self.existed => fs::remove_file(&self.target),
+            None => Ok(()),
+        };
+    }
+}
+
+/// A file of our own, removed when dropped unless it was renamed.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    fn create(directory: &Path) -> io::Result<(Temporary, File)> {
+        loop {
+            let path = Self::unused_name(directory);
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => return Ok((Temporary(path), file)),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// A short name, as the destination's own may be as long as names can be.
+    fn unused_name(directory: &Path) -> PathBuf {
+        static COUNTER: AtomicU64 = AtomicU64::new(0);
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        directory.join(format!(".gpu-smooth-{}-{number}.tmp", std::process::id()))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+/// The path behind all symbolic links, whose last one may point to nothing yet, and what is there.
+fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
+    match fs::metadata(path) {
+        // The links of devices and pipes need not be paths.
+        Ok(existing) if !existing.is_file() => Ok((path.to_owned(), Some(existing))),
+        Ok(existing) => Ok((fs::canonicalize(path)?, Some(existing))),
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            let mut target = path.to_owned();
+            while let Ok(next) = fs::read_link(&target) {
+                target = directory_of(&target).join(next);
+            }
+            Ok((target, None))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
+        Some(parent) => parent,
+        None => path,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(path: PathBuf, text: &'static str) -> Job<'static> {
+        (path, Box::new(move |out| out.write_all(text.as_bytes())))
+    }
+
+    fn entries(directory: &Path) -> usize {
+        fs::read_dir(directory).unwrap().count()
+    }
+
+    #[test]
+    fn a_failing_writer_leaves_everything_as_it_was() {
+        let directory = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
+        fs::write(&a, "old").unwrap();
+        let failing: Job<'_> = (
+            b,
+            Box::new(|out| {
+                out.write_all(b"half")?;
+                Err(ErrorKind::StorageFull.into())
+            }),
+        );
+        let error = replace(&[job(a.clone(), "new"), failing]).unwrap_err().to_string();
+        assert!(error.contains("Make room"), "{error}");
+        assert_eq!(fs::read_to_string(&a).unwrap(), "old");
+        assert_eq!(entries(directory.path()), 1);
+    }
+
+    #[test]
+    fn a_failing_rename_brings_the_files_before_it_back() {
+        let directory = tempfile::tempdir().unwrap();
+        let [a, b, c] = ["a", "b", "c"].map(|name| directory.path().join(name));
+        fs::write(&a, "old").unwrap();
+        // No file can take the place of a directory.
+        fs::create_dir(&c).unwrap();
+        let jobs = [job(a.clone(), "new"), job(b.clone(), "new"), job(c, "new")];
+        assert!(replace(&jobs).is_err());
+        assert_eq!(fs::read_to_string(&a).unwrap(), "old");
+        assert!(!b.exists());
+        assert_eq!(entries(directory.path()), 2);
+    }
+
+    #[test]
+    fn success_leaves_no_temporary_files() {
+        let directory = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
+        fs::write(&a, "old").unwrap();
+        check(&a).unwrap();
+        replace(&[job(a.clone(), "1"), job(b.clone(), "2")]).unwrap();
+        assert_eq!(fs::read_to_string(&a).unwrap(), "1");
+        assert_eq!(fs::read_to_string(&b).unwrap(), "2");
+        assert_eq!(entries(directory.path()), 2);
+    }
+}

@@ -1,0 +1,338 @@
+//! Rows and tokens of a text file.
+
+use crate::error::{Location, ReadError};
+use crate::file::source::Source;
+use std::fmt::Display;
+
+/// What to do about a single wrong line.
+pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
+/// What to do about a file that stops too early.
+pub(crate) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
+const WHOLE: &str = "a whole number from 0 to 2^64-1";
+
+/// Walks over the rows of a file: the lines that hold more than blanks and a `#` comment.
+pub(crate) struct Cursor<'a> {
+    pub(crate) source: &'a Source,
+    /// The source's bytes up to where this cursor ends.
+    bytes: &'a [u8],
+    at: usize,
+    /// How many lines were begun. Before the first one and after bytes were taken, a line starts at `at`.
+    line: usize,
+    /// In a binary file, where the bytes last taken start.
+    taken: Option<usize>,
+}
+
+impl<'a> Cursor<'a> {
+    /// Stands before the first row.
+    pub(crate) fn new(source: &'a Source) -> Self {
+        let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
+        Cursor { source, bytes: &source.bytes, at, line: 0, taken: None }
+    }
+
+    /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
+    /// lines from their own first.
+    pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
+        let mut at = self.next_line();
+        let mut parts = Vec::with_capacity(count);
+        while parts.len() < count && at < self.bytes.len() {
+            let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
+            let bytes = &self.bytes[..end];
+            parts.push(Cursor { source: self.source, bytes, at, line: 0, taken: None });
+            at = end;
+        }
+        parts
+    }
+
+    /// Moves to the last line of a part that is used up. It has to be the first one of [`parts`](Self::parts).
+    pub(crate) fn skip(&mut self, part: &Cursor<'_>) {
+        self.line += part.line;
+        self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
+    }
+
+    /// The line it stands on, which is the last one once the rows are used up; or where in a binary file it stands,
+    /// which is at the start of the bytes last taken.
+    pub(crate) fn location(&self) -> Location {
+        match self.taken {
+            // Nothing was read of a file without lines, yet editors count from one.
+            None => Location::Line(self.line.max(1)),
+            Some(start) if self.line == 0 => Location::Byte(start),
+            Some(_) => Location::Byte(self.at),
+        }
+    }
+
+    /// Where something stands whose first byte is the one at `at`.
+    pub(crate) fn location_of(&self, at: usize) -> Location {
+        match self.taken {
+            None => Location::Line(self.source.line_of(at)),
+            Some(_) => Location::Byte(at),
+        }
+    }
+
+    /// Takes so many bytes that start on the next line, or where those last taken end. From then on the file counts
+    /// as binary. None if there are fewer.
+    #[inline]
+    pub(crate) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let start = self.next_line();
+        (self.at, self.line, self.taken) = (start, 0, Some(start));
+        let taken = self.bytes[start..].get(..count)?;
+        self.at += count;
+        Some(taken)
+    }
+
+    /// Where the bytes last taken start.
+    #[inline]
+    pub(crate) fn taken(&self) -> usize {
+        self.taken.unwrap_or(self.at)
+    }
+
+    #[inline]
+    fn next_line(&self) -> usize {
+        if self.line > 0 { line_end(self.bytes, self.at) } else { self.at }
+    }
+
+    /// Moves to the first token of the next row. False when there is none.
+    pub(crate) fn next_row(&mut self) -> bool {
+        let bytes = self.bytes;
+        loop {
+            self.at = self.next_line();
+            if self.at == bytes.len() {
+                return false;
+            }
+            self.line += 1;
+            self.at = skip_blanks(bytes, self.at);
+            if !matches!(bytes.get(self.at), None | Some(b'\n' | b'#')) {
+                return true;
+            }
+        }
+    }
+
+    /// The next token of the row, or none at its end.
+    #[inline]
+    pub(crate) fn token(&mut self) -> Option<&'a [u8]> {
+        let bytes = self.bytes;
+        let start = skip_blanks(bytes, self.at);
+        self.at = token_end(bytes, start);
+        (self.at > start).then(|| &bytes[start..self.at])
+    }
+
+    /// Whether the next token starts with this byte.
+    pub(crate) fn is_at(&self, byte: u8) -> bool {
+        self.bytes.get(skip_blanks(self.bytes, self.at)) == Some(&byte)
+    }
+
+    /// Reads a number from zero up, called `what` in messages.
+    #[inline]
+    pub(crate) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
+        let bytes = self.bytes;
+        let start = skip_blanks(bytes, self.at);
+        let mut at = start;
+        let mut number = 0_u64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=19).contains(&(at - start)) && token_end(bytes, at) == at {
+            self.at = at;
+            return Ok(number);
+        }
+        let token = self.token();
+        token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
+    }
+
+    /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
+    pub(crate) fn integer_or(&mut self, absent: u64, what: &str) -> Result<u64, ReadError> {
+        match self.token() {
+            None => Ok(absent),
+            token => token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE)),
+        }
+    }
+
+    /// Reads how many vertices there are.
+    pub(crate) fn vertex_count(&mut self) -> Result<u64, ReadError> {
+        let count = self.integer("the number of vertices")?;
+        self.check_vertex_count(count)?;
+        Ok(count)
+    }
+
+    /// Fails where there are more vertices than 32-bit indices can tell apart.
+    pub(crate) fn check_vertex_count(&self, count: u64) -> Result<(), ReadError> {
+        if count > u64::from(u32::MAX) {
+            let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
+            return Err(self.error(problem, "Correct the count, or split the mesh"));
+        }
+        Ok(())
+    }
+
+    /// Reads one coordinate, `axis` of `owner` in messages.
+    #[inline]
+    pub(crate) fn coordinate(&mut self, axis: char, owner: impl Display) -> Result<f64, ReadError> {
+        let token = self.token();
+        let value = token.and_then(float).filter(|x| x.is_finite());
+        value.ok_or_else(|| {
+            self.unusable(token, format_args!("{axis} of {owner}"), "a finite number")
+        })
+    }
+
+    /// Reads x and y. Returns where x stands, and both.
+    #[inline]
+    pub(crate) fn point(
+        &mut self,
+        owner: impl Display + Copy,
+    ) -> Result<(usize, [f64; 2]), ReadError> {
+        let x_at = skip_blanks(self.bytes, self.at);
+        Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
+    }
+
+    /// How many of `count` rows to reserve space for: no more than can follow, a count proves nothing.
+    pub(crate) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
+        let possible = (self.bytes.len() - self.at) / bytes_per_row;
+        usize::try_from(count).map_or(possible, |count| count.min(possible))
+    }
+
+    /// An error on the current line.
+    #[cold]
+    pub(crate) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
+        self.source.error_at(self.location(), problem, remedy)
+    }
+
+    #[cold]
+    fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
+        match token {
+            // Nothing follows, not even the end of the line.
+            None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
+                self.error(format!("{what} is missing"), CUT_OFF)
+            }
+            None => self.error(format!("{what} is missing"), CORRECT),
+            Some(token) => {
+                self.error(format!("{what} is `{}`, not {wanted}", quoted(token)), CORRECT)
+            }
+        }
+    }
+}
+
+/// Where the line ends that holds this byte, after its line feed.
+pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
+    memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
+}
+
+/// A token as it can stand in a one-line message.
+pub(crate) fn quoted(token: &[u8]) -> String {
+    const SHOWN: usize = 40;
+    let text = String::from_utf8_lossy(&token[..token.len().min(4 * SHOWN)]);
+    let mut quoted: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        quoted.push_str("...");
+    }
+    quoted
+}
+
+#[inline]
+pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+    while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
+        at += 1;
+    }
+    at
+}
+
+#[inline]
+pub(crate) fn token_end(bytes: &[u8], mut at: usize) -> usize {
+    while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
+        at += 1;
+    }
+    at
+}
+
+#[inline]
+pub(crate) fn integer(token: &[u8]) -> Option<u64> {
+    let digits = token.strip_prefix(b"+").unwrap_or(token);
+    if digits.is_empty() {
+        return None;
+    }
+    digits.iter().try_fold(0_u64, |number, &byte| {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        number.checked_mul(10)?.checked_add(u64::from(digit))
+    })
+}
+
+#[inline]
+fn float(token: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(token).ok()?;
+    text.parse().ok().or_else(|| fortran_float(text))
+}
+
+/// Fortran marks a double's exponent with D.
+#[cold]
+fn fortran_float(text: &str) -> Option<f64> {
+    let (mantissa, exponent) = text.split_once(['d', 'D'])?;
+    format!("{mantissa}e{exponent}").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &[u8]) -> Source {
+        Source { path: "m.txt".into(), bytes: text.to_vec() }
+    }
+
+    #[test]
+    fn integers() {
+        assert_eq!(integer(b"0"), Some(0));
+        assert_eq!(integer(b"+17"), Some(17));
+        assert_eq!(integer(b"18446744073709551615"), Some(u64::MAX));
+        for wrong in ["", "+", "-1", "1.0", "1e3", "18446744073709551616", "7a", ":"] {
+            assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn floats() {
+        for (text, value) in [
+            ("1", 1.0),
+            ("+1.5", 1.5),
+            (".5", 0.5),
+            ("2.", 2.0),
+            ("1.5D+02", 150.0),
+            ("-1d-1", -0.1),
+        ] {
+            assert_eq!(float(text.as_bytes()), Some(value), "{text}");
+        }
+        for wrong in ["", "x", "1,5", "1.5.2", "D", "1D", "0x10", "--1", "\u{e9}"] {
+            assert_eq!(float(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn rows_skip_blank_and_comment_lines_and_count_them() {
+        let source = source(b"\xEF\xBB\xBF# one\r\n\r\n \t a  b # c\r\nd#e\n\n\xFF f");
+        let mut cursor = Cursor::new(&source);
+        let mut rows = Vec::new();
+        while cursor.next_row() {
+            let mut row = vec![cursor.line.to_string().into_bytes()];
+            while let Some(token) = cursor.token() {
+                row.push(token.to_vec());
+            }
+            rows.push(row.join(&b' '));
+        }
+        assert_eq!(rows, [&b"3 a b"[..], b"4 d", b"6 \xFF f"]);
+        assert!(!cursor.next_row());
+        assert_eq!(cursor.location(), Location::Line(6));
+    }
+
+    #[test]
+    fn capacity_is_bounded_by_what_is_left() {
+        let source = source(b"1 2 3 4 5 6\n");
+        assert_eq!(Cursor::new(&source).capacity(u64::MAX, 4), 3);
+        assert_eq!(Cursor::new(&source).capacity(2, 4), 2);
+    }
+
+    #[test]
+    fn quoting_keeps_a_message_on_one_short_line() {
+        assert_eq!(quoted(b"a\x07\xFFb"), "a\\u{7}\u{FFFD}b");
+        assert_eq!(quoted(&[b'x'; 5000]).len(), 43);
+    }
+}

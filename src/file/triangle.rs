@@ -1,0 +1,302 @@
+//! Triangle's `.node` and `.ele`, with the segments of a `.poly` beside them.
+//!
+//! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this ignores
+//! what follows the announced rows, and extra columns.
+
+use crate::error::{Location, ReadError};
+use crate::file::parallel_rows::take_rows;
+use crate::file::row_form::Labels;
+use crate::file::source::{Parsed, Source, fixed_note};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::mesh::Mesh;
+use std::path::{Path, PathBuf};
+
+/// The names of a mesh's files.
+pub(crate) struct Names {
+    pub(crate) node: PathBuf,
+    pub(crate) ele: PathBuf,
+    pub(crate) poly: PathBuf,
+}
+
+impl Names {
+    /// Of the mesh that `path` names, with the ending of its `.node` or `.ele`, or without either.
+    pub(crate) fn of(path: &Path) -> Names {
+        let ending = path.extension().unwrap_or_default();
+        let upper = ending == "NODE" || ending == "ELE";
+        let named = ending.eq_ignore_ascii_case("node") || ending.eq_ignore_ascii_case("ele");
+        let stem = if named { path.with_extension("") } else { path.to_owned() };
+        let with = |ending: &str| {
+            let ending = if upper { ending.to_uppercase() } else { ending.to_owned() };
+            appended(&stem, &ending)
+        };
+        Names { node: with(".node"), ele: with(".ele"), poly: with(".poly") }
+    }
+}
+
+/// The path with more at its end. Unlike `with_extension`, it leaves the 1 of `la.1` alone.
+pub(crate) fn appended(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// Reads a mesh from its two files, and from its `.poly` if there is one.
+pub(crate) fn parse(
+    node: &Source,
+    ele: &Source,
+    poly: Option<&Source>,
+) -> Result<Parsed, ReadError> {
+    let (numbers, points, x_at) = vertices(node)?;
+    let triangles = triangles(ele, node, &numbers)?;
+    let mut fixed = Vec::new();
+    let mut notes = Vec::new();
+    if let Some(poly) = poly {
+        let segments = segments(poly, node, &numbers, &mut fixed)?;
+        notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
+    }
+    let labels = Some(Labels { triangle: triangle_place(ele, 0).1, vertex: numbers.first });
+    Ok(Parsed {
+        mesh: Mesh { points, triangles, fixed },
+        x_at,
+        order: None,
+        labels,
+        rows: Vec::new(),
+        notes,
+    })
+}
+
+/// Line and number of a vertex whose x stands at `x_at`.
+pub(crate) fn vertex_place(node: &Source, x_at: usize) -> (Location, u64) {
+    let start = memchr::memrchr(b'\n', &node.bytes[..x_at]).map_or(0, |end| end + 1);
+    let number = std::str::from_utf8(&node.bytes[start..x_at]).unwrap_or_default().trim();
+    let line = Location::Line(node.line_of(x_at));
+    (line, crate::file::text::integer(number.as_bytes()).unwrap_or_default())
+}
+
+/// Line and number of the triangle with this index, in a file that was read before.
+pub(crate) fn triangle_place(ele: &Source, index: usize) -> (Location, u64) {
+    let mut cursor = Cursor::new(ele);
+    for _ in 0..index + 2 {
+        cursor.next_row();
+    }
+    (cursor.location(), cursor.integer("its number").unwrap_or_default())
+}
+
+/// How the vertices of a file are numbered: `count` of them from `first` on.
+struct Numbers {
+    first: u64,
+    count: u64,
+}
+
+impl Numbers {
+    /// The zero-based index of the vertex that `owner` names.
+    #[inline]
+    fn index(
+        &self,
+        cursor: &mut Cursor<'_>,
+        list: &Source,
+        owner: impl std::fmt::Display,
+    ) -> Result<u32, ReadError> {
+        let number = cursor.integer(format_args!("a vertex of {owner}"))?;
+        match number.checked_sub(self.first) {
+            // The count fits into 32 bits.
+            Some(index) if index < self.count => Ok(index as u32),
+            _ => {
+                let (first, list) = (self.first, list.name());
+                let last = first + self.count - 1;
+                let problem = format!(
+                    "{owner} has vertex {number}, but {list} has vertices {first} to {last}"
+                );
+                Err(cursor.error(problem, "Take files of one mesh, or correct the line"))
+            }
+        }
+    }
+}
+
+type Vertices = (Numbers, Vec<[f64; 2]>, Vec<usize>);
+
+fn vertices(node: &Source) -> Result<Vertices, ReadError> {
+    let cursor = &mut Cursor::new(node);
+    let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
+    if numbers.count == 0 {
+        return Err(cursor.error("no vertices are announced", "Write the mesh again"));
+    }
+    let capacity = cursor.capacity(numbers.count, "1 0 0\n".len());
+    let mut points = Vec::with_capacity(capacity);
+    let mut x_at = Vec::with_capacity(capacity);
+    let read = |cursor: &mut Cursor<'_>| {
+        let number = cursor.integer("the number of a vertex")?;
+        Ok((number, cursor.point(format_args!("vertex {number}"))?))
+    };
+    let plain = take_rows(cursor, numbers.count, read, |(number, (at, point))| {
+        if points.is_empty() {
+            numbers.first = number.min(1);
+        }
+        let expected = number == numbers.first + points.len() as u64;
+        if expected {
+            x_at.push(at);
+            points.push(point);
+        }
+        expected
+    });
+    for row in plain..numbers.count {
+        let number = vertex_number(cursor, row, &mut numbers)?;
+        let (at, point) = cursor.point(format_args!("vertex {number}"))?;
+        x_at.push(at);
+        points.push(point);
+    }
+    Ok((numbers, points, x_at))
+}
+
+/// Reads the number of vertices, and that they are in the plane.
+fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+    header(cursor, "vertices")?;
+    let count = cursor.vertex_count()?;
+    match cursor.integer_or(2, "the dimension")? {
+        2 => Ok(count),
+        3 => {
+            Err(cursor
+                .error("the vertices have 3 coordinates", "Only meshes of the plane are read"))
+        }
+        other => Err(cursor.error(format!("the dimension is {other}, not 2"), CORRECT)),
+    }
+}
+
+/// Reads the number that opens a vertex's row. The first one says where numbering starts.
+fn vertex_number(
+    cursor: &mut Cursor<'_>,
+    row: u64,
+    numbers: &mut Numbers,
+) -> Result<u64, ReadError> {
+    next_of(cursor, row, numbers.count, "vertices")?;
+    let number = cursor.integer("the number of a vertex")?;
+    if row == 0 {
+        if number > 1 {
+            let problem = format!("the first vertex has number {number}");
+            return Err(cursor.error(problem, "Number the vertices from 0 or from 1"));
+        }
+        numbers.first = number;
+    } else if number != numbers.first + row {
+        let expected = numbers.first + row;
+        let problem = format!("vertex {number} stands where vertex {expected} should");
+        return Err(cursor.error(problem, "Number the vertices consecutively"));
+    }
+    Ok(number)
+}
+
+fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Vec<[u32; 3]>, ReadError> {
+    let cursor = &mut Cursor::new(ele);
+    header(cursor, "triangles")?;
+    let count = cursor.integer("the number of triangles")?;
+    match cursor.integer_or(3, "the number of vertices per triangle")? {
+        3 => {}
+        6 => {
+            let problem = "the triangles have 6 nodes, and mid-side nodes are not moved";
+            return Err(cursor.error(problem, "Make the mesh with 3-node triangles (without -o2)"));
+        }
+        4 => {
+            let problem = "the elements have 4 nodes: tetrahedra";
+            return Err(cursor.error(problem, "Only triangles of the plane are read"));
+        }
+        other => {
+            let problem = format!("the triangles have {other} nodes");
+            return Err(cursor.error(problem, "Make the mesh with 3-node triangles"));
+        }
+    }
+    let mut triangles = Vec::with_capacity(cursor.capacity(count, "1 1 2 3\n".len()));
+    let read = |cursor: &mut Cursor<'_>| triangle(cursor, node, numbers);
+    let plain = take_rows(cursor, count, read, |corners| {
+        triangles.push(corners);
+        true
+    });
+    for row in plain..count {
+        next_of(cursor, row, count, "triangles")?;
+        triangles.push(read(cursor)?);
+    }
+    Ok(triangles)
+}
+
+#[inline]
+fn triangle(
+    cursor: &mut Cursor<'_>,
+    node: &Source,
+    numbers: &Numbers,
+) -> Result<[u32; 3], ReadError> {
+    let number = cursor.integer("the number of a triangle")?;
+    let mut corners = [0; 3];
+    for corner in &mut corners {
+        *corner = numbers.index(cursor, node, format_args!("triangle {number}"))?;
+    }
+    let [a, b, c] = corners;
+    if a == b || b == c || c == a {
+        let twice = numbers.first + u64::from(if b == c { b } else { a });
+        let problem = format!("triangle {number} lists vertex {twice} twice");
+        return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
+    }
+    Ok(corners)
+}
+
+/// Adds the vertices a `.poly` lists, and those of its segments, to `fixed`. Returns the number of
+/// segments. Its holes and regions concern mesh generators only.
+fn segments(
+    poly: &Source,
+    node: &Source,
+    numbers: &Numbers,
+    fixed: &mut Vec<u32>,
+) -> Result<u64, ReadError> {
+    let cursor = &mut Cursor::new(poly);
+    let listed = vertex_header(cursor)?;
+    // Vertices of its own are the first ones of the mesh, under numbers of their own.
+    let mut own = Numbers { first: numbers.first, count: listed };
+    for row in 0..listed {
+        vertex_number(cursor, row, &mut own)?;
+        if row >= numbers.count {
+            let problem = format!("more vertices than the {} of {}", numbers.count, node.name());
+            return Err(cursor.error(problem, "Take files of one mesh"));
+        }
+        fixed.push(row as u32);
+    }
+    let ends = Numbers { first: own.first, count: numbers.count };
+    header(cursor, "segments")?;
+    let count = cursor.integer("the number of segments")?;
+    for row in 0..count {
+        next_of(cursor, row, count, "segments")?;
+        let number = cursor.integer("the number of a segment")?;
+        for _ in 0..2 {
+            fixed.push(ends.index(cursor, node, format_args!("segment {number}"))?);
+        }
+    }
+    Ok(count)
+}
+
+fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadError> {
+    if cursor.next_row() {
+        return Ok(());
+    }
+    Err(cursor.error(format!("the file ends before the number of {what}"), CUT_OFF))
+}
+
+/// Moves to the next of `count` rows, `done` of which were read.
+#[inline]
+fn next_of(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+    if cursor.next_row() {
+        return Ok(());
+    }
+    Err(cursor.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_the_iteration_number_and_the_case() {
+        for given in ["d/la.1", "d/la.1.node", "d/la.1.ele"] {
+            let names = Names::of(Path::new(given));
+            assert_eq!(names.node, Path::new("d/la.1.node"), "{given}");
+            assert_eq!(names.ele, Path::new("d/la.1.ele"), "{given}");
+            assert_eq!(names.poly, Path::new("d/la.1.poly"), "{given}");
+        }
+        assert_eq!(Names::of(Path::new("A.NODE")).ele, Path::new("A.ELE"));
+    }
+}

@@ -1,0 +1,69 @@
+//! The adapters there are.
+
+/// What an adapter is called and how wgpu drives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterSummary {
+    /// The name, for example of the graphics card.
+    pub name: String,
+    /// Driver and version.
+    pub driver: String,
+    /// wgpu's backend: vulkan, metal, dx12 or gl.
+    pub backend: String,
+    /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" (software) or "other".
+    pub kind: &'static str,
+}
+
+impl AdapterSummary {
+    pub(crate) fn new(info: &wgpu::AdapterInfo) -> Self {
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+            wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+            wgpu::DeviceType::VirtualGpu => "virtual GPU",
+            wgpu::DeviceType::Cpu => "CPU",
+            wgpu::DeviceType::Other => "other",
+        };
+        let driver = [info.driver.trim(), info.driver_info.trim()];
+        let driver: Vec<_> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+        Self {
+            name: info.name.clone(),
+            driver: driver.join(" "),
+            backend: info.backend.to_string(),
+            kind,
+        }
+    }
+}
+
+/// Every adapter there is, the one that would be chosen first in front.
+pub fn adapters() -> Vec<AdapterSummary> {
+    ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
+}
+
+/// Usable adapters, fastest kind first. OpenGL is only looked at where there is nothing better: it
+/// shows the same devices again, and its driver is slow to start.
+pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
+    let native = usable_adapters(wgpu::Backends::PRIMARY);
+    if native.is_empty() { usable_adapters(wgpu::Backends::SECONDARY) } else { native }
+}
+
+fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        // Validation layers print to the caller's terminal.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    let can_compute = |adapter: &wgpu::Adapter| {
+        let downlevel = adapter.get_downlevel_capabilities();
+        downlevel.flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+    };
+    adapters.retain(can_compute);
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    adapters
+}

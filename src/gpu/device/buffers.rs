@@ -1,0 +1,109 @@
+//! Buffers: filled on creation, zeroed, and bound in part.
+
+use std::collections::VecDeque;
+use std::ops::Range;
+
+use wgpu::BufferUsages as Usage;
+
+use crate::gpu::device::Gpu;
+
+/// A uniform that stands at a dynamic offset.
+pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    bytes(buffer, 0..size_of::<T>() as u64)
+}
+
+/// Some rows of a buffer, each of `size` bytes.
+pub(crate) fn rows<'b>(
+    buffer: &'b wgpu::Buffer,
+    range: &Range<u32>,
+    size: u64,
+) -> wgpu::BindingResource<'b> {
+    bytes(buffer, u64::from(range.start) * size..u64::from(range.end) * size)
+}
+
+pub(crate) fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+        buffer,
+        offset: range.start,
+        size: wgpu::BufferSize::new(range.end - range.start),
+    })
+}
+
+/// Bytes of a large buffer that are sent at once, and pieces that are on their way before one is waited for: with
+/// fewer than eight million vertices nothing ever waits.
+const PIECE: usize = 16 << 20;
+const UNDER_WAY: usize = 8;
+
+/// A buffer holding `contents`. To be called in an error scope.
+pub(crate) fn filled<T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    label: &str,
+    contents: &[T],
+    usage: Usage,
+) -> wgpu::Buffer {
+    let bytes: &[u8] = bytemuck::cast_slice(contents);
+    let is_large = bytes.len() > PIECE;
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(&format!("gpu-smooth {label}")),
+        size: (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+        usage: if is_large { usage | Usage::COPY_DST } else { usage },
+        mapped_at_creation: !is_large,
+    });
+    if is_large {
+        write_by_pieces(gpu, &buffer, bytes);
+        return buffer;
+    }
+    // A device that is lost or out of memory maps nothing, and the error scope hears of it: no reason
+    // to panic, as wgpu's own `create_buffer_init` does.
+    if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+        view.slice(..bytes.len()).copy_from_slice(bytes);
+    }
+    buffer.unmap();
+    buffer
+}
+
+/// Fills a large buffer. What is on its way takes as much memory again, until the device has it: so there is only
+/// so much of it.
+fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: &[u8]) {
+    let mut under_way = VecDeque::new();
+    for (at, piece) in (0..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
+        if under_way.len() == UNDER_WAY {
+            let submission_index = under_way.pop_front();
+            // That the device is lost, whoever waits for results is told.
+            let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
+        }
+        gpu.queue.write_buffer(buffer, at, piece);
+        under_way.push_back(gpu.queue.submit([]));
+    }
+}
+
+/// A buffer of zeros. To be called in an error scope.
+pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(&format!("gpu-smooth {label}")),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::device::readback::{self, Waiting};
+    use crate::gpu::scope::scoped;
+
+    #[test]
+    fn buffers_hold_their_contents_however_large() {
+        let gpu = Gpu::open(None).unwrap();
+        let piece = PIECE / size_of::<u32>();
+        for length in [1, piece, piece + 1, (UNDER_WAY + 1) * piece - 1] {
+            let contents: Vec<u32> =
+                (0..length as u32).map(|i| i.wrapping_mul(0x9e37_79b1)).collect();
+            let usage = Usage::STORAGE | Usage::COPY_SRC;
+            let buffer = scoped(&gpu.device, || filled(&gpu, "test", &contents, usage)).unwrap();
+            let read = readback::read::<u32>(&gpu, &buffer, length, Waiting::Block);
+            assert!(pollster::block_on(read).unwrap() == contents, "{length} numbers");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Adapters and devices, and every way wgpu says no.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::{GpuError, SmoothError};
+use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters};
+use crate::gpu::device::limits;
+use crate::gpu::device::size::MeshSize;
+use crate::gpu::kernels::pipelines::Pipelines;
+use crate::gpu::kernels::table::{Kernel, Positions};
+use crate::run::Options;
+
+/// A device with its pipelines: made once, it serves many meshes. A handle: clones name the same.
+#[derive(Clone)]
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) pipelines: Arc<Pipelines>,
+    summary: Arc<AdapterSummary>,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the best adapter, or the first whose name contains `name` (whatever the case).
+    /// Discrete GPUs come before integrated, virtual and software ones.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], or what the device refuses.
+    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = ranked_adapters();
+        let has_name = |adapter: &&wgpu::Adapter| {
+            let text = adapter.get_info().name.to_lowercase();
+            name.is_none_or(|name| text.contains(&name.to_lowercase()))
+        };
+        let adapter = adapters.iter().find(has_name).ok_or_else(|| {
+            let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+            GpuError::NoAdapter { wanted: name.map(str::to_owned), available: names.join(", ") }
+        })?;
+        let summary = AdapterSummary::new(&adapter.get_info());
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("gpu-smooth device"),
+            required_features: adapter.features() & Self::optional_features(),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::NoDevice {
+            adapter: summary.name.clone(),
+            message: error.to_string(),
+        })?;
+        let lost = Arc::new(Mutex::new(None));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            let text = if message.is_empty() { format!("{reason:?}") } else { message };
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+        });
+        // Every call is in an error scope; what still arrives here would otherwise panic.
+        let flag = Arc::clone(&lost);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+        }));
+        Self::with(device, queue, summary, lost)
+    }
+
+    /// Takes an application's own device and queue (both are handles: clones name the same device).
+    ///
+    /// It has to be made with [`Self::required_limits`] or better. Its callbacks for errors and
+    /// for loss stay the application's: this library catches the errors of its own calls in error
+    /// scopes, and learns of a lost device by reading back. What is wrong with an encoder that was passed in (it
+    /// is of another device, or finished) wgpu reports when the application finishes it, to the application.
+    ///
+    /// # Panics
+    /// Nothing here does. But wgpu itself panics where resources of two *instances* meet, in its own calls as in
+    /// this library's: an application has one [`wgpu::Instance`].
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the device binds too few storage buffers, or what it refuses.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        let summary = AdapterSummary::new(&device.adapter_info());
+        Self::with(device, queue, summary, Arc::default())
+    }
+
+    fn with(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        summary: AdapterSummary,
+        lost: Arc<Mutex<Option<String>>>,
+    ) -> Result<Self, GpuError> {
+        limits::check(&device.limits())?;
+        let pipelines = Arc::new(Pipelines::default());
+        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost })
+    }
+
+    /// Compiles all that meshes take with these options, so that neither a frame nor a later
+    /// [`Sweeps::new`](crate::gpu::Sweeps::new) has to wait for it. What is compiled already costs nothing; another
+    /// thread can do it meanwhile. Meshes so large that their positions take two bindings compile for themselves.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
+    pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
+        options.check()?;
+        let mut kernels = Kernel::needed_by(&options.plan());
+        if options.is_multilevel() {
+            kernels.extend(Kernel::of_levels(options.scheme.base()));
+        }
+        for kernel in kernels {
+            self.pipelines.get(&self.device, &kernel, Positions::Whole)?;
+        }
+        Ok(())
+    }
+
+    /// The device, a handle.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The queue, a handle.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The adapter in use.
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.summary
+    }
+
+    /// Fails if the device is lost: most calls on a lost device look as if they had worked.
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        match &*self.lost.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(message) => Err(GpuError::Lost(message.clone())),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Gpu {
+    /// The features a device needs: none beyond core WebGPU.
+    pub fn required_features() -> wgpu::Features {
+        wgpu::Features::empty()
+    }
+
+    /// The features this library makes use of where the device has them: `TIMESTAMP_QUERY`, for
+    /// [`Timestamps`](crate::gpu::Timestamps). An application that wants it asks for
+    /// `adapter.features() & Gpu::optional_features()`.
+    pub fn optional_features() -> wgpu::Features {
+        wgpu::Features::TIMESTAMP_QUERY
+    }
+
+    /// The limits to make a device with, for an application that needs `own` for itself and has meshes of up
+    /// to `size`: `own`, raised where the kernels or the meshes need more. Buffers larger than what the
+    /// adapter binds at once are bound part by part: that takes its largest `max_storage_buffer_binding_size`.
+    ///
+    /// ```no_run
+    /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize};
+    /// # async fn f(adapter: wgpu::Adapter) -> Result<(), Box<dyn std::error::Error>> {
+    /// let size = MeshSize { vertices: 100_000, triangles: 200_000 };
+    /// let (device, queue) = adapter
+    ///     .request_device(&wgpu::DeviceDescriptor {
+    ///         required_features: Gpu::required_features(),
+    ///         required_limits: Gpu::required_limits(
+    ///             wgpu::Limits::default(),
+    ///             size,
+    ///             &adapter.limits(),
+    ///         )?,
+    ///         ..Default::default()
+    ///     })
+    ///     .await?;
+    /// let gpu = Gpu::new(device, queue)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// A vertex buffer with a stride above 16 bytes may need a larger `max_storage_buffer_binding_size` than the
+    /// mesh.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it
+    /// names the limit. Of `own` nothing is checked: that the adapter does when it is asked for the device.
+    pub fn required_limits(
+        own: wgpu::Limits,
+        size: MeshSize,
+        available: &wgpu::Limits,
+    ) -> Result<wgpu::Limits, GpuError> {
+        limits::required(own, size, available)
+    }
+
+    /// Says whether meshes of this size fit the device, however their buffers are bound. Allocates nothing.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if not; it names the buffer and the limit.
+    pub fn check_size(&self, size: MeshSize) -> Result<(), GpuError> {
+        size.check(&self.device.limits())
+    }
+}

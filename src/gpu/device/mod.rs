@@ -1,0 +1,13 @@
+//! Adapters and devices: what they can do, and memory on them.
+
+mod adapters;
+pub(crate) mod buffers;
+mod gpu;
+pub(crate) mod limits;
+pub(crate) mod readback;
+pub(crate) mod size;
+
+pub use adapters::{AdapterSummary, adapters};
+pub use gpu::Gpu;
+pub(crate) use readback::Waiting;
+pub use size::MeshSize;

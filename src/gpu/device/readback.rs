@@ -1,0 +1,61 @@
+//! Getting bytes back: the one place that maps a buffer.
+
+use bytemuck::Pod;
+use futures_intrusive::channel::shared::oneshot_channel;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::scope::scoped;
+
+/// Who polls the device while a readback is under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Waiting {
+    /// This library, blocking the thread until the device is done.
+    Block,
+    /// The application, as it does for its own work; the future completes after one of its polls.
+    Await,
+}
+
+/// Copies `count` values from the start of `source` to the host, after everything submitted so far.
+pub(crate) async fn read<T: Pod>(
+    gpu: &Gpu,
+    source: &wgpu::Buffer,
+    count: usize,
+    waiting: Waiting,
+) -> Result<Vec<T>, GpuError> {
+    let size = (count * size_of::<T>()) as u64;
+    let label = Some("gpu-smooth readback");
+    let (sender, receiver) = oneshot_channel();
+    let staging = scoped(&gpu.device, || {
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label,
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
+        gpu.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is only gone if this function has already failed.
+            let _ = sender.send(result);
+        });
+        staging
+    })?;
+    if waiting == Waiting::Block {
+        let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        gpu.check()?;
+        polled.map_err(|error| GpuError::Lost(error.to_string()))?;
+    }
+    match receiver.receive().await {
+        Some(Ok(())) => gpu.check()?,
+        Some(Err(error)) => return Err(GpuError::Lost(error.to_string())),
+        None => return Err(GpuError::Lost("the readback was abandoned".into())),
+    }
+    let view = staging.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
+    let values = bytemuck::pod_collect_to_vec(&view[..]);
+    drop(view);
+    staging.unmap();
+    Ok(values)
+}

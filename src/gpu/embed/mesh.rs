@@ -1,0 +1,125 @@
+//! A mesh that stays on an application's device.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::error::{MeshError, SmoothError};
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::filled;
+use crate::gpu::device::readback::Waiting;
+use crate::gpu::embed::{BoundVertices, VertexBuffer};
+use crate::gpu::kernels::uniforms::{HELD, join};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+use crate::layout::prepare;
+use crate::mesh::Mesh;
+
+/// A mesh on the device, as long as its triangles stay. Several can be alive at once.
+///
+/// Its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the application through
+/// [`BoundVertices::encode_import`], topology and pipelines staying as they are. So does the mean
+/// area of the triangles that AREA and RMS measure by: where the application makes the whole mesh larger or
+/// smaller, IMR, AR and EDGE suit better.
+pub struct DeviceMesh {
+    pub(crate) gpu: Gpu,
+    pub(crate) problem: Problem,
+    pub(crate) buffers: MeshBuffers,
+    /// The application's number of each vertex.
+    numbers: wgpu::Buffer,
+    vertex_count: usize,
+    /// The vertices that no triangle uses: they are not on the device.
+    unused: Vec<(u32, [f64; 2])>,
+}
+
+impl DeviceMesh {
+    /// Prepares a mesh and uploads it. Blocks while it colors the vertices.
+    ///
+    /// The vertices of [`Mesh::fixed`] stay until [`set_fixed`](Self::set_fixed) says otherwise.
+    ///
+    /// # Errors
+    /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, [`SmoothError::Gpu`] with
+    /// [`GpuError::Limit`] if it is too large for the device.
+    pub fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self, SmoothError> {
+        let unconstrained = Mesh { fixed: Vec::new(), ..mesh.clone() };
+        let (topology, problem) = prepare(&unconstrained)?;
+        let buffers = MeshBuffers::new(gpu, &problem, problem.positions())?;
+        let numbers = scoped(&gpu.device, || {
+            filled(gpu, "vertex numbers", problem.vertices(), Usage::STORAGE)
+        })?;
+        let vertex_count = mesh.points.len();
+        let unused = (0..).zip(&mesh.points).filter(|&(v, _)| topology.star(v).is_empty());
+        let unused = unused.map(|(v, &point)| (v, point)).collect();
+        let device_mesh =
+            Self { gpu: gpu.clone(), problem, buffers, numbers, vertex_count, unused };
+        device_mesh.set_fixed(&mesh.fixed)?;
+        Ok(device_mesh)
+    }
+
+    /// Holds these vertices where they are, and lets go of all others. Boundary vertices always stay, named or
+    /// not; so what [`Mesh::fixed`] lists is to be named again if it is to stay. Takes effect in what is
+    /// submitted after the call.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh has not.
+    pub fn set_fixed(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let mut fixed = vec![false; self.vertex_count];
+        for &vertex in vertices {
+            let Some(flag) = fixed.get_mut(vertex as usize) else {
+                let vertices = self.vertex_count;
+                return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
+            };
+            *flag = true;
+        }
+        let mut starts = self.problem.ring_start().to_vec();
+        // One start a free vertex; the entry after them is the end of the last ring.
+        let free = self.problem.free_count();
+        for (start, &vertex) in starts[..free].iter_mut().zip(self.problem.vertices()) {
+            *start |= if fixed[vertex as usize] { HELD } else { 0 };
+        }
+        let Gpu { device, queue, .. } = &self.gpu;
+        let starts = bytemuck::cast_slice(&starts);
+        Ok(scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?)
+    }
+
+    /// Binds an application's vertex buffer to the mesh, once: what is encoded in each frame then makes no
+    /// resource. Several can be bound, as they are where frames overlap.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`,
+    /// [`GpuError::Limit`] if the device cannot bind as much.
+    pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
+        let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
+        BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
+    }
+
+    /// Reads the positions back, in the mesh's order and units; blocks until the device has done all
+    /// that was submitted. A vertex in no triangle is where the mesh had it.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] if the device is lost.
+    pub fn read_points(&self) -> Result<Vec<[f64; 2]>, GpuError> {
+        pollster::block_on(self.wait_for_points(Waiting::Block))
+    }
+
+    /// As [`read_points`](Self::read_points), without blocking: completes once somebody has polled the device.
+    /// The copy is submitted when the future is first polled.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] if the device is lost.
+    pub async fn read_points_async(&self) -> Result<Vec<[f64; 2]>, GpuError> {
+        self.wait_for_points(Waiting::Await).await
+    }
+
+    async fn wait_for_points(&self, waiting: Waiting) -> Result<Vec<[f64; 2]>, GpuError> {
+        let Self { gpu, problem, buffers, unused, .. } = self;
+        let count = problem.positions().len();
+        let positions = buffers.read_positions(gpu, count, waiting).await?;
+        let positions: Vec<_> = positions.into_iter().map(join).collect();
+        let mut points = vec![[0.0; 2]; self.vertex_count];
+        for (v, point) in problem.denormalized(&positions).chain(unused.iter().copied()) {
+            points[v as usize] = point;
+        }
+        Ok(points)
+    }
+}

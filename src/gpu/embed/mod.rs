@@ -1,0 +1,11 @@
+//! For applications: a mesh that stays on their device, sweeps in their command encoder, results in their buffers.
+
+mod exchange;
+mod mesh;
+mod objective;
+mod sweeps;
+
+pub use exchange::{BoundVertices, VertexBuffer};
+pub use mesh::DeviceMesh;
+pub use objective::{BoundObjective, ObjectiveValues};
+pub use sweeps::Sweeps;

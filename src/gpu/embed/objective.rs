@@ -1,0 +1,114 @@
+//! Objectives in a buffer of the application.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::filled;
+use crate::gpu::embed::exchange::Window;
+use crate::gpu::encode::Encoder;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::uniforms::Publish;
+use crate::gpu::run::Run;
+use crate::gpu::scope::scoped;
+use crate::metric::Metric;
+
+/// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The
+/// application casts the bytes it reads back to it, or declares the same in its shaders:
+///
+/// ```wgsl
+/// struct ObjectiveValues {
+///     f: array<f32, 5>,
+///     inverted: u32,
+///     worst_imr: f32,
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ObjectiveValues {
+    /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]; 0 for one that is not the scheme's base
+    /// unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are
+    /// inverted, f by IMR and AR says nothing.
+    pub f: [f32; Metric::ALL.len()],
+    /// How many triangles are inverted or flat, in single precision.
+    pub inverted: u32,
+    /// The largest inverse mean ratio of a triangle, 1 being equilateral; infinite while triangles are inverted.
+    pub worst_imr: f32,
+}
+
+impl ObjectiveValues {
+    /// f by a metric.
+    pub fn of(&self, metric: Metric) -> f32 {
+        self.f[metric as usize]
+    }
+}
+
+/// A place in a buffer of the application, bound to the sweeps whose scheme is to be judged. Made by
+/// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); outlives the sweeps.
+pub struct BoundObjective {
+    run: Arc<Run>,
+    publish: Pipeline,
+    bind_group: wgpu::BindGroup,
+}
+
+impl BoundObjective {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        run: &Arc<Run>,
+        triangles: usize,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+    ) -> Result<Self, GpuError> {
+        let window = Window::new(gpu, buffer, offset, size_of::<ObjectiveValues>() as u64)?;
+        let mut ideal_squared = [[0.0; 4]; 2];
+        for metric in run.plan.tracked() {
+            let slot = metric as usize;
+            ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
+        }
+        let uniform = Publish {
+            offset: window.offset,
+            triangles: triangles as u32,
+            padding: [0; 2],
+            ideal_squared,
+        };
+        let bind_group = scoped(&gpu.device, || {
+            let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
+            let control = run.control.as_entire_binding();
+            let resources = [uniform.as_entire_binding(), control, window.binding()];
+            gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
+        })?;
+        let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
+        Ok(Self { run: Arc::clone(run), publish, bind_group })
+    }
+
+    /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
+    /// [`ObjectiveValues`].
+    pub fn encode(&self, encoder: &mut impl Encoder) {
+        let mut passes = encoder.passes("gpu-smooth objective");
+        self.run.encode_evaluation(&mut passes);
+        passes.run(&self.publish, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::kernels::uniforms::{INVERTED, SLOTS, WORST};
+
+    #[test]
+    fn objective_values_are_the_slots_of_the_kernel() {
+        assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS);
+        assert_eq!(offset_of!(ObjectiveValues, f), 0);
+        assert_eq!(offset_of!(ObjectiveValues, inverted), 4 * INVERTED as usize);
+        assert_eq!(offset_of!(ObjectiveValues, worst_imr), 4 * WORST as usize);
+    }
+}

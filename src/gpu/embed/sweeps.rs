@@ -1,0 +1,70 @@
+//! Sweeps for an application's command encoder.
+
+use std::sync::Arc;
+
+use crate::error::GpuError;
+use crate::error::SmoothError;
+use crate::gpu::embed::BoundObjective;
+use crate::gpu::embed::DeviceMesh;
+use crate::gpu::encode::Encoder;
+use crate::gpu::run::Run;
+use crate::run::Options;
+use crate::run::{Plan, StopRule};
+
+/// A scheme bound to a mesh on the device. Encodes into the application's command encoder; never submits,
+/// never reads back, never stops by itself.
+///
+/// Several can be bound to one mesh, and those of several meshes interleaved in one encoder.
+pub struct Sweeps {
+    gpu: crate::gpu::Gpu,
+    run: Arc<Run>,
+    triangles: usize,
+    done: u32,
+}
+
+impl Sweeps {
+    /// Binds the scheme, relaxation and derivatives of `options` to a mesh. What `options` say on
+    /// stopping has no effect here, nor does [`Options::method`]: a correction from coarser levels takes a line search, which
+    /// the host would have to wait for.
+    ///
+    /// Compiles the kernels it is the first to need; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
+    pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
+        options.check()?;
+        let stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
+        let plan = Plan { stop, ..options.plan() };
+        let run = Arc::new(Run::new(&mesh.gpu, &mesh.problem, &mesh.buffers, plan, false)?);
+        let triangles = mesh.problem.triangles().len();
+        Ok(Self { gpu: mesh.gpu.clone(), run, triangles, done: 0 })
+    }
+
+    /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it.
+    pub fn encode(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
+        let mut passes = encoder.passes("gpu-smooth sweeps");
+        for _ in 0..sweeps {
+            self.done = self.done.saturating_add(1);
+            self.run.encode_sweep(&mut passes, self.done);
+        }
+    }
+
+    /// Starts the scheme anew: plain sweeps first, over-relaxed ones after. To be called when the
+    /// application has moved vertices far.
+    pub fn restart(&mut self) {
+        self.done = 0;
+    }
+
+    /// Binds a place in a buffer of the application for the objectives, the bytes of
+    /// [`ObjectiveValues`](crate::gpu::ObjectiveValues) from byte `offset` on.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`.
+    pub fn bind_objective(
+        &self,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+    ) -> Result<BoundObjective, GpuError> {
+        BoundObjective::new(&self.gpu, &self.run, self.triangles, buffer, offset)
+    }
+}

@@ -1,0 +1,128 @@
+//! Compute passes: all kernels in one, or a timed one for each.
+
+use std::ops::{Deref, DerefMut};
+
+use crate::error::GpuError;
+use crate::gpu::encode::timestamps::{Spans, Timestamps};
+use crate::gpu::kernels::pipelines::Pipeline;
+
+/// Where sweeps, imports and the like are encoded: an application's [`wgpu::CommandEncoder`], or the same
+/// under a clock, as [`Timestamps::time`] gives it.
+pub trait Encoder: sealed::Target {}
+
+impl Encoder for wgpu::CommandEncoder {}
+impl Encoder for Timed<'_> {}
+
+/// Keeps [`Encoder`] to this library's own.
+pub(crate) mod sealed {
+    use super::Passes;
+
+    pub trait Target {
+        /// Opens the passes of one call.
+        fn passes(&mut self, label: &'static str) -> Passes<'_>;
+    }
+}
+
+impl sealed::Target for wgpu::CommandEncoder {
+    fn passes(&mut self, label: &'static str) -> Passes<'_> {
+        let pass = self.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: None,
+        });
+        Passes(State::One { pass, set: None })
+    }
+}
+
+/// What kernels are encoded into.
+pub struct Passes<'e>(State<'e>);
+
+// One on the stack for each call: a box would cost more than the room.
+#[allow(clippy::large_enum_variant)]
+enum State<'e> {
+    /// All in one pass, and the pipeline that is set in it.
+    One { pass: wgpu::ComputePass<'e>, set: Option<wgpu::ComputePipeline> },
+    /// Each in a pass of its own: core WebGPU takes the time at the ends of a pass only.
+    Timed { encoder: &'e mut wgpu::CommandEncoder, timestamps: &'e mut Timestamps },
+}
+
+impl<'e> Passes<'e> {
+    pub(crate) fn timed(
+        encoder: &'e mut wgpu::CommandEncoder,
+        timestamps: &'e mut Timestamps,
+    ) -> Self {
+        Self(State::Timed { encoder, timestamps })
+    }
+
+    /// Encodes a kernel: `dispatch` binds and dispatches.
+    pub(crate) fn run(
+        &mut self,
+        pipeline: &Pipeline,
+        color: Option<u32>,
+        dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
+        match &mut self.0 {
+            State::One { pass, set } => {
+                if set.as_ref() != Some(&pipeline.raw) {
+                    pass.set_pipeline(&pipeline.raw);
+                    *set = Some(pipeline.raw.clone());
+                }
+                dispatch(pass);
+            }
+            State::Timed { encoder, timestamps } => {
+                let label = pipeline.kernel.label();
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some(&label),
+                    timestamp_writes: timestamps.next(&pipeline.kernel, color),
+                });
+                pass.set_pipeline(&pipeline.raw);
+                dispatch(&mut pass);
+            }
+        }
+    }
+}
+
+/// An application's encoder under a clock: everything of this library that takes an encoder takes it. It
+/// dereferences to the encoder, so that the application can encode its own in between, untimed.
+pub struct Timed<'t> {
+    encoder: &'t mut wgpu::CommandEncoder,
+    timestamps: &'t mut Timestamps,
+}
+
+impl Deref for Timed<'_> {
+    type Target = wgpu::CommandEncoder;
+
+    fn deref(&self) -> &wgpu::CommandEncoder {
+        self.encoder
+    }
+}
+
+impl DerefMut for Timed<'_> {
+    fn deref_mut(&mut self) -> &mut wgpu::CommandEncoder {
+        self.encoder
+    }
+}
+
+impl sealed::Target for Timed<'_> {
+    fn passes(&mut self, _: &'static str) -> Passes<'_> {
+        Passes::timed(self.encoder, self.timestamps)
+    }
+}
+
+impl Timestamps {
+    /// Puts the application's encoder under the clock. Submits nothing.
+    pub fn time<'t>(&'t mut self, encoder: &'t mut wgpu::CommandEncoder) -> Timed<'t> {
+        self.restart();
+        Timed { encoder, timestamps: self }
+    }
+}
+
+impl Timed<'_> {
+    /// Encodes what brings the times into a buffer, and ends the timing. Without this call the times are lost, and
+    /// nothing else.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn resolve(self) -> Result<Spans, GpuError> {
+        self.timestamps.resolve(self.encoder)
+    }
+}

@@ -1,0 +1,173 @@
+//! How long the device takes for each kernel.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::zeroed;
+use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::kernels::table::Kernel;
+use crate::gpu::scope::scoped;
+
+/// Spans in a query set; WebGPU allows 4096 queries.
+const SET: usize = 1024;
+/// Bytes of a span: two timestamps.
+const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
+
+/// A clock for what this library encodes. It needs a device with
+/// [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), see [`Gpu::optional_features`].
+///
+/// Under the clock every kernel gets a pass of its own, each color of a sweep too, so that a frame takes a little
+/// longer than without.
+///
+/// ```no_run
+/// # use gpu_smooth::{*, gpu::Timestamps};
+/// # fn f(gpu: &Gpu, sweeps: &mut Sweeps, vertices: &BoundVertices) -> Result<(), GpuError> {
+/// let mut timestamps = Timestamps::new(gpu)?;
+///
+/// let mut encoder = gpu.device().create_command_encoder(&Default::default());
+/// let mut timed = timestamps.time(&mut encoder);
+/// vertices.encode_import(&mut timed);
+/// sweeps.encode(&mut timed, 5);
+/// vertices.encode_export(&mut timed);
+/// let spans = timed.resolve()?;
+/// gpu.queue().submit([encoder.finish()]);
+///
+/// for span in spans.read()? {
+///     println!("{} {:?}: {} ns", span.kernel.label(), span.color, span.nanoseconds);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+pub struct Timestamps {
+    gpu: Gpu,
+    /// Kept from one encoder to the next, and added to as more spans are taken.
+    sets: Vec<wgpu::QuerySet>,
+    /// What has been encoded under the clock: kernel and color.
+    taken: Vec<(Kernel, Option<u32>)>,
+    failed: Option<GpuError>,
+}
+
+impl Timestamps {
+    /// A clock for one device. It serves any number of encoders, one after the other.
+    ///
+    /// # Errors
+    /// [`GpuError::Feature`] if the device was made without `TIMESTAMP_QUERY`.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        if !gpu.device.features().contains(Gpu::optional_features()) {
+            return Err(GpuError::Feature { what: "timing", feature: "TIMESTAMP_QUERY" });
+        }
+        Ok(Self { gpu: gpu.clone(), sets: Vec::new(), taken: Vec::new(), failed: None })
+    }
+
+    /// Forgets what was taken before.
+    pub(crate) fn restart(&mut self) {
+        self.taken.clear();
+        self.failed = None;
+    }
+
+    /// Encodes what brings the times into a buffer.
+    pub(crate) fn resolve(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<Spans, GpuError> {
+        let Self { gpu, sets, taken, failed } = self;
+        if let Some(error) = failed.take() {
+            return Err(error);
+        }
+        let taken = std::mem::take(taken);
+        let times = scoped(&gpu.device, || {
+            let bytes = SPAN * taken.len().max(1) as u64;
+            zeroed(gpu, "timestamps", bytes, Usage::QUERY_RESOLVE | Usage::COPY_SRC)
+        })?;
+        for (set, (query_set, part)) in sets.iter().zip(taken.chunks(SET)).enumerate() {
+            let to = set as u64 * SET as u64 * SPAN;
+            encoder.resolve_query_set(query_set, 0..2 * part.len() as u32, &times, to);
+        }
+        Ok(Spans { gpu: gpu.clone(), times, taken })
+    }
+
+    /// Takes the times of a pass that is about to be encoded.
+    pub(crate) fn next(
+        &mut self,
+        kernel: &Kernel,
+        color: Option<u32>,
+    ) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let (set, first) = (self.taken.len() / SET, 2 * (self.taken.len() % SET) as u32);
+        if set == self.sets.len() {
+            let made = scoped(&self.gpu.device, || {
+                self.gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: Some("gpu-smooth timestamps"),
+                    ty: wgpu::QueryType::Timestamp,
+                    count: 2 * SET as u32,
+                })
+            });
+            match made {
+                Ok(made) => self.sets.push(made),
+                Err(error) => self.failed = Some(error),
+            }
+        }
+        let query_set = self.sets.get(set)?;
+        self.taken.push((kernel.clone(), color));
+        Some(wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        })
+    }
+}
+
+/// Times on their way: to be read once the encoder's command buffer has been submitted.
+pub struct Spans {
+    gpu: Gpu,
+    times: wgpu::Buffer,
+    taken: Vec<(Kernel, Option<u32>)>,
+}
+
+/// The time one kernel took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Span {
+    /// Which one; [`Kernel::label`] is its name.
+    pub kernel: Kernel,
+    /// The color of the vertices, from 0 on, if it is a sweep.
+    pub color: Option<u32>,
+    /// From the start of the first kernel under the clock to that of this one, in nanoseconds.
+    pub start: f64,
+    /// From the start of this kernel's pass to its end, in nanoseconds.
+    pub nanoseconds: f64,
+}
+
+impl Spans {
+    /// Reads the times, in the order of encoding; blocks until the device has done all that was submitted.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] if the device is lost.
+    pub fn read(self) -> Result<Vec<Span>, GpuError> {
+        pollster::block_on(self.wait(Waiting::Block))
+    }
+
+    /// As [`read`](Self::read), without blocking: completes once somebody has polled the device.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] if the device is lost.
+    pub async fn read_async(self) -> Result<Vec<Span>, GpuError> {
+        self.wait(Waiting::Await).await
+    }
+
+    async fn wait(self, waiting: Waiting) -> Result<Vec<Span>, GpuError> {
+        let Self { gpu, times, taken } = self;
+        if taken.is_empty() {
+            return Ok(Vec::new());
+        }
+        let times: Vec<[u64; 2]> = readback::read(&gpu, &times, taken.len(), waiting).await?;
+        let period = f64::from(gpu.queue.get_timestamp_period());
+        let origin = times.first().map_or(0, |&[start, _]| start);
+        // Clocks of devices are known to go back now and then.
+        let between = |from: u64, to: u64| to.saturating_sub(from) as f64 * period;
+        let spans = taken.into_iter().zip(times).map(|((kernel, color), [start, end])| {
+            let nanoseconds = between(start, end);
+            Span { kernel, color, start: between(origin, start), nanoseconds }
+        });
+        Ok(spans.collect())
+    }
+}

@@ -1,0 +1,9 @@
+//! The kernels: a table of them, their WGSL, the uniforms they read, and their pipelines.
+
+pub(crate) mod dispatch;
+pub(crate) mod pipelines;
+pub(crate) mod source;
+pub(crate) mod table;
+pub(crate) mod uniforms;
+
+pub use table::{Interface, Kernel};

@@ -1,0 +1,258 @@
+//! The composition of each kernel's WGSL.
+
+use std::fmt::Write;
+
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::uniforms::{
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP, WORST,
+};
+use crate::metric::Metric;
+use crate::run::multilevel::{NONE, SMOOTHING};
+use crate::run::plan::{NOISE, line_search};
+use crate::run::{Derivatives, Stop};
+
+const COMMON: &str = include_str!("../../../shaders/common.wgsl");
+const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
+const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.wgsl");
+const PAIRS: &str = include_str!("../../../shaders/pairs.wgsl");
+const PARAMS: &str = include_str!("../../../shaders/params.wgsl");
+const CONTROL: &str = include_str!("../../../shaders/control.wgsl");
+const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
+const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
+const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
+const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
+const OBJECTIVE: &str = include_str!("../../../shaders/objective.wgsl");
+const FINISH: &str = include_str!("../../../shaders/finish.wgsl");
+const KEEP_BEST: &str = include_str!("../../../shaders/keep_best.wgsl");
+const EXCHANGE: &str = include_str!("../../../shaders/exchange.wgsl");
+const IMPORT: &str = include_str!("../../../shaders/import.wgsl");
+const EXPORT: &str = include_str!("../../../shaders/export.wgsl");
+const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
+
+const LEVELS: &str = include_str!("../../../shaders/levels/common.wgsl");
+const FINE: &str = include_str!("../../../shaders/levels/fine.wgsl");
+const TRANSFER: &str = include_str!("../../../shaders/levels/transfer.wgsl");
+const COARSE: &str = include_str!("../../../shaders/levels/coarse.wgsl");
+const GRADIENT: &str = include_str!("../../../shaders/levels/gradient.wgsl");
+const SMOOTH: &str = include_str!("../../../shaders/levels/smooth.wgsl");
+const HAND_DOWN: &str = include_str!("../../../shaders/levels/hand_down.wgsl");
+const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
+const HAND_UP: &str = include_str!("../../../shaders/levels/hand_up.wgsl");
+const APPLY: &str = include_str!("../../../shaders/levels/apply.wgsl");
+const CHEBYSHEV: &str = include_str!("../../../shaders/levels/chebyshev.wgsl");
+const DIRECT: &str = include_str!("../../../shaders/levels/direct.wgsl");
+const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
+const TOTAL: &str = include_str!("../../../shaders/levels/total.wgsl");
+const TAKE: &str = include_str!("../../../shaders/levels/take.wgsl");
+
+impl Kernel {
+    /// The complete WGSL module.
+    pub fn wgsl(&self) -> String {
+        self.composed(Positions::Whole)
+    }
+
+    /// The same for a mesh whose positions are more than the device binds at once.
+    pub fn wgsl_for_large_meshes(&self) -> String {
+        self.composed(Positions::InTwo)
+    }
+
+    pub(crate) fn composed(&self, positions: Positions) -> String {
+        let mut source = constants();
+        let (parts, bindings): (&[&str], _) = match self.interface() {
+            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 4))),
+            Interface::Publish => (&[CONTROL], None),
+            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
+            Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
+            Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
+        };
+        parts.iter().for_each(|part| source.push_str(part));
+        if let Some((first, second)) = bindings {
+            let _ = writeln!(source, "const POSITIONS: u32 = {first}u;");
+            let _ = writeln!(source, "const LOW_POSITIONS: u32 = {second}u;");
+            source.push_str(match positions {
+                Positions::Whole => POSITIONS,
+                Positions::InTwo => POSITIONS_IN_TWO,
+            });
+        }
+        match self {
+            Kernel::Sweep(metric, derivatives) => {
+                source.push_str(PATCH);
+                source.push_str(ONE_RING);
+                source.push_str(&active_metric(*metric, *derivatives));
+                source.push_str(NEWTON);
+            }
+            Kernel::Objective(metrics) => {
+                source.push_str(PATCH);
+                source.push_str(&tracked_metrics(metrics));
+                source.push_str(OBJECTIVE);
+            }
+            Kernel::Finish(metrics) => {
+                source.push_str(&tracked_slots(metrics));
+                source.push_str(FINISH);
+            }
+            Kernel::KeepBest => source.push_str(KEEP_BEST),
+            Kernel::Import => source.push_str(IMPORT),
+            Kernel::Export => source.push_str(EXPORT),
+            Kernel::Publish => source.push_str(PUBLISH),
+            Kernel::Gradient(metric) | Kernel::Along(metric) => {
+                source.push_str(ONE_RING);
+                source.push_str(&active_metric(*metric, Derivatives::Analytic));
+                source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
+            }
+            Kernel::SmoothGradient => {
+                [AROUND, SMOOTH].iter().for_each(|part| source.push_str(part))
+            }
+            Kernel::HandDown => source.push_str(HAND_DOWN),
+            Kernel::HandUp => [AROUND, HAND_UP].iter().for_each(|part| source.push_str(part)),
+            Kernel::Apply => source.push_str(APPLY),
+            Kernel::Chebyshev => source.push_str(CHEBYSHEV),
+            Kernel::Direct => source.push_str(DIRECT),
+            Kernel::Total => source.push_str(TOTAL),
+            Kernel::Take => source.push_str(TAKE),
+        }
+        source
+    }
+}
+
+/// Constants shared with Rust.
+fn constants() -> String {
+    let mut text = String::new();
+    for (name, value) in [
+        ("WORKGROUP", WORKGROUP),
+        ("FINISH_WORKGROUP", FINISH_WORKGROUP),
+        ("HISTORY", HISTORY),
+        ("SLOTS", SLOTS as u32),
+        ("INVERTED", INVERTED),
+        ("WORST", WORST),
+        ("HELD", HELD),
+        ("NONE", NONE),
+        ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
+        ("TRIALS", line_search::TRIALS),
+    ] {
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    }
+    for (stop, code) in Stop::CODES {
+        let name = stop.name().to_uppercase().replace('-', "_");
+        let _ = writeln!(text, "const STOP_{name}: u32 = {code}u;");
+    }
+    for (name, value) in [
+        ("SUFFICIENT_DECREASE", line_search::SUFFICIENT_DECREASE),
+        ("SHORTEN_INFEASIBLE", line_search::SHORTEN_INFEASIBLE),
+        ("SHORTEN", line_search::SHORTEN),
+        ("DIFFERENCE", line_search::DIFFERENCE),
+        ("SLACK", line_search::SLACK),
+        ("NOISE", NOISE),
+        ("SMOOTHING", SMOOTHING.into()),
+    ] {
+        let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
+    }
+    text
+}
+
+/// The metric a sweep minimizes, under the names newton.wgsl calls.
+fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
+    let properties = metric.properties();
+    let name = metric.name();
+    let guard = properties.shape_guard * (1.0 - line_search::GUARD_RESERVE);
+    let mut text = properties.wgsl.to_owned();
+    let _ = write!(
+        text,
+        "
+const METRIC: u32 = {index}u;
+const EIGENVALUE_FLOOR: f32 = {floor:?}f;
+const IDEAL_SQUARED: f32 = {ideal:?}f;
+const QUADRATIC: bool = {quadratic};
+const GUARDED: bool = {guarded};
+const SHAPE_GUARD: f32 = {guard:?}f;
+const SETTLED: f32 = {settled:?}f;
+fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
+fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
+",
+        index = metric as u32,
+        floor = properties.eigenvalue_floor,
+        ideal = metric.ideal_squared(),
+        quadratic = properties.quadratic,
+        guarded = guard.is_finite(),
+        guard = if guard.is_finite() { guard } else { 0.0 },
+        settled = match derivatives {
+            Derivatives::Analytic => line_search::SETTLED,
+            Derivatives::FiniteDifference => 0.0,
+        },
+    );
+    match derivatives {
+        Derivatives::Analytic => {
+            let _ = write!(
+                text,
+                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return {name}_derivatives(t); }}
+fn difference_width(p: Patch) -> f32 {{ return 0.0; }}
+"
+            );
+        }
+        Derivatives::FiniteDifference => {
+            let displacements: Vec<String> = line_search::DISPLACEMENTS
+                .iter()
+                .map(|[x, y]| format!("vec2({x}.0f, {y}.0f)"))
+                .collect();
+            let _ = write!(
+                text,
+                "const DISPLACEMENTS = array<vec2<f32>, 16>({});
+fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return differences(t, width); }}
+fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
+",
+                displacements.join(", ")
+            );
+            text.push_str(FINITE_DIFFERENCE);
+        }
+    }
+    text
+}
+
+/// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted; its shape
+/// beside them.
+fn tracked_metrics(metrics: &[Metric]) -> String {
+    let mut text: String = metrics.iter().map(|m| m.properties().wgsl).collect();
+    // AR is equal to IMR.
+    let known = metrics.iter().position(|m| matches!(m, Metric::Imr | Metric::Ar));
+    let shape = match known {
+        Some(i) => format!("values[{i}]"),
+        None => {
+            text.push_str(Metric::Imr.properties().wgsl);
+            format!("{}_excess(t)", Metric::Imr)
+        }
+    };
+    let mut calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
+    calls.push("select(0.0, 1.0, doubled_area(t) <= 0.0)".to_owned());
+    let _ = write!(
+        text,
+        "const TRACKED: u32 = {count}u;
+fn tracked_values(t: Corner) -> array<f32, TRACKED> {{
+    return array<f32, TRACKED>({calls});
+}}
+fn shape_excess(t: Corner, values: array<f32, TRACKED>) -> f32 {{
+    return {shape};
+}}
+",
+        count = calls.len(),
+        calls = calls.join(", ")
+    );
+    text
+}
+
+/// Which slots the tracked sums belong to.
+fn tracked_slots(metrics: &[Metric]) -> String {
+    let slots: Vec<String> = metrics
+        .iter()
+        .map(|&m| m as u32)
+        .chain([INVERTED, WORST])
+        .map(|slot| format!("{slot}u"))
+        .collect();
+    format!(
+        "const TRACKED: u32 = {summed}u;
+const TRACKED_SLOTS = array<u32, {count}>({slots});
+",
+        summed = slots.len() - 1,
+        count = slots.len(),
+        slots = slots.join(", ")
+    )
+}

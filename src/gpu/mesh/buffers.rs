@@ -1,0 +1,103 @@
+//! A mesh on the device.
+
+use glam::DVec2;
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{bytes, filled, rows};
+use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
+use crate::gpu::kernels::uniforms::split;
+use crate::gpu::mesh::{Parts, of_part};
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+
+/// The buffers that live as long as a mesh stays on the device.
+pub(crate) struct MeshBuffers {
+    pub(crate) positions: wgpu::Buffer,
+    pub(crate) ring_start: wgpu::Buffer,
+    pub(crate) ring: wgpu::Buffer,
+    pub(crate) triangles: wgpu::Buffer,
+    /// How they are bound.
+    pub(crate) parts: Parts,
+}
+
+impl MeshBuffers {
+    /// Uploads a problem with its vertices at `positions`.
+    pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
+        let parts = Parts::new(problem, &gpu.device.limits())?;
+        let positions = laid_out(positions, parts.low_positions);
+        scoped(&gpu.device, || Self {
+            positions: filled(gpu, "positions", &positions, Usage::STORAGE | Usage::COPY_SRC),
+            ring_start: filled(
+                gpu,
+                "ring starts",
+                problem.ring_start(),
+                Usage::STORAGE | Usage::COPY_DST,
+            ),
+            ring: filled(gpu, "one-rings", problem.ring(), Usage::STORAGE),
+            triangles: filled(gpu, "triangles", problem.triangles(), Usage::STORAGE),
+            parts,
+        })
+    }
+
+    /// The positions, and their low parts where they are by themselves.
+    pub(crate) fn bind_positions(
+        &self,
+    ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
+        match self.parts.low_positions {
+            None => (self.positions.as_entire_binding(), None),
+            Some(low) => (
+                bytes(&self.positions, 0..low),
+                Some(bytes(&self.positions, low..self.positions.size())),
+            ),
+        }
+    }
+
+    /// Reads back the first `count` positions, after everything submitted so far.
+    pub(crate) async fn read_positions(
+        &self,
+        gpu: &Gpu,
+        count: usize,
+        waiting: Waiting,
+    ) -> Result<Vec<[f32; 4]>, GpuError> {
+        let Some(low) = self.parts.low_positions else {
+            return readback::read(gpu, &self.positions, count, waiting).await;
+        };
+        let low = (low / PART) as usize;
+        let parts: Vec<[f32; 2]> =
+            readback::read(gpu, &self.positions, low + count, waiting).await?;
+        let joined = parts.iter().zip(&parts[low..]).map(|(&[x, y], &[a, b])| [x, y, a, b]);
+        Ok(joined.collect())
+    }
+
+    /// The one-rings of a part.
+    pub(crate) fn bind_ring(&self, part: usize) -> wgpu::BindingResource<'_> {
+        rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
+    }
+
+    /// The triangles of a part.
+    pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
+        rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
+    }
+}
+
+/// Bytes of the high or the low parts of a position.
+const PART: u64 = POSITION / 2;
+
+/// The numbers of the buffer of positions: vertex by vertex, or all the low parts from a byte on.
+fn laid_out(positions: &[DVec2], low: Option<u64>) -> Vec<[f32; 2]> {
+    let count = positions.len();
+    let (step, low, length) = match low {
+        None => (2, 1, 2 * count),
+        Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
+    };
+    let mut parts = vec![[0.0; 2]; length];
+    for (v, &p) in positions.iter().enumerate() {
+        let [x, y, x_low, y_low] = split(p);
+        parts[step * v] = [x, y];
+        parts[step * v + low] = [x_low, y_low];
+    }
+    parts
+}

@@ -1,0 +1,178 @@
+//! How a mesh is bound where its buffers are larger than a binding: part by part.
+//!
+//! Buffers stay whole. A sweep over a color is one dispatch, or several where the one-rings of the color do not fit
+//! one binding; each sees those of its own vertices. So it is with the triangles of the objective. Positions are
+//! read from anywhere, and every kernel sees all of them, in two bindings if need be: the high parts
+//! and the low parts.
+
+use std::ops::Range;
+
+use crate::error::GpuError;
+use crate::gpu::device::size::{
+    MeshSize, NUMBER, POSITION, TRIANGLE, check_limit, objective_invocations,
+};
+use crate::gpu::kernels::table::Positions;
+use crate::gpu::kernels::uniforms::WORKGROUP;
+use crate::layout::Problem;
+
+/// The parts of a mesh: one of each kind where all fits a binding.
+pub(crate) struct Parts {
+    /// The byte of the buffer of positions from which on there are the low parts, if these take a binding of
+    /// their own.
+    pub(crate) low_positions: Option<u64>,
+    /// The one-rings.
+    pub(crate) rings: Vec<RingPart>,
+    /// The triangles.
+    pub(crate) triangles: Vec<Range<u32>>,
+    /// The free vertices, for what is one position each.
+    pub(crate) free: Vec<Range<u32>>,
+}
+
+/// The one-rings that are bound at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct RingPart {
+    /// Whose they are.
+    pub(crate) vertices: Range<u32>,
+    /// Where they are in the buffer, from an aligned place on.
+    pub(crate) entries: Range<u32>,
+}
+
+impl Parts {
+    /// # Errors
+    /// [`GpuError::Limit`] if the mesh does not fit the limits even so.
+    pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
+        let triangles = problem.triangles().len();
+        let size = MeshSize { vertices: problem.positions().len(), triangles };
+        size.check(limits)?;
+        let free = problem.free_count() as u32;
+        // Of triangles whole rounds of the objective, whose sums then do not depend on the parts: 64 triangles are
+        // bytes enough for a binding to begin after them. So many positions are, too.
+        let round = objective_invocations(triangles);
+        Ok(Self {
+            low_positions: low_positions(size.vertices, limits),
+            rings: rings(problem.ring_start(), limits)?,
+            triangles: ranges(triangles as u32, TRIANGLE, round, limits),
+            free: ranges(free, POSITION, WORKGROUP, limits),
+        })
+    }
+
+    /// How many parts there are, of the kind that has the most.
+    pub(crate) fn count(&self) -> usize {
+        self.rings.len().max(self.triangles.len()).max(self.free.len())
+    }
+
+    /// How kernels see the positions.
+    pub(crate) fn positions(&self) -> Positions {
+        if self.low_positions.is_some() { Positions::InTwo } else { Positions::Whole }
+    }
+}
+
+/// A part, or the last one where another kind has more.
+pub(crate) fn of_part<T>(parts: &[T], part: usize) -> &T {
+    &parts[part.min(parts.len() - 1)]
+}
+
+/// Where the low parts of so many positions begin, if they take a binding of their own.
+fn low_positions(vertices: usize, limits: &wgpu::Limits) -> Option<u64> {
+    let in_two = Positions::of(vertices, limits) == Positions::InTwo;
+    let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
+    in_two.then(|| (vertices as u64 * POSITION / 2).next_multiple_of(alignment))
+}
+
+/// Cuts `count` rows of `bytes` each into parts that fit a binding, all but the last a multiple of `step` rows.
+fn ranges(count: u32, bytes: u64, step: u32, limits: &wgpu::Limits) -> Vec<Range<u32>> {
+    let most = limits.max_storage_buffer_binding_size;
+    let per_part = match u64::from(count) * bytes <= most {
+        true => count.max(1),
+        false => ((most / bytes) as u32 / step * step).max(step),
+    };
+    let starts = (0..count.max(1)).step_by(per_part as usize);
+    starts.map(|start| start..start.saturating_add(per_part).min(count)).collect()
+}
+
+/// Cuts the one-rings into parts.
+fn rings(start: &[u32], limits: &wgpu::Limits) -> Result<Vec<RingPart>, GpuError> {
+    let most = limits.max_storage_buffer_binding_size;
+    let aligned = (u64::from(limits.min_storage_buffer_offset_alignment) / NUMBER) as u32;
+    let mut parts = Vec::new();
+    let mut first = 0;
+    while let Some((&begin, ends)) =
+        start[first..].split_first().filter(|(_, ends)| !ends.is_empty())
+    {
+        let begin = begin - begin % aligned;
+        let bytes = |end: u32| u64::from(end - begin) * NUMBER;
+        let count = ends.partition_point(|&end| bytes(end) <= most);
+        if count == 0 {
+            let what =
+                || format!("the one-ring of a vertex of {} neighbors", ends[0] - start[first]);
+            check_limit("max_storage_buffer_binding_size", most, &what, bytes(ends[0]))?;
+        }
+        let last = first + count;
+        let vertices = first as u32..last as u32;
+        parts.push(RingPart { vertices, entries: begin..start[last] });
+        first = last;
+    }
+    if parts.is_empty() {
+        parts.push(RingPart { vertices: 0..0, entries: 0..0 });
+    }
+    Ok(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn binding(size: u64) -> wgpu::Limits {
+        wgpu::Limits { max_storage_buffer_binding_size: size, ..wgpu::Limits::default() }
+    }
+
+    #[test]
+    fn what_fits_a_binding_is_one_part() {
+        let part = RingPart { vertices: 0..3, entries: 0..256 };
+        assert_eq!(rings(&[0, 100, 200, 256], &binding(1024)).unwrap(), [part]);
+        assert_eq!(low_positions(64, &binding(1024)), None);
+        assert_eq!(ranges(85, TRIANGLE, 64, &binding(12 * 85)), vec![0..85]);
+    }
+
+    #[test]
+    fn rings_are_cut_between_vertices_and_bound_from_an_aligned_place_on() {
+        // 256 bytes are 64 numbers; a binding holds 256 of them.
+        let parts = rings(&[0, 100, 200, 257, 300, 500], &binding(1024)).unwrap();
+        let part = |vertices, entries| RingPart { vertices, entries };
+        assert_eq!(parts, [part(0..2, 0..200), part(2..4, 192..300), part(4..5, 256..500)]);
+        // Nobody is left out, whatever the size of a binding.
+        let start: Vec<u32> = (0..1000u32).map(|v| 6 * v + v % 5).collect();
+        for size in [512, 1000, 1028, 4096] {
+            let parts = rings(&start, &binding(size)).unwrap();
+            assert!(parts.len() > 4);
+            let mut next = 0;
+            for RingPart { vertices, entries } in parts {
+                assert_eq!((vertices.start, entries.start % 64), (next, 0));
+                assert!(entries.start <= start[vertices.start as usize]);
+                assert_eq!(entries.end, start[vertices.end as usize]);
+                assert!(u64::from(entries.end - entries.start) * NUMBER <= size);
+                next = vertices.end;
+            }
+            assert_eq!(next, 999);
+        }
+    }
+
+    #[test]
+    fn a_ring_larger_than_a_binding_is_refused() {
+        let error = rings(&[0, 60, 330], &binding(1024)).unwrap_err();
+        assert!(matches!(error, GpuError::Limit { needed: 1320, available: 1024, .. }), "{error}");
+    }
+
+    #[test]
+    fn rows_are_cut_after_whole_steps() {
+        assert_eq!(ranges(170, TRIANGLE, 64, &binding(12 * 150)), [0..128, 128..170]);
+        assert_eq!(ranges(128, TRIANGLE, 64, &binding(12 * 127)), [0..64, 64..128]);
+    }
+
+    #[test]
+    fn low_positions_are_where_a_binding_can_begin() {
+        assert_eq!(low_positions(65, &binding(1039)), Some(768));
+        assert_eq!(low_positions(96, &binding(1039)), Some(768));
+        assert_eq!(low_positions(97, &binding(1039)), Some(1024));
+    }
+}

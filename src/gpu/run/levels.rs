@@ -1,0 +1,340 @@
+//! The levels of a hierarchy on the device, and the dispatches of a correction.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::device::size::{check_limit, objective_invocations};
+use crate::gpu::encode::Passes;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::uniforms::{LevelOp, WORKGROUP};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::RingPart;
+use crate::gpu::run::pages::Pages;
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+use crate::metric::Metric;
+use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
+
+/// A hierarchy bound to a mesh on the device: encodes, submits nothing.
+pub(crate) struct Levels {
+    bind_groups: Vec<wgpu::BindGroup>,
+    ops: wgpu::Buffer,
+    /// Bytes from one uniform to the next.
+    stride: u32,
+    /// From the positions to the correction.
+    correction: Vec<Dispatch>,
+    along: Vec<Dispatch>,
+    total: Dispatch,
+    take: Dispatch,
+    pub(crate) vectors: wgpu::Buffer,
+}
+
+struct Dispatch {
+    pipeline: Pipeline,
+    op: LevelOp,
+    /// Which uniform it is.
+    number: u32,
+    /// Which bind group it sees.
+    bind_group: usize,
+    groups: Groups,
+}
+
+enum Groups {
+    ForRows,
+    Just(u32),
+}
+
+/// What a dispatch sees: a part of the mesh, pages of the structure and the values.
+#[derive(Clone, Copy, PartialEq)]
+enum Bound {
+    Fine { part: usize },
+    Transfer { part: usize, structure: usize, values: usize },
+    Coarse { structure: usize, values: usize },
+}
+
+/// Places in `vectors`: the totals first, so that they can be read back, then the partial sums; vectors of coarse
+/// levels after them.
+const TOTALS: u32 = 0;
+const SUMS: u32 = 4;
+
+/// What is written to the arrays of the kernels while the dispatches are listed.
+struct Layout<'g> {
+    gpu: &'g Gpu,
+    positions: Positions,
+    structure: Pages<u32>,
+    values: Pages<f32>,
+    vectors: u32,
+    bound: Vec<Bound>,
+    listed: u32,
+}
+
+impl Layout<'_> {
+    fn vector(&mut self, length: usize) -> u32 {
+        let at = self.vectors;
+        self.vectors += length as u32;
+        at
+    }
+
+    /// Places a matrix and the reciprocals of its diagonal, where they are needed.
+    fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, LevelOp), GpuError> {
+        let (structure, [starts, columns]) =
+            self.structure.place([matrix.starts(), matrix.columns()])?;
+        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
+        let rows = matrix.rows() as u32;
+        let op = LevelOp { rows, starts, columns, entries, diagonal, ..LevelOp::default() };
+        Ok((Bound::Coarse { structure, values }, op))
+    }
+
+    fn step(
+        &mut self,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: LevelOp,
+    ) -> Result<Dispatch, GpuError> {
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.positions)?;
+        let known = self.bound.iter().position(|&known| known == bound);
+        let bind_group = known.unwrap_or(self.bound.len());
+        if known.is_none() {
+            self.bound.push(bound);
+        }
+        let number = self.listed;
+        self.listed += 1;
+        Ok(Dispatch { pipeline, op, number, bind_group, groups })
+    }
+
+    /// Lists one V-cycle over the levels, from the right-hand side to the solution, whose place is returned.
+    fn solve(
+        &mut self,
+        levels: &[Level],
+        right: u32,
+        list: &mut Vec<Dispatch>,
+    ) -> Result<u32, GpuError> {
+        let Some((level, below)) = levels.split_first() else { return Ok(right) };
+        let rows = level.operator.rows();
+        let x = self.vector(rows);
+        if let Coarser::Direct(inverse) = &level.coarser {
+            let (values, [entries]) = self.values.place([&inverse[..]])?;
+            let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::default() };
+            let bound = Bound::Coarse { structure: 0, values };
+            list.push(self.step(Kernel::Direct, bound, Groups::ForRows, op)?);
+            return Ok(x);
+        }
+        let (other, step) = (self.vector(rows), self.vector(rows));
+        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
+        let smoother = LevelOp { right, step, ..operator };
+        // Two steps from the first vector (or zero) over the second to the third.
+        let smooth = |layout: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
+            let [first, again, now] = CHEBYSHEV;
+            let one = LevelOp { x: from, out: over, b: first, ..smoother };
+            let two = LevelOp { x: over, out: to, a: again, b: now, ..smoother };
+            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, one)?);
+            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, two)?);
+            Ok::<(), GpuError>(())
+        };
+        smooth(self, list, [NONE, other, x])?;
+        let Coarser::Level { prolongation, restriction } = &level.coarser else { return Ok(x) };
+        let residual = LevelOp { x, out: other, a: 1.0, b: -1.0, ..smoother };
+        list.push(self.step(Kernel::Apply, bound, Groups::ForRows, residual)?);
+        let below_right = self.vector(restriction.rows());
+        list.push(self.apply(restriction, other, NONE, below_right)?);
+        let solution = self.solve(below, below_right, list)?;
+        list.push(self.apply(prolongation, solution, x, other)?);
+        let end = self.vector(rows);
+        smooth(self, list, [other, x, end])?;
+        Ok(end)
+    }
+
+    /// out = right + M x.
+    fn apply(
+        &mut self,
+        matrix: &Sparse,
+        x: u32,
+        right: u32,
+        out: u32,
+    ) -> Result<Dispatch, GpuError> {
+        let (bound, op) = self.matrix(matrix, &[])?;
+        let op = LevelOp { x, right, out, a: 1.0, b: 1.0, ..op };
+        self.step(Kernel::Apply, bound, Groups::ForRows, op)
+    }
+
+    /// The buffers, and the bind groups for what was listed. `params` are those of the run on `mesh`.
+    fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
+        let gpu = self.gpu;
+        let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
+        let (structure, values) = (self.structure.upload(gpu), self.values.upload(gpu));
+        let pairs = |label, length: u64| {
+            let usage = Usage::STORAGE | Usage::COPY_SRC;
+            zeroed(gpu, label, length * size_of::<[f32; 2]>() as u64, usage)
+        };
+        let vectors = pairs("level vectors", self.vectors.into());
+
+        let [gradient, direction] =
+            ["gradient", "correction"].map(|label| pairs(label, free.into()));
+        let bind_groups = self.bound.iter().map(|&bound| {
+            let mut resources = vec![params.as_entire_binding(), uniform::<LevelOp>(&ops)];
+            let fine = [&gradient, &direction].map(wgpu::Buffer::as_entire_binding);
+            let (interface, beyond) = match bound {
+                Bound::Fine { part } => {
+                    let (positions, beyond) = mesh.bind_positions();
+                    resources.extend([positions, mesh.ring_start.as_entire_binding()]);
+                    resources.extend([mesh.bind_ring(part), mesh.bind_triangles(part)]);
+                    resources.extend(fine);
+                    (Interface::Fine, beyond)
+                }
+                Bound::Transfer { part, structure: page, values: of_values } => {
+                    resources.extend([mesh.ring_start.as_entire_binding(), mesh.bind_ring(part)]);
+                    resources.push(structure[page].as_entire_binding());
+                    resources.push(values[of_values].as_entire_binding());
+                    resources.extend(fine);
+                    (Interface::Transfer, None)
+                }
+                Bound::Coarse { structure: page, values: of_values } => {
+                    resources.push(structure[page].as_entire_binding());
+                    resources.push(values[of_values].as_entire_binding());
+                    (Interface::Coarse, None)
+                }
+            };
+            resources.push(vectors.as_entire_binding());
+            resources.extend(beyond);
+            gpu.pipelines.bind(&gpu.device, interface, self.positions, &resources)
+        });
+        let bind_groups = bind_groups.collect();
+        Uploaded { bind_groups, ops, vectors }
+    }
+}
+
+struct Uploaded {
+    bind_groups: Vec<wgpu::BindGroup>,
+    ops: wgpu::Buffer,
+    vectors: wgpu::Buffer,
+}
+
+impl Levels {
+    /// Uploads a hierarchy and makes the pipelines it needs. `params` are those of the run on `mesh`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if it is too large for the device.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        params: &wgpu::Buffer,
+        metric: Metric,
+        hierarchy: &Hierarchy,
+    ) -> Result<Self, GpuError> {
+        let mut layout = Layout {
+            gpu,
+            positions: mesh.parts.positions(),
+            structure: Pages::new(gpu, "structure of the coarse levels"),
+            values: Pages::new(gpu, "matrices of the coarse levels"),
+            vectors: SUMS,
+            bound: Vec::new(),
+            listed: 0,
+        };
+        let partials = objective_invocations(problem.triangles().len());
+        let sums = layout.vector(4 * partials as usize);
+
+        let (values, [entries, diagonal]) =
+            layout.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
+        let (of_page, [of]) = layout.structure.place([hierarchy.aggregate_of()])?;
+        let (members, [starts, columns]) =
+            layout.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
+        let aggregates = hierarchy.member_starts().len() as u32 - 1;
+        let right = layout.vector(aggregates as usize);
+        let free = problem.free_count() as u32;
+        let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
+        // A step on the free vertices, by what one-rings are bound at once.
+        let by_rings = |layout: &mut Layout<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
+            for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
+                let rows = vertices.end - vertices.start;
+                let op = LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
+                let bound = match kernel.interface() {
+                    Interface::Fine => Bound::Fine { part },
+                    _ => Bound::Transfer { part, structure: of_page, values },
+                };
+                list.push(layout.step(kernel.clone(), bound, Groups::ForRows, op)?);
+            }
+            Ok::<(), GpuError>(())
+        };
+
+        let mut correction = Vec::new();
+        by_rings(&mut layout, &mut correction, Kernel::Gradient(metric), fine)?;
+        by_rings(&mut layout, &mut correction, Kernel::SmoothGradient, fine)?;
+        let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
+        let bound = Bound::Transfer { part: 0, structure: members, values };
+        correction.push(layout.step(Kernel::HandDown, bound, Groups::ForRows, op)?);
+        let solution = layout.solve(hierarchy.levels(), right, &mut correction)?;
+        let op = LevelOp { starts: of, x: solution, ..fine };
+        by_rings(&mut layout, &mut correction, Kernel::HandUp, op)?;
+
+        let mut along = Vec::new();
+        for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
+            let (rows, first) = (triangles.end - triangles.start, triangles.start);
+            let op = LevelOp { rows, first, out: sums, ..fine };
+            let groups = Groups::Just(partials / WORKGROUP);
+            along.push(layout.step(Kernel::Along(metric), Bound::Fine { part }, groups, op)?);
+        }
+        let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
+        let bound = Bound::Coarse { structure: 0, values: 0 };
+        let total = layout.step(Kernel::Total, bound, Groups::Just(1), op)?;
+        let take = layout.step(Kernel::Take, Bound::Fine { part: 0 }, Groups::ForRows, fine)?;
+
+        let limits = gpu.device.limits();
+        let what = || "the vectors of the coarse levels".to_owned();
+        let bytes = u64::from(layout.vectors) * size_of::<[f32; 2]>() as u64;
+        let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
+
+        let alignment = limits.min_uniform_buffer_offset_alignment;
+        let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
+        let mut ops = vec![0u8; (stride * layout.listed) as usize];
+        for step in correction.iter().chain(&along).chain([&total, &take]) {
+            let at = (step.number * stride) as usize;
+            ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
+        }
+        let Uploaded { bind_groups, ops, vectors } =
+            scoped(&gpu.device, || layout.upload(mesh, free, params, &ops))?;
+        Ok(Self { bind_groups, ops, stride, correction, along, total, take, vectors })
+    }
+
+    /// From the positions to the correction.
+    pub(crate) fn encode_correction(&self, passes: &mut Passes<'_>) {
+        self.correction.iter().for_each(|step| self.encode(passes, step));
+    }
+
+    /// Evaluates the objective along the correction; the totals are then at the start of `vectors`.
+    pub(crate) fn encode_along(&self, passes: &mut Passes<'_>) {
+        self.along.iter().for_each(|step| self.encode(passes, step));
+        self.encode(passes, &self.total);
+    }
+
+    /// Moves the vertices along the correction.
+    pub(crate) fn encode_take(&self, passes: &mut Passes<'_>) {
+        self.encode(passes, &self.take);
+    }
+
+    /// Sets how far the next submission goes along the correction.
+    pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) {
+        for step in self.along.iter().chain([&self.take]) {
+            let op = LevelOp { a: length, ..step.op };
+            let at = u64::from(step.number * self.stride);
+            gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
+        }
+    }
+
+    fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {
+        passes.run(&step.pipeline, None, |pass| {
+            let uniform = step.number * self.stride;
+            pass.set_bind_group(0, &self.bind_groups[step.bind_group], &[uniform]);
+            match step.groups {
+                Groups::ForRows => dispatch(pass, step.op.rows),
+                Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
+            }
+        });
+    }
+}

@@ -1,0 +1,73 @@
+//! Many arrays in few buffers, none larger than what the device binds.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::filled;
+use crate::gpu::device::size::check_limit;
+
+/// Arrays, page by page; each page becomes a buffer.
+pub(crate) struct Pages<T> {
+    what: &'static str,
+    /// Bytes of a page at the most.
+    most: u64,
+    pages: Vec<Vec<T>>,
+}
+
+impl<T: bytemuck::NoUninit> Pages<T> {
+    /// None yet. `what` they hold is for labels and errors.
+    pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
+        let limits = gpu.device.limits();
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        Self { what, most, pages: vec![Vec::new()] }
+    }
+
+    /// Places arrays that a kernel sees together: the page, and where in it each begins.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if they do not fit one page.
+    pub(crate) fn place<const N: usize>(
+        &mut self,
+        arrays: [&[T]; N],
+    ) -> Result<(usize, [u32; N]), GpuError> {
+        let bytes = |length: usize| (length * size_of::<T>()) as u64;
+        let length = arrays.iter().map(|array| array.len()).sum();
+        let what = || format!("the {}", self.what);
+        check_limit("max_storage_buffer_binding_size", self.most, &what, bytes(length))?;
+        let mut last = self.pages.len() - 1;
+        if bytes(self.pages[last].len() + length) > self.most {
+            self.pages.push(Vec::with_capacity(length));
+            last += 1;
+        }
+        let page = &mut self.pages[last];
+        let places = arrays.map(|array| {
+            let place = page.len() as u32;
+            page.extend_from_slice(array);
+            place
+        });
+        Ok((last, places))
+    }
+
+    /// Uploads the pages. To be called in an error scope.
+    pub(crate) fn upload(&self, gpu: &Gpu) -> Vec<wgpu::Buffer> {
+        self.pages.iter().map(|page| filled(gpu, self.what, page, Usage::STORAGE)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_placed_together_are_in_one_page() {
+        let mut pages = Pages { what: "numbers", most: 16, pages: vec![Vec::new()] };
+        assert_eq!(pages.place([&[1u32, 2][..], &[3]]).unwrap(), (0, [0, 2]));
+        assert_eq!(pages.place([&[4][..]]).unwrap(), (0, [3]));
+        assert_eq!(pages.place([&[5][..], &[6, 7, 8]]).unwrap(), (1, [0, 1]));
+        assert_eq!(pages.place([&[9][..]]).unwrap(), (2, [0]));
+        assert_eq!(pages.pages, [vec![1, 2, 3, 4], vec![5, 6, 7, 8], vec![9]]);
+        let error = pages.place([&[0; 3][..], &[0; 2]]).unwrap_err();
+        assert!(matches!(error, GpuError::Limit { needed: 20, available: 16, .. }), "{error}");
+    }
+}

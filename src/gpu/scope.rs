@@ -1,0 +1,40 @@
+//! Error scopes: whatever wgpu says of a call becomes an error.
+
+use crate::error::GpuError;
+
+/// Runs wgpu calls and turns whatever the device says about them into an error.
+pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let value = calls();
+    let internal = pollster::block_on(internal.pop());
+    let memory = pollster::block_on(memory.pop());
+    let validation = pollster::block_on(validation.pop());
+    if let Some(error) = memory {
+        return Err(GpuError::OutOfMemory(error.to_string()));
+    }
+    match internal.or(validation) {
+        // What wgpu says of a lost device are its consequences: "... is invalid".
+        Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
+        Some(error) => Err(GpuError::Refused(error.to_string())),
+        None => Ok(value),
+    }
+}
+
+/// Whether the device is lost, found by trial: it then makes a buffer that cannot be mapped, without
+/// a word to the error scopes.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("gpu-smooth trial"),
+        size: wgpu::COPY_BUFFER_ALIGNMENT,
+        usage: wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: true,
+    });
+    let is_mapped = buffer.get_mapped_range_mut(..).is_ok();
+    let memory = pollster::block_on(memory.pop());
+    let _ = pollster::block_on(validation.pop());
+    !is_mapped && memory.is_none()
+}

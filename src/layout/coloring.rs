@@ -1,0 +1,449 @@
+//! Graph coloring: free vertices that may move at the same time.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering::Relaxed;
+
+use rayon::prelude::*;
+
+use crate::parallel::counting_sort::{atomics, plain};
+use crate::topology::Topology;
+
+/// Independent sets of free vertices: no two of one color share a triangle, so a color can be
+/// swept in parallel with the result of any serial order.
+#[derive(Clone, Debug)]
+pub struct Coloring {
+    colors: Vec<u32>,
+    count: u32,
+}
+
+/// The color of a vertex that is not free.
+pub const UNCOLORED: u32 = u32::MAX;
+
+/// Vertices in a row along a curve that are colored by themselves. Their numbers within fit 16 bits.
+const BLOCK: usize = 1 << 15;
+
+/// Blocks help if no more than this part of the vertices lies between them.
+const MOST_BETWEEN: usize = 4;
+
+/// Colors that smallest-last order takes on a planar graph at most.
+const PLANAR: u32 = 6;
+
+impl Coloring {
+    /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983):
+    /// a planar graph then takes 6 colors at most.
+    ///
+    /// Vertices far apart in the mesh's numbering are colored independently, with those between
+    /// them colored first.
+    pub fn new(topology: &Topology<'_>) -> Self {
+        let numbering: Vec<u32> = (0..topology.free().len() as u32).collect();
+        Self::in_blocks(topology, &numbering, BLOCK)
+    }
+
+    /// The same along a curve that all free vertices are on: the more of a vertex's neighbors are near it on the
+    /// curve, the faster.
+    pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
+        match curve.len() {
+            // What is one block takes its colors from the numbering alone.
+            0..=BLOCK => Self::new(topology),
+            _ => Self::in_blocks(topology, curve, BLOCK),
+        }
+    }
+
+    fn in_blocks(topology: &Topology<'_>, curve: &[u32], block: usize) -> Self {
+        let places = Places::new(topology, curve);
+        let (colors, count) = match curve.len() <= block {
+            true => places.color_serially(),
+            false => places.color(block),
+        };
+        let color = |&place: &u32| colors.get(place as usize).copied().unwrap_or(UNCOLORED);
+        Self { colors: places.of.par_iter().map(color).collect(), count }
+    }
+
+    /// Number of colors.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Color of each vertex, [`UNCOLORED`] if it is not free.
+    pub fn colors(&self) -> &[u32] {
+        &self.colors
+    }
+
+    /// Whether every free vertex, and no other, has a color unlike those of its neighbors.
+    pub fn is_proper(&self, topology: &Topology<'_>) -> bool {
+        let differs = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.colors[v as usize]);
+            let same = |p: u32, q: u32| p == q && p != UNCOLORED;
+            !same(a, b) && !same(b, c) && !same(c, a)
+        };
+        let complete = self.colors.iter().zip(topology.free());
+        complete.into_iter().all(|(&c, &free)| free == (c < self.count))
+            && topology.triangles().iter().all(differs)
+    }
+}
+
+/// The place of a vertex that is not free.
+const NOWHERE: u32 = u32::MAX;
+
+/// The free vertices by their places on a curve.
+struct Places<'a> {
+    topology: &'a Topology<'a>,
+    curve: &'a [u32],
+    /// The place of each vertex.
+    of: Vec<u32>,
+}
+
+impl<'a> Places<'a> {
+    fn new(topology: &'a Topology<'a>, curve: &'a [u32]) -> Self {
+        let free = topology.free();
+        let of = atomics(free.len(), NOWHERE);
+        curve.par_iter().enumerate().filter(|&(_, &v)| free[v as usize]).for_each(|(place, &v)| {
+            of[v as usize].store(place as u32, Relaxed);
+        });
+        Self { topology, curve, of: plain(of) }
+    }
+
+    fn is_free(&self, place: u32) -> bool {
+        self.topology.free()[self.curve[place as usize] as usize]
+    }
+
+    /// The places of the free neighbors of the free vertex at a place.
+    fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
+        let ring = self.topology.ring_of(self.curve[place as usize]);
+        ring.map(|v| self.of[v as usize]).filter(|&place| place != NOWHERE)
+    }
+
+    /// The same in the order of the triangles.
+    fn sorted_neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
+        let vertex = self.curve[place as usize];
+        let mut ring: Vec<(u32, u32)> =
+            self.topology.star(vertex).iter().copied().zip(self.topology.ring_of(vertex)).collect();
+        ring.sort_unstable();
+        ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NOWHERE)
+    }
+
+    /// Colors what lies between blocks, then the blocks: the colors by place, and their number.
+    fn color(&self, block: usize) -> (Vec<u32>, u32) {
+        let blocks: Vec<Block> = (0..self.curve.len().div_ceil(block))
+            .into_par_iter()
+            .map_init(Degrees::default, |degrees, i| {
+                Block::new(self, i * block..self.curve.len().min((i + 1) * block), degrees)
+            })
+            .collect();
+        let first = (0..).step_by(block);
+        let between: Vec<u32> = first
+            .zip(&blocks)
+            .flat_map(|(first, block)| block.border.iter().map(move |v| first + v))
+            .collect();
+        if between.len() > self.curve.len() / MOST_BETWEEN {
+            return self.color_serially();
+        }
+        let (mut colors, count) = self.color_alone(&between);
+        let counts = colors.par_chunks_mut(block).zip(&blocks).map(|(colors, block)| {
+            let count = block.graph.color(&block.order, colors);
+            block.graph.save_colors(&block.order, count, colors)
+        });
+        let count = count.max(counts.max().unwrap_or(0));
+        // The first vertices of a block may have more than five neighbors between the blocks.
+        if count <= PLANAR {
+            return (colors, count);
+        }
+        let (serial, serial_count) = self.color_serially();
+        if serial_count < count { (serial, serial_count) } else { (colors, count) }
+    }
+
+    /// Colors all in one.
+    fn color_serially(&self) -> (Vec<u32>, u32) {
+        let all: Vec<u32> = (0..self.curve.len() as u32).filter(|&p| self.is_free(p)).collect();
+        self.color_alone(&all)
+    }
+
+    /// Colors the vertices at some places as if there were no others.
+    fn color_alone(&self, places: &[u32]) -> (Vec<u32>, u32) {
+        let mut index = vec![0u32; self.curve.len()];
+        for (i, &place) in (1u32..).zip(places) {
+            index[place as usize] = i;
+        }
+        let mut graph = Graph::with_capacity(places.len());
+        for &place in places {
+            let index = self.sorted_neighbors(place).map(|p| index[p as usize]).filter(|&i| i > 0);
+            graph.push(index.map(|i| i - 1));
+        }
+        let mut degrees = Degrees::default();
+        (0..places.len() as u32).for_each(|v| degrees.put(Some(graph.row(v).len() as u32)));
+        let order = graph.smallest_last_order(&mut degrees);
+        let mut found = vec![UNCOLORED; places.len()];
+        let count = graph.color(&order, &mut found);
+        let mut colors = vec![UNCOLORED; self.curve.len()];
+        for (&place, color) in places.iter().zip(found) {
+            colors[place as usize] = color;
+        }
+        (colors, count)
+    }
+}
+
+/// Vertices in a row along a curve, numbered from the first of them.
+struct Block {
+    /// The neighbors of vertices inside: those that have all their neighbors in the block.
+    graph: Graph<u16>,
+    /// The vertices inside, smallest last.
+    order: Vec<u32>,
+    /// The other free vertices.
+    border: Vec<u32>,
+}
+
+impl Block {
+    fn new(places: &Places<'_>, range: Range<usize>, degrees: &mut Degrees) -> Self {
+        let (first, length) = (range.start as u32, range.len() as u32);
+        let mut graph = Graph::with_capacity(range.len());
+        let mut border = Vec::new();
+        for v in 0..length {
+            if !places.is_free(first + v) {
+                graph.push([].into_iter());
+                degrees.put(None);
+                continue;
+            }
+            let mut is_inside = true;
+            let neighbors = places.neighbors(first + v).map(|place| {
+                let neighbor = place.wrapping_sub(first);
+                is_inside &= neighbor < length;
+                neighbor as u16
+            });
+            graph.push(neighbors);
+            if is_inside {
+                degrees.put(Some(graph.row(v).len() as u32));
+            } else {
+                graph.clear_last();
+                degrees.put(None);
+                border.push(v);
+            }
+        }
+        let order = graph.smallest_last_order(degrees);
+        Self { graph, order, border }
+    }
+}
+
+/// The neighbors of vertices, as compressed rows.
+struct Graph<I> {
+    start: Vec<u32>,
+    neighbors: Vec<I>,
+}
+
+impl<I: Copy + Into<u32>> Graph<I> {
+    fn with_capacity(vertices: usize) -> Self {
+        let mut start = Vec::with_capacity(vertices + 1);
+        start.push(0);
+        Self { start, neighbors: Vec::with_capacity(6 * vertices) }
+    }
+
+    fn push(&mut self, neighbors: impl Iterator<Item = I>) {
+        self.neighbors.extend(neighbors);
+        self.start.push(self.neighbors.len() as u32);
+    }
+
+    /// Takes the last vertex's neighbors away.
+    fn clear_last(&mut self) {
+        self.start.pop();
+        self.neighbors.truncate(self.start.last().map_or(0, |&start| start as usize));
+        self.start.push(self.neighbors.len() as u32);
+    }
+
+    fn row(&self, v: u32) -> &[I] {
+        &self.neighbors[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
+    }
+
+    /// Removes a vertex of least remaining degree again and again; the order of removal. Takes the degrees.
+    fn smallest_last_order(&self, degrees: &mut Degrees) -> Vec<u32> {
+        let Degrees { of, buckets } = degrees;
+        for (v, &degree) in of.iter().enumerate().rev().filter(|(_, degree)| **degree != STAYS) {
+            if buckets.len() <= degree as usize {
+                buckets.resize_with(degree as usize + 1, Vec::new);
+            }
+            buckets[degree as usize].push(v as u32);
+        }
+        let mut order = Vec::with_capacity(of.len());
+        let mut least = 0;
+        while least < buckets.len() {
+            let Some(v) = buckets[least].pop() else {
+                least += 1;
+                continue;
+            };
+            // A vertex stands in one bucket per degree it has had; only the last entry counts.
+            if of[v as usize] as usize != least {
+                continue;
+            }
+            of[v as usize] = STAYS;
+            order.push(v);
+            for &u in self.row(v) {
+                let u: u32 = u.into();
+                let degree = &mut of[u as usize];
+                if *degree != STAYS {
+                    *degree -= 1;
+                    buckets[*degree as usize].push(u);
+                }
+            }
+            least = least.saturating_sub(1);
+        }
+        of.clear();
+        order
+    }
+
+    /// Gives vertices their least possible colors, the last of the order first, and returns the number of colors.
+    fn color(&self, order: &[u32], colors: &mut [u32]) -> u32 {
+        let mut count = 0;
+        for &v in order.iter().rev() {
+            colors[v as usize] = self.least_color(v, UNCOLORED, colors);
+            count = count.max(colors[v as usize] + 1);
+        }
+        count
+    }
+
+    /// Colors that hardly any vertex has mostly are not needed: takes them off again, one vertex at a time, and returns
+    /// the number of colors.
+    fn save_colors(&self, order: &[u32], count: u32, colors: &mut [u32]) -> u32 {
+        for color in (FOUR..count).rev() {
+            for &v in order {
+                if colors[v as usize] == color {
+                    self.lower(v, colors);
+                }
+            }
+        }
+        order.iter().map(|&v| colors[v as usize] + 1).max().unwrap_or(0)
+    }
+
+    fn colors_around<'a>(&'a self, v: u32, colors: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+        self.row(v).iter().map(|&u| colors[u.into() as usize])
+    }
+
+    /// The least color that no neighbor of a vertex has, other than `but`.
+    #[inline]
+    fn least_color(&self, v: u32, but: u32, colors: &[u32]) -> u32 {
+        let taken = self.colors_around(v, colors).chain([but]);
+        let taken = taken.filter(|&c| c < 64).fold(0u64, |set, c| set | 1 << c);
+        let mut color = (!taken).trailing_zeros();
+        // Smallest-last needs at most 6 on a planar graph; a mesh that overlaps itself may need
+        // more, but 64 would take a vertex of degree 64 in a core of such vertices.
+        while color >= 64 && self.colors_around(v, colors).chain([but]).any(|c| c == color) {
+            color += 1;
+        }
+        color
+    }
+
+    /// Gives a vertex the color of a neighbor, if no other neighbor has it and this one can do with another.
+    fn lower(&self, v: u32, colors: &mut [u32]) {
+        let color = colors[v as usize];
+        for &u in self.row(v) {
+            let u = u.into();
+            let wanted = colors[u as usize];
+            // Of neighbors that lie between the blocks not all neighbors are known.
+            if wanted < color
+                && !self.row(u).is_empty()
+                && self.colors_around(v, colors).filter(|&c| c == wanted).count() == 1
+            {
+                let other = self.least_color(u, wanted, colors);
+                if other < color {
+                    colors[u as usize] = other;
+                    colors[v as usize] = wanted;
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// Colors that suffice for a planar graph, hard as they may be to find.
+const FOUR: u32 = 4;
+
+/// The degree of a vertex that is not to be removed, or was.
+const STAYS: u32 = u32::MAX;
+
+/// Vertices by the number of their neighbors that are left.
+#[derive(Default)]
+struct Degrees {
+    of: Vec<u32>,
+    buckets: Vec<Vec<u32>>,
+}
+
+impl Degrees {
+    /// Adds a vertex: its degree, or none if it stays.
+    fn put(&mut self, degree: Option<u32>) {
+        self.of.push(degree.unwrap_or(STAYS));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    /// Squares with their diagonals one way or the other, so that vertices have 4 to 8 neighbors.
+    fn squares(side: u32) -> Topology<'static> {
+        let points = (0..(side + 1).pow(2)).map(|v| [v % (side + 1), v / (side + 1)]);
+        let triangles = (0..side * side).flat_map(|square| {
+            let a = square / side * (side + 1) + square % side;
+            let [b, c, d] = [a + 1, a + side + 2, a + side + 1];
+            match square.wrapping_mul(0x9e37_79b1) >> 30 {
+                0 => [[a, b, d], [b, c, d]],
+                _ => [[a, b, c], [a, c, d]],
+            }
+        });
+        let points = points.map(|p| p.map(f64::from)).collect();
+        let mesh = Mesh { points, triangles: triangles.collect(), fixed: vec![] };
+        Topology::new(&mesh).unwrap().into_owned()
+    }
+
+    /// The vertices of [`squares`] tile by tile.
+    fn tiles(side: u32, tile: u32) -> Vec<u32> {
+        let mut curve: Vec<u32> = (0..(side + 1).pow(2)).collect();
+        curve.sort_by_key(|&v| (v / (side + 1) / tile, v % (side + 1) / tile));
+        curve
+    }
+
+    #[test]
+    fn blocks_are_proper_take_one_more_color_at_most_and_do_not_depend_on_threads() {
+        let topology = squares(100);
+        for (curve, name) in [(tiles(100, 1000), "rows"), (tiles(100, 16), "tiles")] {
+            let whole = Coloring::in_blocks(&topology, &curve, curve.len());
+            for block in [1, 7, 256, 1000, 10_200] {
+                let blocks = |threads: usize| {
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                    pool.unwrap().install(|| Coloring::in_blocks(&topology, &curve, block))
+                };
+                let found = blocks(1);
+                assert!(found.is_proper(&topology), "{name}, {block}");
+                let (found_count, most) = (found.count(), PLANAR.min(whole.count() + 1));
+                assert!(found_count <= most, "{name}, {block}: {found_count} for {most}");
+                for threads in [2, 3] {
+                    let again = blocks(threads);
+                    assert_eq!((again.count, again.colors), (found.count, found.colors.clone()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_color_stays_empty() {
+        let topology = squares(60);
+        let found = Coloring::in_blocks(&topology, &tiles(60, 8), 64);
+        for color in 0..found.count() {
+            assert!(found.colors().contains(&color), "color {color} of {}", found.count());
+        }
+    }
+
+    #[test]
+    fn what_is_not_planar_takes_more_colors() {
+        // The torus of seven vertices, each a neighbor of all others.
+        let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
+        let triangles = around.map(|t| t.map(|v| v % 7)).collect();
+        let points = (0..7).map(|i| [f64::from(i), f64::from(i * i)]).collect();
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        assert_eq!(topology.free_count(), 7);
+        let curve: Vec<u32> = (0..7).collect();
+        for block in [1, 2, 7] {
+            let found = Coloring::in_blocks(&topology, &curve, block);
+            assert!(found.is_proper(&topology));
+            assert_eq!(found.count(), 7);
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! From a mesh to what the engines are given.
+
+use crate::error::MeshError;
+use crate::layout::Coloring;
+use crate::layout::Problem;
+use crate::layout::curve::along_curve;
+use crate::mesh::Mesh;
+use crate::topology::Topology;
+
+/// Checks a mesh, colors and lays it out: what [`Smoother::new`](crate::Smoother::new) does, for those who drive an
+/// [`Engine`](crate::Engine) themselves.
+///
+/// # Errors
+/// [`MeshError`] for a mesh that cannot be smoothed.
+pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
+    let topology = Topology::new(mesh)?;
+    topology.check_smoothable(&mesh.points)?;
+    let curve = along_curve(mesh, &topology);
+    let coloring = Coloring::along(&topology, &curve);
+    let problem = Problem::along(mesh, &topology, &coloring, &curve);
+    Ok((topology, problem))
+}

@@ -1,0 +1,266 @@
+//! What both engines are given: normalized positions and one-rings, numbered color by color.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::layout::curve::{along_curve, bounds};
+use crate::layout::{Coloring, UNCOLORED};
+use crate::mesh::Mesh;
+use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
+use crate::topology::Topology;
+
+/// A mesh laid out for sweeping. Vertices are numbered anew: free ones first, color by color, in
+/// blocks along a space-filling curve within a color and by the number of their neighbors within a
+/// block, then those fixed ones that some triangle uses.
+///
+/// Positions are centered and scaled by a power of two (which rounds nothing) such that the mean
+/// triangle has an area in [0.5, 2): then single precision serves meshes of any size at any place,
+/// and areas of triangles far smaller or larger than the mean neither vanish nor overflow.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    positions: Vec<DVec2>,
+    colors: Vec<Range<u32>>,
+    ring_start: Vec<u32>,
+    ring: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    mean_area: f64,
+    vertices: Vec<u32>,
+    center: DVec2,
+    scale: f64,
+}
+
+impl Problem {
+    /// Vertices of a color that are sorted by the number of their neighbors, so that those visited at
+    /// once have equally many: enough for few exceptions, and few enough to stay close together.
+    pub(crate) const BLOCK: usize = 512;
+
+    /// Lays out a mesh with its topology and coloring.
+    pub fn new(mesh: &Mesh, topology: &Topology<'_>, coloring: &Coloring) -> Self {
+        Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
+    }
+
+    /// The same, given the vertices in use along a curve.
+    pub(crate) fn along(
+        mesh: &Mesh,
+        topology: &Topology<'_>,
+        coloring: &Coloring,
+        curve: &[u32],
+    ) -> Self {
+        let (center, scale) = normalization(mesh, topology);
+        let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
+
+        let (vertices, colors) = order(topology, coloring, curve);
+        let number = atomics(mesh.points.len(), u32::MAX);
+        vertices.par_iter().enumerate().for_each(|(new, &v)| {
+            number[v as usize].store(new as u32, Relaxed);
+        });
+        let number = plain(number);
+
+        let free = colors.last().map_or(0, |range| range.end) as usize;
+        let (ring_start, ring) = rings(topology, &vertices[..free], curve, &number);
+        let triangles = triangles(topology, vertices.len(), &number);
+        drop(number);
+
+        let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
+        let area = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|v| positions[v as usize]);
+            0.5 * (q - p).perp_dot(r - p)
+        };
+        let mean_area = sum(&triangles, area) / triangles.len() as f64;
+        Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
+    }
+
+    /// Normalized position of each vertex.
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
+    /// The free vertices of each color.
+    pub fn colors(&self) -> &[Range<u32>] {
+        &self.colors
+    }
+
+    /// Number of free vertices; they come first.
+    pub fn free_count(&self) -> usize {
+        self.ring_start.len() - 1
+    }
+
+    /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last.
+    pub fn ring_start(&self) -> &[u32] {
+        &self.ring_start
+    }
+
+    /// The neighbors of the free vertices, counter-clockwise, vertex by vertex.
+    pub fn ring(&self) -> &[u32] {
+        &self.ring
+    }
+
+    /// The neighbors of one free vertex.
+    #[inline]
+    pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
+        let vertex = vertex as usize;
+        &self.ring[self.ring_start[vertex] as usize..self.ring_start[vertex + 1] as usize]
+    }
+
+    /// All triangles, counter-clockwise.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Mean area of all triangles, in normalized units.
+    pub fn mean_area(&self) -> f64 {
+        self.mean_area
+    }
+
+    /// The mesh's number of each vertex.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// The center that positions are relative to, and the scale: normalized is (x - center) · scale.
+    pub fn normalization(&self) -> (DVec2, f64) {
+        (self.center, self.scale)
+    }
+
+    /// Brings the normalized positions of all vertices, fixed ones too, back into the mesh's units, each with the
+    /// mesh's number of the vertex.
+    pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
+        let point = |&now: &DVec2| (self.center + now / self.scale).to_array();
+        self.vertices.iter().copied().zip(positions.iter().map(point))
+    }
+
+    /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did
+    /// not move keeps its bits.
+    pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
+        let mut points = mesh.points.clone();
+        let free = self.vertices[..self.free_count()].iter();
+        for ((&v, &now), &was) in free.zip(positions).zip(&self.positions) {
+            if now != was {
+                points[v as usize] = (self.center + now / self.scale).to_array();
+            }
+        }
+        points
+    }
+}
+
+/// Center of the bounding box, and the power of two that brings the mean area into [0.5, 2).
+fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64) {
+    let (low, high) = bounds(mesh, topology);
+    // Halved before they are added: the sum of two large coordinates may overflow.
+    let center = low * 0.5 + high * 0.5;
+    // Areas are taken in units of the bounding box, where their squares cannot overflow or vanish.
+    let extent = (high * 0.5 - low * 0.5).max_element();
+    let relative = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|v| (DVec2::from(mesh.points[v as usize]) - center) / extent);
+        0.5 * (q - p).perp_dot(r - p)
+    };
+    let length =
+        (sum(topology.triangles(), relative) / topology.triangles().len() as f64).sqrt() * extent;
+    (center, (-length.log2().round()).exp2())
+}
+
+/// The sum of a number of each triangle, in an order that does not depend on the number of threads.
+fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
+    let parts = triangles.par_chunks(4096).map(|part| part.iter().map(&of).sum());
+    parts.collect::<Vec<f64>>().iter().sum()
+}
+
+/// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
+fn rings(
+    topology: &Topology<'_>,
+    vertices: &[u32],
+    curve: &[u32],
+    number: &[u32],
+) -> (Vec<u32>, Vec<u32>) {
+    let lengths = vertices.par_iter().map(|&v| topology.star(v).len() as u32);
+    let mut start: Vec<u32> = lengths.chain([0]).collect();
+    let end = running_sum(&mut start, |start| start);
+    let ring = atomics(end as usize, 0);
+    // Along the curve, where the triangles around a vertex are mostly those around the vertices before it. Each
+    // writes its own row; they are atomic only because rows lie anywhere.
+    curve.par_iter().with_min_len(1 << 12).filter(|&&v| topology.free()[v as usize]).for_each(
+        |&v| {
+            let row = &ring[start[number[v as usize] as usize] as usize..];
+            for (to, from) in row.iter().zip(topology.ring_of(v)) {
+                to.store(number[from as usize], Relaxed);
+            }
+        },
+    );
+    (start, plain(ring))
+}
+
+/// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
+/// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
+fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
+    let given = topology.triangles();
+    let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
+    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
+    let zeros = || std::array::from_fn(|_| AtomicU32::new(0));
+    let all: Vec<[AtomicU32; 3]> = (0..given.len()).into_par_iter().map(|_| zeros()).collect();
+    let keys = |t| [least(&renumbered(t))];
+    place(given.len(), vertices, keys, |t, at| {
+        for (corner, to) in renumbered(t).into_iter().zip(&all[at]) {
+            to.store(corner, Relaxed);
+        }
+    });
+    let mut all: Vec<[u32; 3]> = all.into_iter().map(|t| t.map(AtomicU32::into_inner)).collect();
+    all.par_chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
+    all
+}
+
+/// The vertices in the order [`Problem`] promises, and the range of each color.
+fn order(
+    topology: &Topology<'_>,
+    coloring: &Coloring,
+    curve: &[u32],
+) -> (Vec<u32>, Vec<Range<u32>>) {
+    const CHUNK: usize = 1 << 14;
+    let colors = coloring.count() as usize;
+    // Fixed vertices come last.
+    let slot = |v: u32| match coloring.colors()[v as usize] {
+        UNCOLORED => colors,
+        color => color as usize,
+    };
+    let counts = curve.par_chunks(CHUNK).map(|chunk| {
+        let mut counts = vec![0; colors + 1];
+        chunk.iter().for_each(|&v| counts[slot(v)] += 1);
+        counts
+    });
+    let counts: Vec<Vec<usize>> = counts.collect();
+    // What each chunk has of a color goes behind what the chunk before it has.
+    let mut vertices = vec![0; curve.len()];
+    let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
+    let mut targets: Vec<Vec<&mut [u32]>> = counts.iter().map(|_| Vec::new()).collect();
+    for (i, part) in split(&mut vertices, lengths).into_iter().enumerate() {
+        targets[i % counts.len()].push(part);
+    }
+    curve.par_chunks(CHUNK).zip(targets).for_each(|(chunk, mut targets)| {
+        for &v in chunk {
+            if let Some(to) = targets[slot(v)].split_off_first_mut() {
+                *to = v;
+            }
+        }
+    });
+    let mut rest = &mut vertices[..];
+    let mut ranges = Vec::new();
+    let mut end = 0;
+    for color in 0..=colors {
+        let length = counts.iter().map(|counts| counts[color]).sum();
+        ranges.push(end..end + length as u32);
+        end += length as u32;
+        let color = rest.split_off_mut(..length).unwrap_or_default();
+        color.par_chunks_mut(Problem::BLOCK).for_each_init(Vec::new, |keyed, block| {
+            keyed.clear();
+            keyed.extend(block.iter().map(|&v| (topology.star(v).len(), v)));
+            keyed.sort_by_key(|&(degree, _)| degree);
+            for (vertex, &(_, v)) in block.iter_mut().zip(&*keyed) {
+                *vertex = v;
+            }
+        });
+    }
+    ranges.truncate(colors);
+    (vertices, ranges)
+}

@@ -1,0 +1,3 @@
+//! Work on all cores that more than one room needs.
+
+pub(crate) mod counting_sort;

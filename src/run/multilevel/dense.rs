@@ -1,0 +1,73 @@
+//! The coarsest level, solved directly.
+
+use super::sparse::Sparse;
+
+/// The inverse of a symmetric positive definite matrix, row by row.
+///
+/// A pivot that rounding has made small or negative leaves its unknown at zero.
+pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
+    let n = matrix.rows();
+    let mut lower = vec![0.0f64; n * n];
+    for row in 0..n {
+        for (column, value) in matrix.row(row) {
+            lower[row * n + column] = f64::from(value);
+        }
+    }
+    // Cholesky's factor, in place.
+    for j in 0..n {
+        let diagonal = lower[j * n + j];
+        let square = diagonal - (0..j).map(|k| lower[j * n + k].powi(2)).sum::<f64>();
+        let pivot = if square > 1e-6 * diagonal { square.sqrt() } else { f64::INFINITY };
+        lower[j * n + j] = pivot;
+        for i in j + 1..n {
+            let (upper_rows, row_i) = lower.split_at_mut(i * n);
+            let row_j = &upper_rows[j * n..j * n + j];
+            let dot: f64 = row_j.iter().zip(&row_i[..j]).map(|(a, b)| a * b).sum();
+            row_i[j] = if pivot.is_finite() { (row_i[j] - dot) / pivot } else { 0.0 };
+        }
+    }
+    // The factor's inverse, column by column and stored so, then its product with its transpose.
+    let mut columns = vec![0.0f64; n * n];
+    for c in 0..n {
+        columns[c * n + c] = 1.0 / lower[c * n + c];
+        for r in c + 1..n {
+            let row = &lower[r * n + c..r * n + r];
+            let dot: f64 = row.iter().zip(&columns[c * n + c..c * n + r]).map(|(a, b)| a * b).sum();
+            columns[c * n + r] = -dot / lower[r * n + r];
+        }
+    }
+    let entry = |at: usize| {
+        let (i, j) = (at / n, at % n);
+        let from = i.max(j);
+        let (a, b) = (&columns[i * n + from..(i + 1) * n], &columns[j * n + from..(j + 1) * n]);
+        a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() as f32
+    };
+    (0..n * n).map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_times_the_matrix_is_one() {
+        let n = 12;
+        let matrix = Sparse::from_rows(n, |row, sum| {
+            for column in 0..n {
+                let apart = row.abs_diff(column);
+                sum.add(
+                    column as u32,
+                    if apart == 0 { 3.0 } else { -1.0 / (1 + apart * apart) as f32 },
+                );
+            }
+        });
+        let inverse = inverse(&matrix);
+        for i in 0..n {
+            for j in 0..n {
+                let product: f32 = matrix.row(i).map(|(k, a)| a * inverse[k * n + j]).sum();
+                let wanted = if i == j { 1.0 } else { 0.0 };
+                assert!((product - wanted).abs() < 1e-5, "({i}, {j}): {product}");
+            }
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Sparse matrices of the coarse levels.
+
+use rayon::prelude::*;
+
+/// A sparse matrix as compressed rows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sparse {
+    start: Vec<u32>,
+    column: Vec<u32>,
+    value: Vec<f32>,
+}
+
+impl Sparse {
+    /// Builds a matrix row by row, in parallel. `fill` adds the entries of a row to the sum it is given.
+    pub(crate) fn from_rows(rows: usize, fill: impl Fn(usize, &mut RowSum) + Sync) -> Self {
+        Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
+    }
+
+    /// Galerkin's product Pᵀ A P by rows, of P and its transpose. `row` adds a multiple of a row of A to a sum.
+    pub(crate) fn galerkin(
+        prolongation: &Self,
+        restriction: &Self,
+        row: impl Fn(usize, f32, &mut RowSum) + Sync,
+    ) -> Self {
+        // The support of a row is small: nothing larger than it is ever stored.
+        Self::from_rows_with(restriction.rows(), RowSum::default, |coarse, of_ap, sum| {
+            for (k, value) in restriction.row(coarse) {
+                row(k, value, of_ap);
+            }
+            for (k, value) in of_ap.entries() {
+                for (column, share) in prolongation.row(k as usize) {
+                    sum.add(column as u32, value * share);
+                }
+            }
+            of_ap.clear();
+        })
+    }
+
+    /// As [`Self::from_rows`], with scratch that the rows of a part share.
+    fn from_rows_with<S>(
+        rows: usize,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(usize, &mut S, &mut RowSum) + Sync,
+    ) -> Self {
+        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).max(64);
+        let parts: Vec<Sparse> = (0..rows.div_ceil(chunk))
+            .into_par_iter()
+            .map(|part| {
+                let (mut scratch, mut sum) = (scratch(), RowSum::default());
+                let mut matrix = Sparse::default();
+                for row in part * chunk..rows.min((part + 1) * chunk) {
+                    fill(row, &mut scratch, &mut sum);
+                    sum.drain_into(&mut matrix);
+                }
+                matrix
+            })
+            .collect();
+        let mut whole = Sparse { start: Vec::with_capacity(rows + 1), ..Sparse::default() };
+        let entries = parts.iter().map(|part| part.column.len()).sum();
+        whole.column.reserve_exact(entries);
+        whole.value.reserve_exact(entries);
+        whole.start.push(0);
+        for part in parts {
+            let before = whole.column.len() as u32;
+            whole.start.extend(part.start.iter().map(|end| before + end));
+            whole.column.extend_from_slice(&part.column);
+            whole.value.extend_from_slice(&part.value);
+        }
+        whole
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Where each row starts in [`Self::columns`] and [`Self::values`], and one past the last.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.start
+    }
+
+    /// The column of each entry.
+    pub(crate) fn columns(&self) -> &[u32] {
+        &self.column
+    }
+
+    /// The value of each entry.
+    pub(crate) fn values(&self) -> &[f32] {
+        &self.value
+    }
+
+    /// The entries of a row.
+    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let range = self.start[row] as usize..self.start[row + 1] as usize;
+        let columns = self.column[range.clone()].iter().map(|&c| c as usize);
+        columns.zip(self.value[range].iter().copied())
+    }
+
+    /// The reciprocals of the diagonal.
+    pub(crate) fn diagonal_inverted(&self) -> Vec<f32> {
+        let diagonal =
+            |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
+        (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
+    }
+
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. What the matrix makes of
+    /// a constant changes by the square of the row's factor.
+    pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
+        for row in 0..self.rows() {
+            let range = self.start[row] as usize..self.start[row + 1] as usize;
+            let (mut of_constant, mut couplings) = (0.0, 0.0);
+            let mut diagonal = range.start;
+            for entry in range {
+                of_constant += self.value[entry];
+                match self.column[entry] as usize {
+                    column if column == row => diagonal = entry,
+                    column => {
+                        self.value[entry] *= factors[row] * factors[column];
+                        couplings += self.value[entry];
+                    }
+                }
+            }
+            self.value[diagonal] = of_constant * factors[row] * factors[row] - couplings;
+        }
+    }
+
+    /// Of each row the mean of `values`, weighted by the sizes of its entries.
+    pub(crate) fn means(&self, values: &[f32]) -> Vec<f32> {
+        let mean = |row: usize| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (column, entry) in self.row(row) {
+                sum += entry.abs() * values[column];
+                weights += entry.abs();
+            }
+            sum / weights
+        };
+        (0..self.rows()).map(mean).collect()
+    }
+
+    /// The transpose; its rows' entries ascend by column.
+    pub(crate) fn transposed(&self, columns: usize) -> Self {
+        let mut start = vec![0u32; columns + 1];
+        for &column in &self.column {
+            start[column as usize + 1] += 1;
+        }
+        for column in 0..columns {
+            start[column + 1] += start[column];
+        }
+        let mut next = start.clone();
+        let mut transposed = Sparse {
+            start,
+            column: vec![0; self.column.len()],
+            value: vec![0.0; self.value.len()],
+        };
+        for row in 0..self.rows() {
+            for (column, value) in self.row(row) {
+                let at = next[column] as usize;
+                transposed.column[at] = row as u32;
+                transposed.value[at] = value;
+                next[column] += 1;
+            }
+        }
+        transposed
+    }
+}
+
+/// A sparse vector while it is being summed up, as a hash table. Rows have some tens of entries, so it stays in
+/// the nearest cache whatever the size of the mesh.
+pub(crate) struct RowSum {
+    /// Column and value of each slot, their number a power of two; [`FREE`] is no column.
+    slots: Vec<(u32, f32)>,
+    /// The slots taken, in the order they were.
+    taken: Vec<u32>,
+    /// Bits of a hash that are not a slot's.
+    shift: u32,
+}
+
+const FREE: u32 = u32::MAX;
+
+impl Default for RowSum {
+    fn default() -> Self {
+        Self::with_bits(7)
+    }
+}
+
+impl RowSum {
+    fn with_bits(bits: u32) -> Self {
+        let slots = vec![(FREE, 0.0); 1 << bits];
+        Self { taken: Vec::with_capacity(slots.len()), slots, shift: 32 - bits }
+    }
+
+    /// Adds to the entry of a column.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, column: u32, value: f32) {
+        let mask = self.slots.len() - 1;
+        let mut at = (column.wrapping_mul(0x9e37_79b1) >> self.shift) as usize;
+        loop {
+            let slot = &mut self.slots[at & mask];
+            if slot.0 == column {
+                slot.1 += value;
+                return;
+            }
+            if slot.0 == FREE {
+                *slot = (column, value);
+                self.taken.push((at & mask) as u32);
+                if 2 * self.taken.len() > mask {
+                    self.grow();
+                }
+                return;
+            }
+            at += 1;
+        }
+    }
+
+    /// The entries so far, in the order their columns came.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (u32, f32)> + '_ {
+        self.taken.iter().map(|&slot| self.slots[slot as usize])
+    }
+
+    fn clear(&mut self) {
+        self.taken.iter().for_each(|&slot| self.slots[slot as usize].0 = FREE);
+        self.taken.clear();
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self) {
+        let mut larger = Self::with_bits(32 - self.shift + 1);
+        self.entries().for_each(|(column, value)| larger.add(column, value));
+        *self = larger;
+    }
+
+    fn drain_into(&mut self, matrix: &mut Sparse) {
+        matrix.column.extend(self.entries().map(|(column, _)| column));
+        matrix.value.extend(self.entries().map(|(_, value)| value));
+        matrix.start.push(matrix.column.len() as u32);
+        self.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dense(matrix: &Sparse, columns: usize) -> Vec<Vec<f32>> {
+        let mut dense = vec![vec![0.0; columns]; matrix.rows()];
+        for (row, values) in dense.iter_mut().enumerate() {
+            matrix.row(row).for_each(|(column, value)| values[column] += value);
+        }
+        dense
+    }
+
+    /// A thousand rows, enough for several chunks, with entries added in two parts.
+    fn sample() -> Sparse {
+        Sparse::from_rows(1000, |row, sum| {
+            for k in 0..row % 5 {
+                sum.add(((row * 7 + k * 13) % 70) as u32, 1.0 + k as f32);
+                sum.add((row * 7 % 70) as u32, row as f32);
+            }
+        })
+    }
+
+    #[test]
+    fn entries_of_a_column_are_added_up() {
+        let matrix = sample();
+        let values = dense(&matrix, 70);
+        assert_eq!((matrix.rows(), matrix.row(10).count()), (1000, 0));
+        // Of row 13: k = 0, 1, 2, the first of them in the column of the second part.
+        assert_eq!(matrix.row(13).count(), 3);
+        assert_eq!(values[13][13 * 7 % 70], 1.0 + 3.0 * 13.0);
+        assert_eq!(values[13][(13 * 7 + 26) % 70], 3.0);
+    }
+
+    #[test]
+    fn the_transpose_swaps_rows_and_columns() {
+        let (matrix, transposed) = (sample(), sample().transposed(70));
+        let (straight, swapped) = (dense(&matrix, 70), dense(&transposed, 1000));
+        for row in 0..1000 {
+            for column in 0..70 {
+                assert_eq!(straight[row][column], swapped[column][row]);
+            }
+        }
+    }
+}

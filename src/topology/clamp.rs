@@ -1,0 +1,178 @@
+//! How far vertices can be dragged before a triangle gives way.
+
+use crate::error::MeshError;
+use crate::metric::{Corner, Metric};
+use crate::topology::Topology;
+use crate::topology::predicates;
+
+/// Room for rounding, relative to an inverse mean ratio.
+const ROUNDING: f64 = 1e-9;
+
+impl Topology<'_> {
+    /// Moves vertices straight toward new places, all by the same share of their ways, as far as the triangles
+    /// allow; returns the share, 1 being all the way. For handles and boundaries that a user drags:
+    /// one call for each frame, the sweeps mending the mesh in between.
+    ///
+    /// On the way no triangle inverts or becomes flat, and at the end, by exact predicates on `points` as they
+    /// then stand, none is. Nor does any get an inverse mean ratio above `worst_imr`, unless it has one and keeps
+    /// it: with [`f64::INFINITY`] a vertex may go until a triangle is all but flat, with 8 or so
+    /// there is room left for the sweeps, and for rounding `points` to single precision. Triangles
+    /// inverted beforehand hinder nothing. Fixed vertices and those of the boundary can be moved as
+    /// well. Of a vertex that is named twice, the last place counts.
+    ///
+    /// ```
+    /// # use gpu_smooth::{Mesh, Topology};
+    /// # let mesh = Mesh {
+    /// #     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+    /// #     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+    /// #     fixed: vec![],
+    /// # };
+    /// // The middle of a unit square, dragged out of it.
+    /// let topology = Topology::new(&mesh)?;
+    /// let mut points = mesh.points.clone();
+    /// let share = topology.move_clamped(&mut points, &[(4, [2.5, 0.5])], f64::INFINITY)?;
+    /// assert!(share < 0.25 && share > 0.2499 && points[4][0] < 1.0);
+    /// # Ok::<(), gpu_smooth::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that is not among the points or a point for each vertex missing,
+    /// [`MeshError::NotFinite`] for a place that is none. Nothing is moved then.
+    pub fn move_clamped(
+        &self,
+        points: &mut [[f64; 2]],
+        moves: &[(u32, [f64; 2])],
+        worst_imr: f64,
+    ) -> Result<f64, MeshError> {
+        let vertices = points.len();
+        let count = self.free().len();
+        let missing = (vertices < count).then_some(vertices as u32);
+        let unknown = moves.iter().map(|&(v, _)| v).find(|&v| v as usize >= count);
+        if let Some(vertex) = missing.or(unknown) {
+            let vertices = vertices.min(count);
+            return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
+        }
+        let is_finite = |to: &[f64; 2]| to.iter().all(|x| x.is_finite());
+        if let Some(&(vertex, _)) = moves.iter().find(|(_, to)| !is_finite(to)) {
+            return Err(MeshError::NotFinite { vertex });
+        }
+
+        let ways = Ways::new(points, moves);
+        let mut triangles: Vec<u32> =
+            ways.0.iter().flat_map(|way| self.star(way.vertex)).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let limited: Vec<([u32; 3], f64)> = triangles
+            .into_iter()
+            .map(|t| self.triangles()[t as usize])
+            .filter(|corners| predicates::orientation(points, corners) > 0.0)
+            .map(|corners| (corners, worst_imr.max(imr(points, &corners) * (1.0 + ROUNDING))))
+            .collect();
+
+        let gives_way =
+            |(corners, limit): &([u32; 3], f64)| ways.gives_way(points, corners, *limit);
+        let mut share = limited.iter().map(gives_way).fold(1.0, f64::min);
+        // The share is exact but for rounding, and then points are rounded: a little less, until it is exact.
+        let mut less = f64::EPSILON;
+        loop {
+            ways.go(points, share);
+            let holds = |(corners, limit): &([u32; 3], f64)| {
+                predicates::orientation(points, corners) > 0.0
+                    && imr(points, corners) <= limit * (1.0 + ROUNDING)
+            };
+            if share == 0.0 || limited.iter().all(holds) {
+                return Ok(share);
+            }
+            share = if less < 1.0 { share * (1.0 - less) } else { 0.0 };
+            less *= 8.0;
+        }
+    }
+}
+
+/// Where a vertex is, and where it is to go.
+struct Way {
+    vertex: u32,
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
+/// One way for each vertex that moves, ascending.
+struct Ways(Vec<Way>);
+
+impl Ways {
+    fn new(points: &[[f64; 2]], moves: &[(u32, [f64; 2])]) -> Self {
+        let way = |&(vertex, to): &(u32, [f64; 2])| {
+            let from = points[vertex as usize];
+            Way { vertex, from, to }
+        };
+        let mut ways: Vec<Way> = moves.iter().rev().map(way).collect();
+        ways.sort_by_key(|way| way.vertex);
+        ways.dedup_by_key(|way| way.vertex);
+        Self(ways)
+    }
+
+    fn go(&self, points: &mut [[f64; 2]], share: f64) {
+        for &Way { vertex, from, to } in &self.0 {
+            let between = |i: usize| from[i] + share * (to[i] - from[i]);
+            points[vertex as usize] = if share == 1.0 { to } else { [between(0), between(1)] };
+        }
+    }
+
+    /// The displacement of a vertex.
+    fn of(&self, vertex: u32) -> [f64; 2] {
+        match self.0.binary_search_by_key(&vertex, |way| way.vertex) {
+            Ok(i) => minus(self.0[i].to, self.0[i].from),
+            Err(_) => [0.0; 2],
+        }
+    }
+
+    /// The share of the ways at which a triangle's inverse mean ratio, L / (2√3 D) with L the sum of the
+    /// squared lengths and D the doubled area, exceeds `limit`: the least root of D - L / (2√3 limit),
+    /// a quadratic.
+    fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
+        let [p, q, r] = corners.map(|v| points[v as usize]);
+        let [dp, dq, dr] = corners.map(|v| self.of(v));
+        let edges = [minus(q, p), minus(r, p), minus(dq, dp), minus(dr, dp)];
+        // In the triangle's own unit, where nothing overflows.
+        let unit = edges.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let [e, f, de, df] = edges.map(|edge| edge.map(|x| x / unit));
+        let [c, dc] = [minus(f, e), minus(df, de)];
+        let weight = 1.0 / (2.0 * 3f64.sqrt() * limit);
+        let lengths = |u: [[f64; 2]; 3], v: [[f64; 2]; 3]| {
+            (0..3).map(|i| u[i][0] * v[i][0] + u[i][1] * v[i][1]).sum::<f64>() * weight
+        };
+        let (still, moving) = ([e, f, c], [de, df, dc]);
+        least_root(
+            cross(e, f) - lengths(still, still),
+            cross(e, df) + cross(de, f) - 2.0 * lengths(still, moving),
+            cross(de, df) - lengths(moving, moving),
+        )
+    }
+}
+
+/// The least positive t with constant + slope t + bend t² = 0; infinite if there is none.
+fn least_root(constant: f64, slope: f64, bend: f64) -> f64 {
+    let discriminant = slope * slope - 4.0 * bend * constant;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // Both roots by the formula that does not cancel.
+    let half = -0.5 * (slope + discriminant.sqrt().copysign(slope));
+    let roots = [half / bend, constant / half].into_iter();
+    roots.filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
+}
+
+fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+    [p[0] - q[0], p[1] - q[1]]
+}
+
+fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
+    u[0] * v[1] - u[1] * v[0]
+}
+
+/// Inverse mean ratio of a triangle that is not flat.
+fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
+    let [p, q, r] = corners.map(|v| points[v as usize]);
+    let corner = Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 };
+    Metric::Imr.quality(&corner)
+}

@@ -1,0 +1,252 @@
+//! What hangs together in a mesh: consistent windings, the boundary, one-rings.
+
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::parallel::counting_sort::Groups;
+use crate::topology::predicates;
+use crate::topology::stars::{close, outer_edge, stars};
+use crate::topology::winding::{NONE, are_positive, neighbors, wind};
+
+/// The triangles of a mesh made counter-clockwise, and its free vertices. Triangles that are so already stay those
+/// of the mesh, which is borrowed for them.
+#[derive(Clone, Debug)]
+pub struct Topology<'m> {
+    triangles: Cow<'m, [[u32; 3]]>,
+    free: Vec<bool>,
+    /// The triangles at each vertex, unless nobody has asked for them since they were forgotten.
+    stars: OnceLock<Groups>,
+}
+
+impl<'m> Topology<'m> {
+    /// Checks the mesh and finds its windings, boundary and free vertices.
+    ///
+    /// Windings are made consistent across shared edges, and each edge-connected part
+    /// counter-clockwise on the whole. A vertex is free unless it lies on the boundary, is listed
+    /// in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
+    ///
+    /// # Errors
+    /// What is no 2D triangle mesh at all: see [`MeshError`]. Whether it is feasible and has a free
+    /// vertex is for [`check_smoothable`](Self::check_smoothable) to say.
+    pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
+        let Mesh { points, triangles, fixed } = mesh;
+        check_indices(mesh)?;
+        let mut stars = stars(points.len(), triangles);
+        check_size(points, &stars)?;
+        let mut free = vec![false; points.len()];
+        // What most meshes are, all consistent and counter-clockwise, is seen from the stars alone.
+        let triangles =
+            if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
+                Cow::Borrowed(triangles.as_slice())
+            } else {
+                let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
+                close(&wound, &mut stars, &mut free);
+                Cow::Owned(wound)
+            };
+        for &v in fixed {
+            free[v as usize] = false;
+        }
+        Ok(Self { triangles, free, stars: stars.into() })
+    }
+
+    /// The same with triangles of its own, which does not borrow the mesh.
+    pub fn into_owned(self) -> Topology<'static> {
+        let Self { triangles, free, stars } = self;
+        Topology { triangles: Cow::Owned(triangles.into_owned()), free, stars }
+    }
+
+    /// Checks that there is something to smooth, and that smoothing can keep what it needs.
+    ///
+    /// # Errors
+    /// [`MeshError::Infeasible`] if a triangle is inverted or flat at `points`,
+    /// [`MeshError::NothingFree`] if no vertex is free.
+    pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        predicates::check(points, &self.triangles)?;
+        match self.free.contains(&true) {
+            true => Ok(()),
+            false => Err(MeshError::NothingFree { vertices: points.len() }),
+        }
+    }
+
+    /// The triangles in the mesh's order, each counter-clockwise.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Whether each vertex is free to move.
+    pub fn free(&self) -> &[bool] {
+        &self.free
+    }
+
+    /// Number of free vertices.
+    pub fn free_count(&self) -> usize {
+        self.free.iter().filter(|&&f| f).count()
+    }
+
+    /// The triangles at a vertex: counter-clockwise around a free one, starting with the least.
+    pub fn star(&self, vertex: u32) -> &[u32] {
+        self.stars.get_or_init(|| self.find_stars()).of(vertex as usize)
+    }
+
+    /// Gives up the memory of the stars. They are found again when one is asked for.
+    pub(crate) fn forget_stars(&mut self) {
+        self.stars.take();
+    }
+
+    #[cold]
+    fn find_stars(&self) -> Groups {
+        let mut stars = stars(self.free.len(), &self.triangles);
+        close(&self.triangles, &mut stars, &mut vec![false; self.free.len()]);
+        stars
+    }
+
+    /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the
+    /// second corner of its first triangle. Each neighbor makes a
+    /// triangle of the patch with the vertex and the neighbor after it.
+    pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
+        self.ring_of(free_vertex).collect()
+    }
+
+    /// The same, without memory of its own.
+    #[inline]
+    pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        let star = if self.free[free_vertex as usize] { self.star(free_vertex) } else { &[] };
+        star.iter().map(move |&t| outer_edge(&self.triangles[t as usize], free_vertex).0)
+    }
+}
+
+fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
+    let Mesh { points, triangles, fixed } = mesh;
+    if triangles.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
+        return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
+    }
+    let is_infinite = |p: &[f64; 2]| !(p[0].is_finite() & p[1].is_finite());
+    if let Some(vertex) = first(points, is_infinite) {
+        return Err(MeshError::NotFinite { vertex: vertex as u32 });
+    }
+    let count = points.len() as u32;
+    let is_bad = |t: &[u32; 3]| {
+        let outside = (t[0] >= count) | (t[1] >= count) | (t[2] >= count);
+        outside | (t[0] == t[1]) | (t[1] == t[2]) | (t[2] == t[0])
+    };
+    if let Some(t) = first(triangles, is_bad) {
+        let corners = &triangles[t];
+        for (i, &vertex) in corners.iter().enumerate() {
+            if vertex as usize >= points.len() {
+                let vertices = points.len();
+                return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
+            }
+            if vertex == corners[(i + 1) % 3] {
+                return Err(MeshError::RepeatedVertex { triangle: t, vertex });
+            }
+        }
+    }
+    if let Some(&vertex) = fixed.iter().find(|&&v| v as usize >= points.len()) {
+        let vertices = points.len();
+        return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
+    }
+    Ok(())
+}
+
+/// The first of the items that is bad.
+fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    const CHUNK: usize = 1 << 14;
+    // Looking at all of a chunk goes without branches.
+    let any = |chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
+    let chunk = items.par_chunks(CHUNK).position_first(any)?;
+    items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
+}
+
+/// Checks that coordinates are of a size to compute with. Vertices in no triangle may be anywhere.
+fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
+    let size = |(v, p): (usize, &[f64; 2])| match stars.of(v) {
+        [] => 0.0,
+        _ => p[0].abs().max(p[1].abs()),
+    };
+    let size = points.par_iter().enumerate().map(size).reduce(|| 0.0, f64::max);
+    match size {
+        1e-100..=1e100 => Ok(()),
+        _ => Err(MeshError::OutOfRange { size }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square with its center, counter-clockwise but for the third triangle.
+    fn fan() -> Mesh {
+        Mesh {
+            points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],
+            triangles: vec![[0, 1, 4], [1, 2, 4], [2, 4, 3], [3, 0, 4]],
+            fixed: vec![],
+        }
+    }
+
+    #[test]
+    fn mixed_windings_are_normalized() {
+        let mut mesh = fan();
+        let topology = Topology::new(&mesh).unwrap();
+        assert_eq!(topology.triangles()[2], [2, 3, 4]);
+        assert_eq!(topology.free(), [false, false, false, false, true]);
+        assert_eq!(topology.ring(4), [0, 1, 2, 3]);
+        mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        let clockwise = Topology::new(&mesh).unwrap();
+        assert!(predicates::check(&mesh.points, clockwise.triangles()).is_ok());
+    }
+
+    #[test]
+    fn constraint_vertices_are_not_free() {
+        let mesh = Mesh { fixed: vec![4], ..fan() };
+        let topology = Topology::new(&mesh).unwrap();
+        let error = topology.check_smoothable(&mesh.points).unwrap_err();
+        assert_eq!(error, MeshError::NothingFree { vertices: 5 });
+    }
+
+    #[test]
+    fn folds_and_flat_triangles_are_refused() {
+        let mut mesh = fan();
+        let refusal =
+            |mesh: &Mesh| Topology::new(mesh).unwrap().check_smoothable(&mesh.points).unwrap_err();
+        mesh.points[4] = [1.0, -0.5];
+        let error = refusal(&mesh);
+        let vertices = [0, 1, 4];
+        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: false });
+        mesh.points[4] = [1.0, 0.0];
+        let error = refusal(&mesh);
+        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: true });
+    }
+
+    #[test]
+    fn an_edge_of_three_triangles_is_refused() {
+        let mut mesh = fan();
+        mesh.triangles.push([0, 4, 2]);
+        let error = Topology::new(&mesh).unwrap_err();
+        assert!(
+            matches!(error, MeshError::EdgeOfThree { ref triangles, .. } if triangles.len() == 3)
+        );
+    }
+
+    #[test]
+    fn bad_indices_are_refused() {
+        let mut mesh = fan();
+        mesh.triangles[1][2] = 9;
+        let error = Topology::new(&mesh).unwrap_err();
+        let expected = MeshError::IndexOutOfRange { triangle: Some(1), vertex: 9, vertices: 5 };
+        assert_eq!(error, expected);
+        mesh.triangles[1] = [1, 2, 1];
+        let error = Topology::new(&mesh).unwrap_err();
+        assert_eq!(error, MeshError::RepeatedVertex { triangle: 1, vertex: 1 });
+        mesh = fan();
+        mesh.points[3][1] = 1e200;
+        assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::OutOfRange { size: 1e200 });
+        mesh.points[3][1] = f64::NAN;
+        assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::NotFinite { vertex: 3 });
+    }
+}

@@ -1,0 +1,156 @@
+//! The triangles at each vertex, and whether they close a cycle around it.
+
+use rayon::prelude::*;
+
+use crate::parallel::counting_sort::Groups;
+
+/// The triangles at each vertex, in ascending order.
+pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
+    Groups::new(triangles.len(), vertices, |t| triangles[t])
+}
+
+/// Notes in `closed` around which vertices the triangles close one cycle, and sorts those of each by it. False, with
+/// notes of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
+/// two triangles meet.
+pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
+    const CHUNK: usize = 1 << 12;
+    let stars = stars.chunks_mut(CHUNK).into_par_iter();
+    stars
+        .zip(closed.par_chunks_mut(CHUNK))
+        .enumerate()
+        .map(|(chunk, ((bounds, stars), closed))| {
+            let mut edges = Vec::new();
+            let mut consistent = true;
+            for (i, closed) in closed.iter_mut().enumerate() {
+                let vertex = (chunk * CHUNK + i) as u32;
+                let star = (bounds[i] - bounds[0]) as usize..(bounds[i + 1] - bounds[0]) as usize;
+                let star = &mut stars[star];
+                outer_edges(triangles, star, vertex, &mut edges);
+                *closed = chain(&mut edges);
+                if *closed {
+                    for (t, edge) in star.iter_mut().zip(&edges) {
+                        *t = edge.triangle;
+                    }
+                } else {
+                    // Those of a cycle are all different.
+                    consistent &= are_different(&edges);
+                }
+            }
+            consistent
+        })
+        .reduce(|| true, |a, b| a && b)
+}
+
+/// The edge of a triangle that does not touch one of its vertices.
+#[derive(Clone, Copy, Default)]
+struct OuterEdge {
+    from: u32,
+    to: u32,
+    triangle: u32,
+}
+
+/// The ends of a triangle's edge that does not touch the vertex. Without branches: which corner it is nobody foretells.
+#[inline]
+pub(crate) fn outer_edge(corners: &[u32; 3], vertex: u32) -> (u32, u32) {
+    let [is_a, is_b, is_c] = corners.map(|corner| usize::from(corner == vertex));
+    (corners[is_a + 2 * is_b], corners[2 * is_a + is_c])
+}
+
+/// The edges of a vertex's triangles that do not touch it, in the order of the triangles.
+#[inline]
+fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Vec<OuterEdge>) {
+    edges.clear();
+    edges.extend(star.iter().map(|&triangle| {
+        let (from, to) = outer_edge(&triangles[triangle as usize], vertex);
+        OuterEdge { from, to, triangle }
+    }));
+}
+
+/// Sorts edges into one cycle of three or more, each from where the one before it ends; false if they
+/// make none.
+fn chain(edges: &mut [OuterEdge]) -> bool {
+    match edges.len() {
+        0..3 => false,
+        3..=FEW => chain_few(edges),
+        _ => chain_many(edges),
+    }
+}
+
+/// Edges that are compared all at once.
+const FEW: usize = 8;
+
+fn chain_few(edges: &mut [OuterEdge]) -> bool {
+    // No vertex has the number that pads.
+    let mut from = [u32::MAX; FEW];
+    for (from, edge) in from.iter_mut().zip(&*edges) {
+        *from = edge.from;
+    }
+    // Of the edges that start where another ends: their number times FEW, and the sum of their places.
+    let after = |edge: &OuterEdge| {
+        let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
+        (0..FEW).map(|k| found(k) as u32).sum::<u32>()
+    };
+    let mut next = [0; FEW];
+    let mut single = true;
+    for (next, edge) in next.iter_mut().zip(&*edges) {
+        let after = after(edge);
+        single &= after / FEW as u32 == 1;
+        *next = after as usize % FEW;
+    }
+    if !single {
+        return false;
+    }
+    let mut sorted = [OuterEdge::default(); FEW];
+    let mut at = 0;
+    for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
+        // Back at the first before all were met.
+        if i > 0 && at == 0 {
+            return false;
+        }
+        *to = edges[at];
+        at = next[at];
+    }
+    edges.copy_from_slice(&sorted[..edges.len()]);
+    at == 0
+}
+
+fn chain_many(edges: &mut [OuterEdge]) -> bool {
+    let first = edges[0].from;
+    for next in 1..edges.len() {
+        let at = edges[next - 1].to;
+        let Some(found) = edges[next..].iter().position(|e| e.from == at) else {
+            return false;
+        };
+        edges.swap(next, next + found);
+        let again = edges[next + 1..].iter().any(|e| e.from == at);
+        if again || at == first {
+            return false;
+        }
+    }
+    edges[edges.len() - 1].to == first
+}
+
+/// Whether no two edges start at one vertex, nor end at one.
+fn are_different(edges: &[OuterEdge]) -> bool {
+    let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
+    edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vertex_joining_two_fans_stays() {
+        // Two closed fans around one vertex cannot lie flat without overlap, but their topology
+        // must not make a ring of either half.
+        let ring_of = |triangles: &[[u32; 3]]| {
+            let mut edges = Vec::new();
+            outer_edges(triangles, stars(7, triangles).of(0), 0, &mut edges);
+            chain(&mut edges).then(|| edges.iter().map(|e| e.from).collect::<Vec<_>>())
+        };
+        let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
+        assert_eq!(ring_of(&triangles), None);
+        assert_eq!(ring_of(&triangles[..3]), Some(vec![1, 2, 3]));
+    }
+}

@@ -1,0 +1,96 @@
+//! Windings made consistent across edges.
+
+use rayon::prelude::*;
+
+use crate::error::MeshError;
+use crate::parallel::counting_sort::Groups;
+use crate::topology::predicates;
+
+/// No triangle lies across this edge.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// The triangle across each edge (corner i to corner i + 1) of each triangle, or `NONE`.
+pub(crate) fn neighbors(
+    triangles: &[[u32; 3]],
+    stars: &Groups,
+) -> Result<Vec<[u32; 3]>, MeshError> {
+    let across = |(t, corners): (usize, &[u32; 3])| {
+        let mut found = [NONE; 3];
+        for i in 0..3 {
+            let (a, b) = (corners[i], corners[(i + 1) % 3]);
+            let at_edge = |&&o: &&u32| o as usize != t && triangles[o as usize].contains(&b);
+            let mut others = stars.of(a as usize).iter().filter(at_edge);
+            if let Some(&other) = others.next() {
+                found[i] = other;
+                if others.next().is_some() {
+                    let all = stars.of(a as usize).iter().map(|&o| o as usize);
+                    let mut triangles: Vec<_> =
+                        all.filter(|&o| triangles[o].contains(&b)).collect();
+                    triangles.sort_unstable();
+                    return Err(MeshError::EdgeOfThree { edge: [a, b], triangles });
+                }
+            }
+        }
+        Ok(found)
+    };
+    triangles.par_iter().enumerate().map(across).collect()
+}
+
+/// Whether a triangle's corners run from a to b somewhere.
+fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
+    (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
+}
+
+/// The triangles with windings made consistent across edges, each edge-connected part
+/// counter-clockwise on the whole.
+pub(crate) fn wind(
+    points: &[[f64; 2]],
+    triangles: &[[u32; 3]],
+    across: &[[u32; 3]],
+) -> Vec<[u32; 3]> {
+    let mut wound = triangles.to_vec();
+    let mut seen = vec![false; triangles.len()];
+    let mut part = Vec::new();
+    for seed in 0..triangles.len() {
+        if seen[seed] {
+            continue;
+        }
+        seen[seed] = true;
+        part.clear();
+        part.push(seed as u32);
+        let mut doubled_area = 0.0;
+        let mut next = 0;
+        while let Some(&t) = part.get(next) {
+            next += 1;
+            let corners = wound[t as usize];
+            doubled_area += predicates::doubled_area(points, &corners);
+            // `across` belongs to the corners as given; a swap of the last two reverses its order.
+            let given = triangles[t as usize];
+            for (i, &other) in across[t as usize].iter().enumerate() {
+                if other == NONE || seen[other as usize] {
+                    continue;
+                }
+                let (mut a, mut b) = (given[i], given[(i + 1) % 3]);
+                if corners != given {
+                    (a, b) = (b, a);
+                }
+                if runs(&wound[other as usize], a, b) {
+                    wound[other as usize].swap(1, 2);
+                }
+                seen[other as usize] = true;
+                part.push(other);
+            }
+        }
+        if doubled_area < 0.0 {
+            for &t in &part {
+                wound[t as usize].swap(1, 2);
+            }
+        }
+    }
+    wound
+}
+
+/// Whether every triangle is counter-clockwise, to rounding.
+pub(crate) fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
+    triangles.par_iter().with_min_len(1 << 12).all(|t| predicates::doubled_area(points, t) > 0.0)
+}
