@@ -4,9 +4,9 @@ use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-use super::newton::Step;
-use super::objective::{Along, mean_excess, mean_excess_along};
-use super::{sweep, vcycle};
+use crate::cpu::newton::Step;
+use crate::cpu::objective::{Along, mean_excess, mean_excess_along};
+use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Metric;

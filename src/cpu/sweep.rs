@@ -5,11 +5,12 @@ use fearless_simd::{Level, dispatch};
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-use super::lanes::{LANES, Points};
-use super::newton::{self, Step};
-use super::patch::{self, Patches};
+use crate::cpu::lanes::{LANES, Points};
+use crate::cpu::newton::{self, Step};
+use crate::cpu::patch::{self, Patches};
 use crate::layout::Problem;
 use crate::metric::{Metric, specialize};
+use crate::run::Derivatives;
 
 /// Vertices of one task.
 const CHUNK: usize = Problem::BLOCK;
@@ -17,18 +18,15 @@ const CHUNK: usize = Problem::BLOCK;
 /// Positions that one task copies: fewer are not worth a second thread.
 const COPY: usize = 1 << 14;
 
-/// What is done at a vertex.
-enum Visit<'s> {
-    Step(&'s Step),
-    Gradient { sharpness: u32 },
-}
-
 /// What a visit leaves at a vertex.
 trait Found: Send {
+    /// Whether the visit steps, or finds the gradient: known to the compiler, as each takes a minute to compile.
+    const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
 
 impl Found for DVec2 {
+    const STEPS: bool = true;
     #[inline(always)]
     fn new(found: [f64; 2]) -> Self {
         found.into()
@@ -36,6 +34,7 @@ impl Found for DVec2 {
 }
 
 impl Found for Vec2 {
+    const STEPS: bool = false;
     #[inline(always)]
     fn new(found: [f64; 2]) -> Self {
         DVec2::from(found).as_vec2()
@@ -54,7 +53,7 @@ pub(crate) fn sweep(
         let first = color.start as usize;
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of one color read each other's neighbors only, never each other.
-        visit(metric, problem, positions, first, &Visit::Step(step), moved);
+        visit(metric, problem, positions, first, step, moved);
         let positions = positions[first..][..color.len()].par_chunks_mut(COPY);
         positions.zip(moved.par_chunks(COPY)).for_each(|(to, from)| to.copy_from_slice(from));
     }
@@ -69,11 +68,11 @@ pub(crate) fn gradient(
     found: &mut Vec<Vec2>,
 ) {
     found.resize(problem.free_count(), Vec2::ZERO);
+    let step = Step { omega: 1.0, inner: 1, sharpness, derivatives: Derivatives::Analytic };
     // Vertices of one degree stand together within a color.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
-        let what = Visit::Gradient { sharpness };
-        visit(metric, problem, positions, color.start as usize, &what, found);
+        visit(metric, problem, positions, color.start as usize, &step, found);
     }
 }
 
@@ -82,7 +81,7 @@ fn visit<T: Found>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
-    what: &Visit<'_>,
+    step: &Step,
     found: &mut [T],
 ) {
     let level = Level::new();
@@ -90,7 +89,7 @@ fn visit<T: Found>(
         let first = first + chunk * CHUNK;
         specialize!(metric, METRIC => {
             dispatch!(level, simd => {
-                visit_all(simd, METRIC, problem, positions, first, what, found);
+                visit_all(simd, METRIC, problem, positions, first, step, found);
             });
         });
     });
@@ -104,7 +103,7 @@ fn visit_all<S: Simd, T: Found>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
-    what: &Visit<'_>,
+    step: &Step,
     found: &mut [T],
 ) {
     let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
@@ -122,9 +121,9 @@ fn visit_all<S: Simd, T: Found>(
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
         let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);
         let at = patch::points(simd, positions, vertices);
-        let [x, y] = match what {
-            Visit::Step(step) => newton::visit(metric, &patches, at, step),
-            Visit::Gradient { sharpness } => patches.derivatives(metric, at, *sharpness).gradient,
+        let [x, y] = match T::STEPS {
+            true => newton::visit(metric, &patches, at, step),
+            false => patches.derivatives(metric, at, step.sharpness).gradient,
         };
         let count = count as usize;
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
