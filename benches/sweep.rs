@@ -12,8 +12,9 @@ mod support;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use gpu_smooth::gpu::GpuEngine;
-use gpu_smooth::{CpuEngine, Engine, Gpu, Metric, Options, Problem, prepare};
+use gpu_smooth::internal::run_on_gpu;
+use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
+use gpu_smooth::{Gpu, Metric, Options};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -62,7 +63,7 @@ fn cases(engines: &[bool]) -> Vec<Case> {
 }
 
 impl Case {
-    fn engine(&self) -> Option<Box<dyn Engine>> {
+    fn engine(&self) -> Option<Box<dyn Stepwise>> {
         let problem = problem(self.size);
         let options = Options {
             scheme: self.metric.into(),
@@ -72,10 +73,10 @@ impl Case {
         };
         let plan = options.plan();
         if self.on_gpu {
-            let engine = GpuEngine::new(gpu()?, problem, problem.positions(), plan);
+            let engine = run_on_gpu(gpu()?, problem, problem.positions(), plan);
             Some(Box::new(engine.unwrap()))
         } else {
-            Some(Box::new(CpuEngine::new(problem, problem.positions().to_vec(), plan)))
+            Some(Box::new(run_on_cpu(problem, problem.positions(), plan)))
         }
     }
 }

@@ -7,8 +7,10 @@ struct Part {
     count: u32,
     omega: f32,
     sharpness: u32,
+    // The inverse mean ratio up to which any step may flatten a triangle, where the metric is GUARDED.
+    shape_guard: f32,
     // What of `ring` is in front of the binding.
-    @size(16) ring_base: u32,
+    @size(12) ring_base: u32,
 }
 
 @group(0) @binding(1) var<uniform> part: Part;

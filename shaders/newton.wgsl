@@ -54,7 +54,7 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     var value = 0.0;
     var gradient = vec2(0.0);
     var hessian = vec3(0.0);
-    var limit = SHAPE_GUARD;
+    var limit = part.shape_guard;
     let width = difference_width(p);
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {

@@ -30,7 +30,7 @@ fn objective(
             let s = two_sum(sums[i].x, values[i]);
             sums[i] = vec2(s.x, sums[i].y + s.y);
         }
-        worst = max(worst, shape_excess(corner, values));
+        worst = max(worst, shape_excess(corner));
     }
     for (var i = 0u; i < TRACKED; i++) {
         partial_sums[i * stride + id.x] = sums[i];

@@ -30,19 +30,9 @@ fn doubled_area(t: Corner) -> f32 {
     return cross2(t.a, t.b);
 }
 
-// Gradient of the doubled area.
-fn area_gradient(t: Corner) -> vec2<f32> {
-    return vec2(t.a.y - t.b.y, t.b.x - t.a.x);
-}
-
 fn squared_length_sum(t: Corner) -> f32 {
     let c = t.b - t.a;
     return dot(t.a, t.a) + dot(t.b, t.b) + dot(c, c);
-}
-
-// xx, xy, yy of u vᵀ + v uᵀ.
-fn symmetric(u: vec2<f32>, v: vec2<f32>) -> vec3<f32> {
-    return vec3(2.0 * u.x * v.x, u.x * v.y + u.y * v.x, 2.0 * u.y * v.y);
 }
 
 // The corner seen from its vertex moved by d.

@@ -7,7 +7,7 @@ struct Publish {
     triangles: u32,
     padding: vec2<u32>,
     // By metric: what the sums leave out, per triangle; 0 where nothing is summed.
-    ideal_squared: array<vec4<f32>, 2>,
+    ideal_squared: array<vec4<f32>, SLOT_VECTORS>,
 }
 
 @group(0) @binding(0) var<uniform> publish_to: Publish;

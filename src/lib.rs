@@ -96,20 +96,22 @@ pub mod validity {
     pub use crate::topology::{certify, infeasible};
 }
 
-pub use cpu::CpuEngine;
+/// What benchmarks, experiments and this library's own tests drive by hand. It changes without notice.
+#[doc(hidden)]
+pub mod internal;
+
 pub use error::{GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
 pub use file::{Format, MeshFile, Place};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,
 };
-pub use layout::{Coloring, Problem, UNCOLORED, prepare};
 pub use mesh::Mesh;
-pub use metric::{Corner, Dual, Metric, Properties, Real, Scheme, Stiffness, UnknownMetric};
+pub use metric::{Corner, Metric, Properties, Scheme, Stiffness, UnknownMetric};
 pub use quality::Quality;
 pub use run::{
-    Derivatives, Desired, Engine, Goal, Method, Objectives, Observer, Options, Phase, Plan,
-    Progress, Sharpness, Stop, StopRule,
+    Derivatives, Desired, Goal, Method, Objectives, Observer, Options, Phase, Progress, Sharpness,
+    Stop,
 };
 pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
 pub use topology::{Topology, signed_area};

@@ -1,8 +1,7 @@
 //! How good a mesh is, in numbers.
 
-use rayon::prelude::*;
-
 use crate::metric::{Corner, Metric};
+use crate::parallel::map_parts;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
@@ -60,24 +59,19 @@ impl Quality {
     /// Measures `points` with the triangles of `topology`.
     pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Self {
         let triangles = topology.triangles();
-        let areas = triangles.par_chunks(1024);
-        let areas: Vec<f64> = areas
-            .map(|chunk| chunk.iter().map(|t| predicates::doubled_area(points, t)).sum())
-            .collect();
+        let areas = map_parts(triangles.chunks(1024), |_, chunk| {
+            chunk.iter().map(|t| predicates::doubled_area(points, t)).sum::<f64>()
+        });
         let mean_area = 0.5 * areas.iter().sum::<f64>() / triangles.len() as f64;
         let inverted = predicates::infeasible(points, triangles);
 
-        let tallies: Vec<Tally> = triangles
-            .par_chunks(1024)
-            .enumerate()
-            .map(|(chunk, part)| {
-                let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
-                    let movable = corners.iter().any(|&v| topology.free()[v as usize]);
-                    tally.and(&one(points, corners, mean_area, chunk * 1024 + t, movable))
-                };
-                part.iter().enumerate().fold(Tally::EMPTY, add)
-            })
-            .collect();
+        let tallies = map_parts(triangles.chunks(1024), |chunk, part| {
+            let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
+                let movable = corners.iter().any(|&v| topology.free()[v as usize]);
+                tally.and(&one(points, corners, mean_area, chunk * 1024 + t, movable))
+            };
+            part.iter().enumerate().fold(Tally::EMPTY, add)
+        });
         let total = tallies.iter().fold(Tally::EMPTY, Tally::and);
 
         let angle = |cotangent: f64| 1f64.atan2(cotangent).to_degrees();
@@ -128,7 +122,7 @@ fn one(
         cotangent(to(q, r), to(q, p)),
         cotangent(to(r, p), to(r, q)),
     ];
-    let imr = Metric::Ar.quality(&corner);
+    let imr = corner.inverse_mean_ratio();
     Tally {
         sums,
         cotangents: [

@@ -5,19 +5,20 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::cpu::mean_excess;
+use crate::cpu::{CpuEngine, mean_excess};
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, MeshSize, Waiting};
+use crate::gpu::{Gpu, GpuEngine, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::quality::Quality;
-use crate::run::Objectives;
-use crate::run::{Desired, Goal, Options};
-use crate::run::{Observer, Phase, Place, Run};
-use crate::run::{Sharpness, Stop};
+use crate::run::opening::{self, Opened};
+use crate::run::{
+    Desired, Goal, Method, NOISE, Objectives, Observer, Options, Phase, Plan, Sharpness, Stop,
+    Strategy, drive, shape_guard,
+};
 use crate::topology::{Topology, certify};
 
 /// Where sweeps are done.
@@ -39,7 +40,8 @@ pub struct Smoother<'a> {
 /// What a run made of the mesh.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric.
+    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh as it was
+    /// where f of that state, on these very values, is not lower by more than rounding.
     /// Every triangle is feasible by exact predicates on these values.
     pub points: Vec<[f64; 2]>,
     /// Why the run ended.
@@ -58,6 +60,9 @@ pub struct Outcome {
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
     pub history: Vec<Objectives>,
+    /// The share of f that is estimated to be left to gain at the end, from the decay of the last sweeps; `None` where
+    /// that says nothing.
+    pub remaining: Option<f64>,
     /// How the goal was met, if there was one.
     pub goal: Option<GoalOutcome>,
     /// Vertices that went back where they were, because rounding had inverted a triangle.
@@ -137,11 +142,11 @@ impl<'a> Smoother<'a> {
         backend: &Backend,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
-        let place = match backend {
-            Backend::Cpu => Place::Cpu,
-            Backend::Gpu(gpu) => Place::Gpu(gpu, Waiting::Block),
+        let device = match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
         };
-        pollster::block_on(self.run_at(options, place, observe))
+        pollster::block_on(self.run_at(options, device, observe))
     }
 
     /// Smooths the mesh on a device without blocking the thread while the device works.
@@ -158,29 +163,29 @@ impl<'a> Smoother<'a> {
         gpu: &Gpu,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
-        self.run_at(options, Place::Gpu(gpu, Waiting::Await), observe).await
+        self.run_at(options, Some((gpu, Waiting::Await)), observe).await
     }
 
     async fn run_at(
         &self,
         options: &Options,
-        place: Place<'_>,
+        device: Option<(&Gpu, Waiting)>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
-        if let Place::Gpu(gpu, _) = place {
+        if let Some((gpu, _)) = device {
             gpu.check_size(self.size())?;
         }
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         let goal = match options.goal {
-            Some(goal) => Some(self.aim(goal, options, place, observe).await?),
+            Some(goal) => Some(self.aim(goal, options, device, observe).await?),
             None => None,
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
-        let run = Run { problem: &self.problem, place, phase: Phase::Smoothing };
+        let run = Run { problem: &self.problem, device, phase: Phase::Smoothing };
         let monotone = options.plan_to(target).is_monotone();
         let end = run.sweep(options, target, self.problem.positions(), observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
@@ -192,13 +197,22 @@ impl<'a> Smoother<'a> {
             };
             (0..end.history.len()).fold(0, better)
         };
+        let mut points = self.problem.denormalize(self.mesh, &end.positions);
+        let mut returned = self.certify(&mut points);
+        // Judged as they will stand: rounding, and vertices that went back, may have cost more than was gained, and a
+        // device moves vertices of an optimal mesh by its own rounding.
+        let written = self.objective(base, &self.problem.normalized(&points, end.positions));
+        let gains = initial - written > NOISE * initial;
+        if !gains {
+            points.clone_from(&self.mesh.points);
+            returned = 0;
+        }
+        let best = if gains { written } else { initial };
         let goal = goal.map(|goal| {
-            let gone = (initial - f(&end.history[best_sweep])) / (initial - goal.desired);
+            let gone = (initial - best) / (initial - goal.desired);
             // Nothing to go is all the way gone.
             GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
         });
-        let mut points = self.problem.denormalize(self.mesh, &end.positions);
-        let returned = self.certify(&mut points);
         Ok(Outcome {
             points,
             stop: end.stop,
@@ -206,7 +220,8 @@ impl<'a> Smoother<'a> {
             corrections: end.corrections,
             opening_sweeps: end.opening_sweeps,
             levels_left_out: end.levels_left_out,
-            best_sweep: best_sweep as u32,
+            best_sweep: if gains { best_sweep as u32 } else { 0 },
+            remaining: end.remaining,
             history: end.history,
             goal,
             returned,
@@ -223,7 +238,7 @@ impl<'a> Smoother<'a> {
         &self,
         goal: Goal,
         options: &Options,
-        place: Place<'_>,
+        device: Option<(&Gpu, Waiting)>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<GoalOutcome, SmoothError> {
         let Goal { fraction, desired } = goal;
@@ -239,10 +254,10 @@ impl<'a> Smoother<'a> {
             sharpness: Sharpness::CONTINUED,
             ..Options::default()
         };
-        let run = Run { problem: &self.problem, place, phase: Phase::Reference };
+        let run = Run { problem: &self.problem, device, phase: Phase::Reference };
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
-        if !matches!(base, Metric::Imr | Metric::Ar) {
+        if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
             let after_imr = run.sweep(&imr, None, start, observe).await?;
             starts.push((format!("imr, then {base}"), after_imr.positions));
@@ -258,6 +273,94 @@ impl<'a> Smoother<'a> {
         }
         let origin = format!("over-relaxed; {}", describe.join("; "));
         Ok(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
+    }
+}
+
+/// Sweeps from some positions to the end, on the CPU or a device.
+struct Run<'s> {
+    problem: &'s Problem,
+    device: Option<(&'s Gpu, Waiting)>,
+    phase: Phase,
+}
+
+/// What a run leaves, the sweeps that opened it included.
+struct Ran {
+    history: Vec<Objectives>,
+    positions: Vec<DVec2>,
+    corrections: u32,
+    opening_sweeps: u32,
+    levels_left_out: bool,
+    remaining: Option<f64>,
+    stop: Stop,
+}
+
+impl Run<'_> {
+    async fn sweep(
+        &self,
+        options: &Options,
+        target: Option<f64>,
+        from: &[DVec2],
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Ran, SmoothError> {
+        let problem = self.problem;
+        let mut plan = options.plan_to(target);
+        plan.shape_guard = shape_guard(problem, from, &plan.scheme);
+        let (device, opened) = self.opened(&plan, from).await?;
+        let done = opened.as_ref().map_or(0, Opened::sweeps);
+        plan.stop.max_sweeps -= done;
+        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
+        let corrected = options.is_multilevel();
+        let must = options.method == Method::Multilevel;
+        let strategy = Strategy::new(problem, &plan, corrected);
+        let at = (self.phase, done);
+        let end = match device {
+            None => {
+                let engine = CpuEngine::new(problem, from.to_vec(), &plan);
+                drive(engine, &plan, strategy, must, at, observe).await?
+            }
+            Some((gpu, waiting)) => {
+                let steps = Strategy::steps(&plan, corrected);
+                // A run with corrections is judged by the host: on the device it never ends.
+                let judged = if corrected { plan.clone().endless() } else { plan.clone() };
+                let engine = GpuEngine::new(gpu, problem, from, judged, steps, waiting)?;
+                drive(engine, &plan, strategy, must, at, observe).await?
+            }
+        };
+        let remaining = end.history.remaining();
+        let (history, positions) = match opened {
+            Some(opened) => opened.followed_by(end.history, end.positions),
+            None => (end.history.into_log(), end.positions),
+        };
+        let opening_sweeps = match (self.device, device) {
+            (Some(_), None) => history.len() as u32 - 1,
+            _ => done,
+        };
+        Ok(Ran {
+            history,
+            positions,
+            corrections: end.corrections,
+            opening_sweeps,
+            levels_left_out: end.levels_left_out,
+            remaining,
+            stop: end.stop,
+        })
+    }
+
+    /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on
+    /// the CPU that open it; or all of the run, if they cannot.
+    async fn opened(
+        &self,
+        plan: &Plan,
+        from: &[DVec2],
+    ) -> Result<(Option<(&Gpu, Waiting)>, Option<Opened>), SmoothError> {
+        if self.device.is_none() || !opening::is_needed(self.problem, from) {
+            return Ok((self.device, None));
+        }
+        let engine = CpuEngine::new(self.problem, from.to_vec(), plan);
+        Ok(match opening::open(self.problem, engine, plan).await? {
+            Some(opened) => (self.device, Some(opened)),
+            None => (None, None),
+        })
     }
 }
 

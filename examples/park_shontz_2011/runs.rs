@@ -3,11 +3,9 @@
 use std::collections::HashSet;
 use std::time::Instant;
 
-use gpu_smooth::gpu::GpuEngine;
-use gpu_smooth::{
-    Coloring, Corner, CpuEngine, Derivatives, Engine, Gpu, Mesh, Metric, Plan, Problem, Scheme,
-    Sharpness, StopRule, Topology,
-};
+use gpu_smooth::internal::run_on_gpu;
+use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
+use gpu_smooth::{Corner, Derivatives, Gpu, Mesh, Metric, Scheme, Sharpness, Topology};
 
 use super::domains::{Domain, started};
 use super::store::{BINS, DesiredRecord, DistributionRecord, MeshRecord, RunRecord, Sample};
@@ -81,7 +79,7 @@ impl Runner {
                 stop: StopRule { target: None, tolerance: 1e-7, max_sweeps: self.reference_sweeps },
                 ..plain(metric.into())
             };
-            let mut engine = CpuEngine::new(&problem, problem.positions().to_vec(), plan);
+            let mut engine = run_on_cpu(&problem, problem.positions(), plan);
             let log = engine.advance(self.reference_sweeps)?;
             let f = log.iter().filter_map(|o| o.of(metric)).fold(f64::INFINITY, f64::min);
             let stop = engine.stop().map_or("", |stop| stop.name());
@@ -160,11 +158,11 @@ impl Runner {
         place: Place,
         problem: &'e Problem,
         plan: Plan,
-    ) -> Result<Box<dyn Engine + 'e>> {
+    ) -> Result<Box<dyn Stepwise + 'e>> {
         let start = problem.positions();
         Ok(match (place, &self.gpu) {
-            (Place::Cpu, _) => Box::new(CpuEngine::new(problem, start.to_vec(), plan)),
-            (Place::Gpu, Some(gpu)) => Box::new(GpuEngine::new(gpu, problem, start, plan)?),
+            (Place::Cpu, _) => Box::new(run_on_cpu(problem, start, plan)),
+            (Place::Gpu, Some(gpu)) => Box::new(run_on_gpu(gpu, problem, start, plan)?),
             (Place::Gpu, None) => return Err("there is no GPU".into()),
         })
     }
@@ -188,7 +186,7 @@ impl Runner {
         history: &mut [Sample],
     ) -> Result<()> {
         let plan = Plan { track_all: true, ..plan.clone() };
-        let mut engine = CpuEngine::new(problem, problem.positions().to_vec(), plan);
+        let mut engine = run_on_cpu(problem, problem.positions(), plan);
         let log = engine.advance(history.len() as u32 - 1)?;
         for (sample, objectives) in history.iter_mut().zip(&log) {
             sample.edge = objectives.of(Metric::Edge);
@@ -213,6 +211,7 @@ fn plain(scheme: Scheme) -> Plan {
         sharpness: Sharpness::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
         track_all: false,
+        shape_guard: f64::INFINITY,
     }
 }
 

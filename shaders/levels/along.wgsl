@@ -17,7 +17,7 @@ fn is_broken(here: Corner, there: Corner) -> bool {
     if !GUARDED {
         return false;
     }
-    return inverse_mean_ratio(there) > max(SHAPE_GUARD, inverse_mean_ratio(here));
+    return inverse_mean_ratio(there) > max(op.shape_guard, inverse_mean_ratio(here));
 }
 
 fn added(sum: vec2<f32>, value: f32) -> vec2<f32> {

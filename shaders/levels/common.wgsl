@@ -21,7 +21,9 @@ struct LevelOp {
     step: u32,
     out: u32,
     a: f32,
-    @size(12) b: f32,
+    b: f32,
+    // The inverse mean ratio up to which a correction may flatten a triangle, where the metric is GUARDED.
+    @size(8) shape_guard: f32,
 }
 
 @group(0) @binding(1) var<uniform> op: LevelOp;

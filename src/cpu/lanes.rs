@@ -8,6 +8,29 @@ use fearless_simd::{f64x4, mask64x4};
 
 use crate::metric::Real;
 
+/// Evaluates an expression with `$simd` bound to the widest instructions that are worth compiling for: on x86 those of
+/// AVX2 where the processor has them. A body is compiled for each kind, which takes long.
+macro_rules! with_lanes {
+    ($simd:ident => $body:expr) => {{
+        let level = fearless_simd::Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match level.as_avx2() {
+            Some($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            None => {
+                let $simd = fearless_simd::Fallback::new();
+                $body
+            }
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        fearless_simd::dispatch!(level, $simd => $body)
+    }};
+}
+pub(crate) use with_lanes;
+
 /// Numbers side by side.
 pub(crate) const LANES: usize = 4;
 

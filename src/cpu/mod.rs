@@ -1,7 +1,7 @@
 //! Where a run computes on the CPU: all cores, in double precision, four vertices at a time.
 
+mod differences;
 mod engine;
-mod fine;
 mod lanes;
 mod newton;
 mod objective;
@@ -9,6 +9,5 @@ mod patch;
 mod sweep;
 mod vcycle;
 
-pub use engine::CpuEngine;
-pub(crate) use fine::CpuFine;
+pub(crate) use engine::CpuEngine;
 pub(crate) use objective::mean_excess;

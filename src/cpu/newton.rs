@@ -2,26 +2,16 @@
 
 use fearless_simd::prelude::*;
 
+use crate::cpu::differences;
 use crate::cpu::lanes::{Lanes, Mask, Points};
 use crate::cpu::patch::Patches;
-use crate::metric::Metric;
-use crate::metric::{Dual, Real};
-use crate::run::Derivatives;
-use crate::run::plan::line_search;
-
-/// How a visit steps.
-#[derive(Clone, Copy)]
-pub(crate) struct Step {
-    pub(crate) omega: f64,
-    pub(crate) inner: u32,
-    pub(crate) sharpness: u32,
-    pub(crate) derivatives: Derivatives,
-}
+use crate::metric::{Dual, Formulas, Real};
+use crate::run::{Derivatives, Step, line_search};
 
 /// Where the vertices go from `at`.
 #[inline(always)]
 pub(crate) fn visit<S: Simd>(
-    metric: Metric,
+    formulas: impl Formulas,
     patches: &Patches<S>,
     mut at: Points<S>,
     step: &Step,
@@ -29,7 +19,7 @@ pub(crate) fn visit<S: Simd>(
     let mut going = Mask::splat(at[0].simd, true);
     for _ in 0..step.inner {
         let from = at;
-        (at, going) = newton_step(metric, patches, at, going, step);
+        (at, going) = newton_step(formulas, patches, at, going, step);
         if step.inner > 1 && step.derivatives == Derivatives::Analytic {
             going &= !settled(patches, from, at);
         }
@@ -48,33 +38,29 @@ fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mas
     (x * x + y * y).simd_lt(patches.squared_edge(from) * least)
 }
 
-/// The shape guard as it is applied, less its reserve.
-#[inline(always)]
-pub(crate) fn shape_guard(metric: Metric) -> f64 {
-    metric.properties().shape_guard * (1.0 - line_search::GUARD_RESERVE)
-}
-
 /// One Newton step with its line search by those of the vertices that are `going`: where they are
 /// then, and which of them found a step that improves their patch.
 #[inline(always)]
 fn newton_step<S: Simd>(
-    metric: Metric,
+    formulas: impl Formulas,
     patches: &Patches<S>,
     at: Points<S>,
     going: Mask<S>,
     step: &Step,
 ) -> (Points<S>, Mask<S>) {
-    let properties = metric.properties();
+    let properties = step.metric.properties();
     let sum = match step.derivatives {
-        Derivatives::Analytic => patches.derivatives(metric, at, step.sharpness),
-        Derivatives::FiniteDifference => patches.differences(metric, at, step.sharpness),
+        Derivatives::Analytic => patches.derivatives(formulas, at, step.sharpness),
+        Derivatives::FiniteDifference => {
+            differences::derivatives(patches, formulas, at, step.sharpness)
+        }
     };
-    let mut limit = at[0].constant(shape_guard(metric));
-    if properties.shape_guard.is_finite() {
-        limit = Real::max(limit, patches.worst_shape(at));
-    }
+    let limit = step.shape_guard.is_finite().then(|| {
+        let guard = at[0].constant(step.shape_guard);
+        Real::max(guard, patches.worst_shape(at))
+    });
     let ([dx, dy], slope, descends) = descent(&sum, properties.eigenvalue_floor);
-    let squares = sum.value + patches.degree() as f64 * metric.ideal_squared();
+    let squares = sum.value + patches.degree() as f64 * step.metric.ideal_squared();
     let most = sum.value + squares * line_search::SLACK;
     let wanted = slope * line_search::SUFFICIENT_DECREASE;
 
@@ -83,7 +69,7 @@ fn newton_step<S: Simd>(
     let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
     for _ in 0..line_search::TRIALS {
         let to = [at[0] + dx * length, at[1] + dy * length];
-        let (value, feasible) = patches.objective(metric, to, step.sharpness, limit);
+        let (value, feasible) = patches.objective(formulas, to, step.sharpness, limit);
         let mut taken = searching & feasible;
         if !properties.quadratic {
             taken &= value.simd_le(most + wanted * length);

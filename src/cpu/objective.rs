@@ -1,15 +1,13 @@
 //! The objective over all triangles.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch};
 use glam::{DVec2, Vec2};
-use rayon::prelude::*;
 
-use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
-use crate::cpu::newton::shape_guard;
+use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
 use crate::cpu::patch::{inverse_mean_ratio, points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Metric, specialize};
+use crate::metric::{Corner, Formulas, Metric, with_formulas};
+use crate::parallel::map_parts;
 
 /// Triangles of one task.
 const CHUNK: usize = 1024;
@@ -17,13 +15,12 @@ const CHUNK: usize = 1024;
 /// Mean of q² - ideal² over all triangles, in an order of summation that does not depend on the
 /// number of threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    let level = Level::new();
-    let sum = |chunk: &[[u32; 3]]| {
-        specialize!(metric, METRIC => {
-            dispatch!(level, simd => excess(simd, METRIC, problem.mean_area(), positions, chunk))
+    let sum = |_, chunk: &[[u32; 3]]| {
+        with_formulas!(metric, formulas => {
+            with_lanes!(simd => excess(simd, formulas, problem.mean_area(), positions, chunk))
         })
     };
-    let sums: Vec<f64> = problem.triangles().par_chunks(CHUNK).map(sum).collect();
+    let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
     sums.iter().sum::<f64>() / problem.triangles().len() as f64
 }
 
@@ -35,22 +32,22 @@ pub(crate) struct Along<'a> {
     pub(crate) length: f64,
 }
 
-/// The same there, or `None` where a triangle is inverted or flat, or breaks the metric's shape guard and is worse than
-/// without the step.
+/// The mean of q² - ideal² there, or `None` where a triangle is inverted or flat, or has an inverse mean ratio above
+/// `guard` and above what it has without the step.
 pub(crate) fn mean_excess_along(
     metric: Metric,
     problem: &Problem,
     along: &Along<'_>,
+    guard: f64,
 ) -> Option<f64> {
-    let level = Level::new();
-    let sum = |chunk: &[[u32; 3]]| {
-        specialize!(metric, METRIC => {
-            dispatch!(level, simd => {
-                excess_along(simd, METRIC, problem.mean_area(), along, chunk)
+    let sum = |_, chunk: &[[u32; 3]]| {
+        with_formulas!(metric, formulas => {
+            with_lanes!(simd => {
+                excess_along(simd, formulas, problem.mean_area(), along, guard, chunk)
             })
         })
     };
-    let sums: Vec<Option<f64>> = problem.triangles().par_chunks(CHUNK).map(sum).collect();
+    let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
     let sum: Option<f64> = sums.into_iter().sum();
     sum.map(|sum| sum / problem.triangles().len() as f64)
 }
@@ -59,12 +56,12 @@ pub(crate) fn mean_excess_along(
 #[inline(always)]
 fn excess_along<S: Simd>(
     simd: S,
-    metric: Metric,
+    formulas: impl Formulas,
     mean_area: f64,
     along: &Along<'_>,
+    guard: f64,
     triangles: &[[u32; 3]],
 ) -> Option<f64> {
-    let guard = shape_guard(metric);
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     let mut borne = Mask::splat(simd, true);
@@ -79,7 +76,7 @@ fn excess_along<S: Simd>(
             let shape = inverse_mean_ratio(&now);
             borne &= shape.simd_le(guard) | shape.simd_le(inverse_mean_ratio(&before));
         }
-        sum += metric.excess(&now);
+        sum += formulas.excess(&now);
     }
     let mut last = 0.0;
     for t in rest {
@@ -88,10 +85,10 @@ fn excess_along<S: Simd>(
         let before = t.map(|v| along.positions[v as usize]);
         let now = t.map(|v| along.positions[v as usize] + along.step(v) * along.length);
         let (before, now) = (corner(before), corner(now));
-        let shape = Metric::Ar.quality(&now);
-        let kept = guard.is_infinite() || shape <= guard || shape <= Metric::Ar.quality(&before);
+        let shape = now.inverse_mean_ratio();
+        let kept = shape <= guard || shape <= before.inverse_mean_ratio();
         borne &= Mask::splat(simd, now.doubled_area() > 0.0 && kept);
-        last += metric.excess(&now);
+        last += formulas.excess(&now);
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
@@ -124,7 +121,7 @@ impl Along<'_> {
 #[inline(always)]
 fn excess<S: Simd>(
     simd: S,
-    metric: Metric,
+    formulas: impl Formulas,
     mean_area: f64,
     positions: &[DVec2],
     triangles: &[[u32; 3]],
@@ -135,12 +132,12 @@ fn excess<S: Simd>(
         let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        sum += metric.excess(&corner(p, q, r, mean_area));
+        sum += formulas.excess(&corner(p, q, r, mean_area));
     }
     let mut last = 0.0;
     for t in rest {
         let [p, q, r] = t.map(|v| positions[v as usize]);
-        last += metric.excess(&Corner { a: (q - p).into(), b: (r - p).into(), mean_area });
+        last += formulas.excess(&Corner { a: (q - p).into(), b: (r - p).into(), mean_area });
     }
     (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
 }
@@ -163,7 +160,7 @@ mod tests {
         for metric in [Metric::Imr, Metric::Rms] {
             let along = |direction: Vec2, length: f64| {
                 let direction = &[direction];
-                mean_excess_along(metric, &problem, &Along { positions, direction, length })
+                mean_excess_along(metric, &problem, &Along { positions, direction, length }, 30.0)
             };
             let mut moved = positions.to_vec();
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;

@@ -5,9 +5,8 @@ use glam::DVec2;
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Metric};
+use crate::metric::{Corner, Formulas};
 use crate::metric::{Dual, Real};
-use crate::run::plan::line_search;
 
 /// The one-rings of four free vertices with the same number of neighbors.
 #[derive(Clone, Copy)]
@@ -56,7 +55,7 @@ impl<'a, S: Simd> Patches<'a, S> {
 
     /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`.
     #[inline(always)]
-    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+    pub(crate) fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);
         let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
         Corner { a, b, mean_area: self.mean_area }
@@ -66,7 +65,7 @@ impl<'a, S: Simd> Patches<'a, S> {
     #[inline(always)]
     pub(crate) fn derivatives(
         &self,
-        metric: Metric,
+        formulas: impl Formulas,
         at: Points<S>,
         sharpness: u32,
     ) -> Dual<Lanes<S>> {
@@ -74,25 +73,7 @@ impl<'a, S: Simd> Patches<'a, S> {
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            sum = sum + metric.expansion(&corner, sharpness);
-        }
-        sum
-    }
-
-    /// The same by forward differences.
-    #[inline(always)]
-    pub(crate) fn differences(
-        &self,
-        metric: Metric,
-        at: Points<S>,
-        sharpness: u32,
-    ) -> Dual<Lanes<S>> {
-        let width = self.least_height(at) * line_search::DIFFERENCE;
-        let zero = at[0].constant(0.0);
-        let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
-        for i in 0..self.degree() {
-            let corner = self.corner(i, at);
-            sum = sum + differences(metric, &corner, sharpness, width);
+            sum = sum + formulas.expansion(&corner, sharpness);
         }
         sum
     }
@@ -110,40 +91,27 @@ impl<'a, S: Simd> Patches<'a, S> {
         worst
     }
 
-    /// The patches' objectives, and which have no triangle that is inverted or breaks the shape guard
-    /// `limit`.
+    /// The patches' objectives, and which have no triangle that is inverted or, if there is a `limit`, has an
+    /// inverse mean ratio above it.
     #[inline(always)]
     pub(crate) fn objective(
         &self,
-        metric: Metric,
+        formulas: impl Formulas,
         at: Points<S>,
         sharpness: u32,
-        limit: Lanes<S>,
+        limit: Option<Lanes<S>>,
     ) -> (Lanes<S>, Mask<S>) {
-        let guarded = metric.properties().shape_guard.is_finite();
         let mut sum = at[0].constant(0.0);
         let mut feasible = Mask::splat(sum.simd, true);
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
             feasible &= corner.doubled_area().simd_gt(0.0);
-            if guarded {
+            if let Some(limit) = limit {
                 feasible &= inverse_mean_ratio(&corner).simd_le(limit);
             }
-            sum += metric.model(&corner, sharpness);
+            sum += formulas.model(&corner, sharpness);
         }
         (sum, feasible)
-    }
-
-    /// The least distance of each vertex from the line through a ring edge.
-    #[inline(always)]
-    fn least_height(&self, at: Points<S>) -> Lanes<S> {
-        let mut least = at[0].constant(f64::INFINITY);
-        for i in 0..self.degree() {
-            let c = self.corner(i, at);
-            let [x, y] = [c.b[0] - c.a[0], c.b[1] - c.a[1]];
-            least = Real::min(least, c.doubled_area() / Real::sqrt(x * x + y * y));
-        }
-        least
     }
 }
 
@@ -160,36 +128,4 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
 #[inline(always)]
 pub(crate) fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
     corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()
-}
-
-/// Value, gradient and Hessian of the model by forward differences of width `h`.
-#[inline(always)]
-fn differences<S: Simd>(
-    metric: Metric,
-    corner: &Corner<Lanes<S>>,
-    sharpness: u32,
-    h: Lanes<S>,
-) -> Dual<Lanes<S>> {
-    let mut values = [h; 16];
-    let displacements = std::hint::black_box(line_search::DISPLACEMENTS);
-    for k in 0..16 {
-        let [x, y] = displacements[k];
-        let (x, y) = (h * f64::from(x), h * f64::from(y));
-        let a = [corner.a[0] - x, corner.a[1] - y];
-        let b = [corner.b[0] - x, corner.b[1] - y];
-        values[k] = metric.model(&Corner { a, b, ..*corner }, sharpness);
-    }
-    // Gradients here and one step along x and y, each from a value and its forward neighbors.
-    let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];
-    let [right_x, right_y] = [(values[5] - values[4]) / h, (values[6] - values[4]) / h];
-    let [up_x, up_y] = [(values[9] - values[8]) / h, (values[10] - values[8]) / h];
-    Dual {
-        value: values[0],
-        gradient: [here_x, here_y],
-        hessian: [
-            (right_x - here_x) / h,
-            ((right_y - here_y) + (up_x - here_x)) * 0.5 / h,
-            (up_y - here_y) / h,
-        ],
-    }
 }

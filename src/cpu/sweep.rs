@@ -1,16 +1,15 @@
 //! What is done at every free vertex: a sweep, and the gradient.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch};
 use glam::{DVec2, Vec2};
-use rayon::prelude::*;
 
-use crate::cpu::lanes::{LANES, Points};
-use crate::cpu::newton::{self, Step};
+use crate::cpu::lanes::{LANES, Points, with_lanes};
+use crate::cpu::newton;
 use crate::cpu::patch::{self, Patches};
 use crate::layout::Problem;
-use crate::metric::{Metric, specialize};
-use crate::run::Derivatives;
+use crate::metric::{Formulas, Metric, with_formulas};
+use crate::parallel::for_each_chunk;
+use crate::run::{Derivatives, Step};
 
 /// Vertices of one task.
 const CHUNK: usize = Problem::BLOCK;
@@ -43,7 +42,6 @@ impl Found for Vec2 {
 
 /// One visit of every free vertex, color by color. `moved` is room to work in.
 pub(crate) fn sweep(
-    metric: Metric,
     problem: &Problem,
     positions: &mut [DVec2],
     moved: &mut Vec<DVec2>,
@@ -53,9 +51,10 @@ pub(crate) fn sweep(
         let first = color.start as usize;
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of one color read each other's neighbors only, never each other.
-        visit(metric, problem, positions, first, step, moved);
-        let positions = positions[first..][..color.len()].par_chunks_mut(COPY);
-        positions.zip(moved.par_chunks(COPY)).for_each(|(to, from)| to.copy_from_slice(from));
+        visit(problem, positions, first, step, moved);
+        for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
+            to.copy_from_slice(&moved[at..][..to.len()]);
+        });
     }
 }
 
@@ -68,29 +67,32 @@ pub(crate) fn gradient(
     found: &mut Vec<Vec2>,
 ) {
     found.resize(problem.free_count(), Vec2::ZERO);
-    let step = Step { omega: 1.0, inner: 1, sharpness, derivatives: Derivatives::Analytic };
+    let step = Step {
+        metric,
+        omega: 1.0,
+        inner: 1,
+        sharpness,
+        derivatives: Derivatives::Analytic,
+        shape_guard: f64::INFINITY,
+    };
     // Vertices of one degree stand together within a color.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
-        visit(metric, problem, positions, color.start as usize, &step, found);
+        visit(problem, positions, color.start as usize, &step, found);
     }
 }
 
 fn visit<T: Found>(
-    metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
     step: &Step,
     found: &mut [T],
 ) {
-    let level = Level::new();
-    found.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, found)| {
-        let first = first + chunk * CHUNK;
-        specialize!(metric, METRIC => {
-            dispatch!(level, simd => {
-                visit_all(simd, METRIC, problem, positions, first, step, found);
-            });
+    for_each_chunk(found, CHUNK, |at, found| {
+        let first = first + at;
+        with_formulas!(step.metric, formulas => {
+            with_lanes!(simd => visit_all(simd, formulas, problem, positions, first, step, found));
         });
     });
 }
@@ -99,7 +101,7 @@ fn visit<T: Found>(
 #[inline(always)]
 fn visit_all<S: Simd, T: Found>(
     simd: S,
-    metric: Metric,
+    formulas: impl Formulas,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
@@ -122,8 +124,8 @@ fn visit_all<S: Simd, T: Found>(
         let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);
         let at = patch::points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
-            true => newton::visit(metric, &patches, at, step),
-            false => patches.derivatives(metric, at, step.sharpness).gradient,
+            true => newton::visit(formulas, &patches, at, step),
+            false => patches.derivatives(formulas, at, step.sharpness).gradient,
         };
         let count = count as usize;
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {

@@ -1,9 +1,9 @@
 //! Corrections from coarser levels, on the CPU.
 
 use glam::Vec2;
-use rayon::prelude::*;
 
 use crate::layout::Problem;
+use crate::parallel::for_each_chunk;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
 /// Rows that are not worth splitting among threads.
@@ -61,10 +61,11 @@ fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
             let residual = residual(level, &x, right);
             let restricted = rows(restriction.rows(), |i| times(restriction, i, &residual));
             let coarse = solve(below, &restricted);
-            x.par_iter_mut()
-                .with_min_len(GRAIN)
-                .enumerate()
-                .for_each(|(i, x)| *x += times(prolongation, i, &coarse));
+            for_each_chunk(&mut x, GRAIN, |first, x| {
+                for (x, i) in x.iter_mut().zip(first..) {
+                    *x += times(prolongation, i, &coarse);
+                }
+            });
             smooth(level, Some(x), right)
         }
     }
@@ -78,7 +79,11 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
 fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {
-        x.par_iter_mut().with_min_len(GRAIN).zip(d).for_each(|(x, &d)| *x += d);
+        for_each_chunk(x, GRAIN, |first, x| {
+            for (x, &d) in x.iter_mut().zip(&d[first..]) {
+                *x += d;
+            }
+        });
     };
     let scale = &level.inverse_diagonal;
     let step = |i: usize, residual: Vec2| residual * (first * scale[i]);
@@ -105,8 +110,14 @@ fn times(matrix: &Sparse, row: usize, x: &[Vec2]) -> Vec2 {
     matrix.row(row).map(|(column, value)| x[column] * value).sum()
 }
 
-fn rows<T: Send>(count: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    (0..count).into_par_iter().with_min_len(GRAIN).map(row).collect()
+fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync) -> Vec<Vec2> {
+    let mut rows = vec![Vec2::ZERO; count];
+    for_each_chunk(&mut rows, GRAIN, |first, rows| {
+        for (to, i) in rows.iter_mut().zip(first..) {
+            *to = row(i);
+        }
+    });
+    rows
 }
 
 #[cfg(test)]

@@ -21,7 +21,6 @@ pub use device::{AdapterSummary, Gpu, MeshSize, adapters};
 pub use embed::{BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer};
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};
-pub use run::GpuEngine;
-pub(crate) use run::GpuFine;
+pub(crate) use run::GpuEngine;
 
 pub use crate::error::GpuError;

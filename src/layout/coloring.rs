@@ -3,9 +3,8 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
-use rayon::prelude::*;
-
 use crate::parallel::counting_sort::{atomics, plain};
+use crate::parallel::{collect, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
 
 /// Independent sets of free vertices: no two of one color share a triangle, so a color can be
@@ -55,8 +54,9 @@ impl Coloring {
             true => places.color_serially(),
             false => places.color(block),
         };
-        let color = |&place: &u32| colors.get(place as usize).copied().unwrap_or(UNCOLORED);
-        Self { colors: places.of.par_iter().map(color).collect(), count }
+        let of = &places.of;
+        let color = |v: usize| colors.get(of[v] as usize).copied().unwrap_or(UNCOLORED);
+        Self { colors: collect(of.len(), color), count }
     }
 
     /// Number of colors.
@@ -97,8 +97,13 @@ impl<'a> Places<'a> {
     fn new(topology: &'a Topology<'a>, curve: &'a [u32]) -> Self {
         let free = topology.free();
         let of = atomics(free.len(), NOWHERE);
-        curve.par_iter().enumerate().filter(|&(_, &v)| free[v as usize]).for_each(|(place, &v)| {
-            of[v as usize].store(place as u32, Relaxed);
+        const CHUNK: usize = 1 << 12;
+        for_each_part(curve.chunks(CHUNK), |chunk, vertices| {
+            for (&v, place) in vertices.iter().zip(chunk * CHUNK..) {
+                if free[v as usize] {
+                    of[v as usize].store(place as u32, Relaxed);
+                }
+            }
         });
         Self { topology, curve, of: plain(of) }
     }
@@ -124,12 +129,9 @@ impl<'a> Places<'a> {
 
     /// Colors what lies between blocks, then the blocks: the colors by place, and their number.
     fn color(&self, block: usize) -> (Vec<u32>, u32) {
-        let blocks: Vec<Block> = (0..self.curve.len().div_ceil(block))
-            .into_par_iter()
-            .map_init(Degrees::default, |degrees, i| {
-                Block::new(self, i * block..self.curve.len().min((i + 1) * block), degrees)
-            })
-            .collect();
+        let blocks = map_ranges(self.curve.len(), block, |places| {
+            Block::new(self, places, &mut Degrees::default())
+        });
         let first = (0..).step_by(block);
         let between: Vec<u32> = first
             .zip(&blocks)
@@ -139,11 +141,11 @@ impl<'a> Places<'a> {
             return self.color_serially();
         }
         let (mut colors, count) = self.color_alone(&between);
-        let counts = colors.par_chunks_mut(block).zip(&blocks).map(|(colors, block)| {
+        let counts = map_parts(colors.chunks_mut(block).zip(&blocks), |_, (colors, block)| {
             let count = block.graph.color(&block.order, colors);
             block.graph.save_colors(&block.order, count, colors)
         });
-        let count = count.max(counts.max().unwrap_or(0));
+        let count = count.max(counts.into_iter().max().unwrap_or(0));
         // The first vertices of a block may have more than five neighbors between the blocks.
         if count <= PLANAR {
             return (colors, count);

@@ -1,10 +1,11 @@
 //! Vertices along a space-filling curve: those that are near each other are mostly near in this order.
 
 use glam::DVec2;
-use rayon::prelude::*;
+use rayon::slice::ParallelSliceMut;
 
 use crate::mesh::Mesh;
 use crate::parallel::counting_sort::Groups;
+use crate::parallel::{for_each_part, map_ranges};
 use crate::topology::Topology;
 
 /// Vertices that a cell of the first sorting has on average.
@@ -30,7 +31,8 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
         [if topology.star(v).is_empty() { unused as u32 } else { (key(v) >> (64 - bits)) as u32 }]
     });
     let used = cells.starts()[unused] as usize;
-    cells.chunks_mut(CELLS).into_par_iter().for_each_init(Vec::new, |keyed, (bounds, vertices)| {
+    for_each_part(cells.chunks_mut(CELLS), |_, (bounds, vertices)| {
+        let keyed = &mut Vec::new();
         for cell in bounds.windows(2).filter(|cell| cell[1] <= used as u32) {
             let cell = (cell[0] - bounds[0]) as usize..(cell[1] - bounds[0]) as usize;
             sort(&mut vertices[cell], key, keyed);
@@ -58,12 +60,12 @@ fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(
 pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
-    (0..mesh.points.len() as u32)
-        .into_par_iter()
-        .filter(|&v| !topology.star(v).is_empty())
-        .map(|v| DVec2::from(mesh.points[v as usize]))
-        .map(|point| (point, point))
-        .reduce(|| none, both)
+    let of_range = |range: std::ops::Range<usize>| {
+        let used = range.filter(|&v| !topology.star(v as u32).is_empty());
+        let points = used.map(|v| DVec2::from(mesh.points[v]));
+        points.map(|point| (point, point)).fold(none, both)
+    };
+    map_ranges(mesh.points.len(), 1 << 14, of_range).into_iter().fold(none, both)
 }
 
 /// Position along the Z-order curve: the bits of x and y interleaved.

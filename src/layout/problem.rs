@@ -1,16 +1,20 @@
 //! What both engines are given: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::layout::curve::{along_curve, bounds};
 use crate::layout::{Coloring, UNCOLORED};
 use crate::mesh::Mesh;
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
+use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
+
+/// Vertices or triangles that one task goes through, and those of a task that takes note of each.
+const CHUNK: usize = 1 << 12;
+const LONG: usize = 1 << 14;
 
 /// A mesh laid out for sweeping. Vertices are numbered anew: free ones first, color by color, in
 /// blocks along a space-filling curve within a color and by the number of their neighbors within a
@@ -54,8 +58,10 @@ impl Problem {
 
         let (vertices, colors) = order(topology, coloring, curve);
         let number = atomics(mesh.points.len(), u32::MAX);
-        vertices.par_iter().enumerate().for_each(|(new, &v)| {
-            number[v as usize].store(new as u32, Relaxed);
+        for_each_part(vertices.chunks(CHUNK), |chunk, vertices| {
+            for (&v, new) in vertices.iter().zip(chunk * CHUNK..) {
+                number[v as usize].store(new as u32, Relaxed);
+            }
         });
         let number = plain(number);
 
@@ -64,7 +70,7 @@ impl Problem {
         let triangles = triangles(topology, vertices.len(), &number);
         drop(number);
 
-        let positions: Vec<DVec2> = vertices.par_iter().map(|&v| normalized(v)).collect();
+        let positions: Vec<DVec2> = collect(vertices.len(), |i| normalized(vertices[i]));
         let area = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| positions[v as usize]);
             0.5 * (q - p).perp_dot(r - p)
@@ -132,6 +138,17 @@ impl Problem {
         self.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
+    /// Normalized positions of a mesh's points, in the memory of `room`.
+    pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
+        room.resize(self.vertices.len(), DVec2::ZERO);
+        for_each_chunk(&mut room, CHUNK, |first, positions| {
+            for (position, &v) in positions.iter_mut().zip(&self.vertices[first..]) {
+                *position = (DVec2::from(points[v as usize]) - self.center) * self.scale;
+            }
+        });
+        room
+    }
+
     /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did
     /// not move keeps its bits.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
@@ -164,8 +181,8 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64) {
 
 /// The sum of a number of each triangle, in an order that does not depend on the number of threads.
 fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
-    let parts = triangles.par_chunks(4096).map(|part| part.iter().map(&of).sum());
-    parts.collect::<Vec<f64>>().iter().sum()
+    let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
+    sums.iter().sum()
 }
 
 /// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
@@ -175,20 +192,20 @@ fn rings(
     curve: &[u32],
     number: &[u32],
 ) -> (Vec<u32>, Vec<u32>) {
-    let lengths = vertices.par_iter().map(|&v| topology.star(v).len() as u32);
-    let mut start: Vec<u32> = lengths.chain([0]).collect();
+    let length = |i| vertices.get(i).map_or(0, |&v: &u32| topology.star(v).len() as u32);
+    let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
     // Along the curve, where the triangles around a vertex are mostly those around the vertices before it. Each
     // writes its own row; they are atomic only because rows lie anywhere.
-    curve.par_iter().with_min_len(1 << 12).filter(|&&v| topology.free()[v as usize]).for_each(
-        |&v| {
+    for_each_part(curve.chunks(CHUNK), |_, chunk| {
+        for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
             for (to, from) in row.iter().zip(topology.ring_of(v)) {
                 to.store(number[from as usize], Relaxed);
             }
-        },
-    );
+        }
+    });
     (start, plain(ring))
 }
 
@@ -198,16 +215,26 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
     let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
-    let zeros = || std::array::from_fn(|_| AtomicU32::new(0));
-    let all: Vec<[AtomicU32; 3]> = (0..given.len()).into_par_iter().map(|_| zeros()).collect();
+    let all = atomics(3 * given.len(), 0);
     let keys = |t| [least(&renumbered(t))];
     place(given.len(), vertices, keys, |t, at| {
-        for (corner, to) in renumbered(t).into_iter().zip(&all[at]) {
+        for (corner, to) in renumbered(t).into_iter().zip(&all[3 * at..]) {
             to.store(corner, Relaxed);
         }
     });
-    let mut all: Vec<[u32; 3]> = all.into_iter().map(|t| t.map(AtomicU32::into_inner)).collect();
-    all.par_chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
+    let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
+    // Runs of equal least corners, cut where chunks would begin inside one.
+    let mut rest = &mut all[..];
+    let runs = std::iter::from_fn(|| {
+        let mut end = rest.len().min(CHUNK);
+        while end > 0 && end < rest.len() && least(&rest[end - 1]) == least(&rest[end]) {
+            end += 1;
+        }
+        rest.split_off_mut(..end).filter(|runs| !runs.is_empty())
+    });
+    for_each_part(runs, |_, runs| {
+        runs.chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
+    });
     all
 }
 
@@ -217,19 +244,17 @@ fn order(
     coloring: &Coloring,
     curve: &[u32],
 ) -> (Vec<u32>, Vec<Range<u32>>) {
-    const CHUNK: usize = 1 << 14;
     let colors = coloring.count() as usize;
     // Fixed vertices come last.
     let slot = |v: u32| match coloring.colors()[v as usize] {
         UNCOLORED => colors,
         color => color as usize,
     };
-    let counts = curve.par_chunks(CHUNK).map(|chunk| {
+    let counts: Vec<Vec<usize>> = map_ranges(curve.len(), LONG, |range| {
         let mut counts = vec![0; colors + 1];
-        chunk.iter().for_each(|&v| counts[slot(v)] += 1);
+        curve[range].iter().for_each(|&v| counts[slot(v)] += 1);
         counts
     });
-    let counts: Vec<Vec<usize>> = counts.collect();
     // What each chunk has of a color goes behind what the chunk before it has.
     let mut vertices = vec![0; curve.len()];
     let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
@@ -237,7 +262,7 @@ fn order(
     for (i, part) in split(&mut vertices, lengths).into_iter().enumerate() {
         targets[i % counts.len()].push(part);
     }
-    curve.par_chunks(CHUNK).zip(targets).for_each(|(chunk, mut targets)| {
+    for_each_part(curve.chunks(LONG).zip(targets), |_, (chunk, mut targets)| {
         for &v in chunk {
             if let Some(to) = targets[slot(v)].split_off_first_mut() {
                 *to = v;
@@ -252,9 +277,12 @@ fn order(
         ranges.push(end..end + length as u32);
         end += length as u32;
         let color = rest.split_off_mut(..length).unwrap_or_default();
-        color.par_chunks_mut(Problem::BLOCK).for_each_init(Vec::new, |keyed, block| {
-            keyed.clear();
-            keyed.extend(block.iter().map(|&v| (topology.star(v).len(), v)));
+        for_each_chunk(color, Problem::BLOCK, |_, block| {
+            let mut keyed = [(0, 0); Problem::BLOCK];
+            let keyed = &mut keyed[..block.len()];
+            for (keyed, &v) in keyed.iter_mut().zip(&*block) {
+                *keyed = (topology.star(v).len(), v);
+            }
             keyed.sort_by_key(|&(degree, _)| degree);
             for (vertex, &(_, v)) in block.iter_mut().zip(&*keyed) {
                 *vertex = v;

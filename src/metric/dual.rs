@@ -70,19 +70,6 @@ impl<T: Real> Dual<T> {
         dual
     }
 
-    /// The derivatives of q² less a constant, from those of q less a constant: `value` is that
-    /// of the result, `q` is q.
-    #[inline(always)]
-    pub(crate) fn into_square(self, value: T, q: T) -> Self {
-        let ([x, y], [xx, xy, yy]) = (self.gradient, self.hessian);
-        let twice = q * 2.0;
-        Self {
-            value,
-            gradient: [twice * x, twice * y],
-            hessian: [x * x * 2.0 + twice * xx, x * y * 2.0 + twice * xy, y * y * 2.0 + twice * yy],
-        }
-    }
-
     /// A constant.
     #[inline(always)]
     fn of(value: T) -> Self {

@@ -1,10 +1,21 @@
-//! The quality metrics: one row each in the table, the numbers they are computed with, and schemes that alternate them.
+//! The quality metrics: a table with a row for each, the numbers they are computed with, and schemes that alternate
+//! them.
 
+mod ar;
+mod area;
+mod corner;
 mod dual;
+mod edge;
+mod imr;
+mod properties;
+mod rms;
 mod scheme;
+mod shape_size;
 mod table;
 
+pub use corner::{Corner, Invariants, Slopes};
 pub use dual::{Dual, Real};
+pub use properties::{Properties, Stiffness};
 pub use scheme::Scheme;
-pub(crate) use table::specialize;
-pub use table::{Corner, Metric, Properties, Stiffness, UnknownMetric};
+pub(crate) use table::{AnyFormulas, Formulas, with_formulas};
+pub use table::{Metric, UnknownMetric};

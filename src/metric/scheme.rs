@@ -1,6 +1,6 @@
 //! Alternation schemes: which metric each sweep uses.
 
-use crate::metric::{Metric, UnknownMetric};
+use crate::metric::table::{Metric, UnknownMetric};
 
 /// A sequence of metrics, used in turn sweep by sweep; the first is the base metric, which alone
 /// judges convergence (Park & Shontz, Section 2.2). Written `edge+imr+imr`.
@@ -41,7 +41,7 @@ impl Scheme {
     /// Whether every sweep lowers the base objective itself, so that the last state is the best:
     /// one metric only, and one whose Newton model is the metric.
     pub fn is_monotone(&self) -> bool {
-        self.0.iter().all(|&m| m == self.base()) && self.base() != Metric::Edge
+        self.0.iter().all(|&m| m == self.base()) && self.base().is_smooth()
     }
 }
 

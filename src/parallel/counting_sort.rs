@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
+use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
+
 /// Parts that are counted at once, at most: each has a counter of its own for every group.
 const MOST_PARTS: usize = 8;
 
@@ -69,16 +71,16 @@ pub(crate) fn place<const N: usize>(
     // The counters of a group stand side by side, so that their running sum is where each part
     // writes. They are atomic only because any part may meet any group: no two share a counter.
     let mut next = atomics(groups * parts, 0);
-    (0..parts).into_par_iter().for_each(|p| {
+    for_each(parts, &|p| {
         for key in part(p).flat_map(&keys) {
             let count = &next[key as usize * parts + p];
             count.store(count.load(Relaxed) + 1, Relaxed);
         }
     });
     let sum = running_sum(&mut next, AtomicU32::get_mut);
-    let firsts = next.par_chunks(parts).map(|of_group| of_group[0].load(Relaxed));
-    let start = firsts.chain([sum]).collect();
-    (0..parts).into_par_iter().for_each(|p| {
+    let first = |group: usize| next.get(group * parts).map_or(sum, |count| count.load(Relaxed));
+    let start = collect(groups + 1, first);
+    for_each(parts, &|p| {
         for item in part(p) {
             for key in keys(item) {
                 let next = &next[key as usize * parts + p];
@@ -103,15 +105,16 @@ pub(crate) fn running_sum<T: Send>(
     number: impl Fn(&mut T) -> &mut u32 + Sync,
 ) -> u32 {
     const CHUNK: usize = 1 << 14;
-    let sums = cells.par_chunks_mut(CHUNK).map(|chunk| chunk.iter_mut().map(|c| *number(c)).sum());
-    let sums: Vec<u32> = sums.collect();
+    let sums = map_parts(cells.chunks_mut(CHUNK), |_, chunk| {
+        chunk.iter_mut().map(|cell| *number(cell)).sum::<u32>()
+    });
     let mut sum = 0;
     let before = sums.iter().map(|own| {
         sum += own;
         sum - own
     });
     let before: Vec<u32> = before.collect();
-    cells.par_chunks_mut(CHUNK).zip(before).for_each(|(chunk, mut sum)| {
+    for_each_part(cells.chunks_mut(CHUNK).zip(before), |_, (chunk, mut sum)| {
         for cell in chunk {
             let number = number(cell);
             sum += std::mem::replace(number, sum);

@@ -1,19 +1,19 @@
-//! Drives sweeps from some positions to the end, on whichever engine.
+//! The loop over the sweeps of a run, wherever it computes.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::cpu::{CpuEngine, CpuFine};
-use crate::error::SmoothError;
-use crate::gpu::{Gpu, GpuEngine, GpuError, GpuFine, Waiting};
+use crate::error::{GpuError, SmoothError};
 use crate::layout::Problem;
-use crate::run::Stop;
-use crate::run::multilevel::MultilevelEngine;
-use crate::run::opening::{self, Opened};
-use crate::run::{Engine, Objectives};
-use crate::run::{Method, Options};
+use crate::run::engine::Engine;
+use crate::run::history::History;
+use crate::run::multilevel::Corrections;
+use crate::run::plan::Plan;
+use crate::run::step::Step;
+use crate::run::stop::Stop;
+use crate::run::sweeps;
 
 /// Hears how far a run is, and may end it: any `FnMut(&Progress) -> ControlFlow<()>`.
 pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
@@ -40,179 +40,94 @@ pub enum Phase {
     Smoothing,
 }
 
-/// Where a run computes, and who waits for it.
-#[derive(Clone, Copy)]
-pub(crate) enum Place<'g> {
-    Cpu,
-    Gpu(&'g Gpu, Waiting),
+/// How a run goes from sweep to sweep.
+pub(crate) enum Strategy<'a> {
+    /// Sweeps alone.
+    Sweeps,
+    /// Sweeps corrected from coarser levels.
+    Corrected(Corrections<'a>),
 }
 
-/// The engine of a run.
-enum AnyEngine<'e> {
-    Cpu(Box<CpuEngine<'e>>),
-    Gpu(Box<GpuEngine<'e>>),
-    CpuMultilevel(Box<MultilevelEngine<'e, CpuFine<'e>>>),
-    GpuMultilevel(Box<MultilevelEngine<'e, GpuFine<'e>>>),
-}
-
-impl AnyEngine<'_> {
-    async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
-        match self {
-            AnyEngine::Cpu(engine) => engine.advance(sweeps),
-            AnyEngine::Gpu(engine) => GpuEngine::advance(engine, sweeps).await,
-            AnyEngine::CpuMultilevel(engine) => engine.advance(sweeps).await,
-            AnyEngine::GpuMultilevel(engine) => engine.advance(sweeps).await,
+impl<'a> Strategy<'a> {
+    pub(crate) fn new(problem: &'a Problem, plan: &'a Plan, corrected: bool) -> Self {
+        match corrected {
+            true => Strategy::Corrected(Corrections::new(problem, plan)),
+            false => Strategy::Sweeps,
         }
     }
 
-    fn stop(&self) -> Option<Stop> {
+    /// Every different step that a run by `plan` takes.
+    pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
+        if corrected { Corrections::steps(plan) } else { plan.steps() }
+    }
+
+    async fn advance(
+        &mut self,
+        engine: &mut impl Engine,
+        plan: &Plan,
+        history: &mut History,
+        sweeps: u32,
+    ) -> Result<(), GpuError> {
         match self {
-            AnyEngine::Cpu(engine) => engine.stop(),
-            AnyEngine::Gpu(engine) => engine.stop(),
-            AnyEngine::CpuMultilevel(engine) => engine.stop(),
-            AnyEngine::GpuMultilevel(engine) => engine.stop(),
+            Strategy::Sweeps => sweeps::advance(engine, plan, history, sweeps).await,
+            Strategy::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
         }
     }
 
-    async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+    /// No correction raises the objective: the last state is the best.
+    async fn best_positions(&self, engine: &mut impl Engine) -> Result<Vec<DVec2>, GpuError> {
         match self {
-            AnyEngine::Cpu(engine) => engine.best_positions(),
-            AnyEngine::Gpu(engine) => GpuEngine::best_positions(engine).await,
-            AnyEngine::CpuMultilevel(engine) => engine.best_positions().await,
-            AnyEngine::GpuMultilevel(engine) => engine.best_positions().await,
+            Strategy::Sweeps => engine.best_positions().await,
+            Strategy::Corrected(_) => Ok(engine.positions().await?.into_owned()),
         }
     }
-
-    fn corrections(&self) -> u32 {
-        match self {
-            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => 0,
-            AnyEngine::CpuMultilevel(engine) => engine.corrections(),
-            AnyEngine::GpuMultilevel(engine) => engine.corrections(),
-        }
-    }
-
-    /// Why there are no corrections, if there was to be some.
-    fn left_out(&self) -> Option<&GpuError> {
-        match self {
-            AnyEngine::Cpu(_) | AnyEngine::Gpu(_) => None,
-            AnyEngine::CpuMultilevel(engine) => engine.left_out(),
-            AnyEngine::GpuMultilevel(engine) => engine.left_out(),
-        }
-    }
-}
-
-/// Sweeps from some positions to the end.
-pub(crate) struct Run<'s> {
-    pub(crate) problem: &'s Problem,
-    pub(crate) place: Place<'s>,
-    pub(crate) phase: Phase,
 }
 
 /// What a run leaves.
 pub(crate) struct End {
-    pub(crate) history: Vec<Objectives>,
+    pub(crate) history: History,
     pub(crate) positions: Vec<DVec2>,
     pub(crate) corrections: u32,
-    pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
     pub(crate) stop: Stop,
 }
 
-impl Run<'_> {
-    pub(crate) async fn sweep(
-        &self,
-        options: &Options,
-        target: Option<f64>,
-        from: &[DVec2],
-        observe: &mut (impl Observer + ?Sized),
-    ) -> Result<End, SmoothError> {
-        let base = options.scheme.base();
-        let (place, opened) = self.opened(options, target, from);
-        let done = opened.as_ref().map_or(0, Opened::sweeps);
-        let options = &Options { max_sweeps: options.max_sweeps - done, ..options.clone() };
-        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
-        let mut engine = self.engine(place, options, target, from)?;
-        let mut history = Vec::new();
-        let mut batch = 4;
-        let stop = loop {
-            let start = Instant::now();
-            let log = engine.advance(batch).await?;
-            batch = next_batch(batch, start.elapsed());
-            history.extend_from_slice(&log);
-            if let (Method::Multilevel, Some(error)) = (options.method, engine.left_out()) {
-                return Err(error.clone().into());
-            }
-            if let Some(stop) = engine.stop() {
-                break stop;
-            }
-            let progress = Progress {
-                phase: self.phase,
-                sweep: done + history.len() as u32 - 1,
-                f: history.last().and_then(|o| o.of(base)).unwrap_or(f64::NAN),
-            };
-            if observe(&progress).is_break() {
-                break Stop::Cancelled;
-            }
-        };
-        let corrections = engine.corrections();
-        let levels_left_out = engine.left_out().is_some();
-        let positions = engine.best_positions().await?;
-        let (history, positions) = match opened {
-            Some(opened) => opened.followed_by(base, history, positions),
-            None => (history, positions),
-        };
-        let opening_sweeps = match (self.place, place) {
-            (Place::Gpu(..), Place::Cpu) => history.len() as u32 - 1,
-            _ => done,
-        };
-        Ok(End { history, positions, corrections, opening_sweeps, levels_left_out, stop })
-    }
-
-    /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on
-    /// the CPU that open it; or all of the run, if they cannot.
-    fn opened(
-        &self,
-        options: &Options,
-        target: Option<f64>,
-        from: &[DVec2],
-    ) -> (Place<'_>, Option<Opened>) {
-        match self.place {
-            Place::Gpu(..) if opening::is_needed(self.problem, from) => {
-                match opening::open(self.problem, from, options.plan_to(target)) {
-                    Some(opened) => (self.place, Some(opened)),
-                    None => (Place::Cpu, None),
-                }
-            }
-            _ => (self.place, None),
+/// Sweeps on an engine to the end. `done` are sweeps that came before, for the observer. Where levels are a `must`, it is
+/// an error that the engine does not hold them.
+pub(crate) async fn drive(
+    mut engine: impl Engine,
+    plan: &Plan,
+    mut strategy: Strategy<'_>,
+    must: bool,
+    (phase, done): (Phase, u32),
+    observe: &mut (impl Observer + ?Sized),
+) -> Result<End, SmoothError> {
+    let mut history = History::new(plan);
+    // One to begin with: how long a sweep takes nobody knows, and drivers end submissions of seconds.
+    let mut batch = 1;
+    let stop = loop {
+        let start = Instant::now();
+        strategy.advance(&mut engine, plan, &mut history, batch).await?;
+        batch = next_batch(batch, start.elapsed());
+        if let (true, Strategy::Corrected(corrections)) = (must, &strategy)
+            && let Some(error) = corrections.left_out()
+        {
+            return Err(error.clone().into());
         }
-    }
-
-    fn engine<'e>(
-        &'e self,
-        place: Place<'e>,
-        options: &Options,
-        target: Option<f64>,
-        from: &'e [DVec2],
-    ) -> Result<AnyEngine<'e>, GpuError> {
-        let problem = self.problem;
-        let plan = options.plan_to(target);
-        let multilevel = options.is_multilevel();
-        Ok(match place {
-            Place::Cpu if multilevel => {
-                let fine = CpuFine::new(problem, from.to_vec(), &plan);
-                AnyEngine::CpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
-            }
-            Place::Cpu => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, from.to_vec(), plan))),
-            Place::Gpu(gpu, waiting) if multilevel => {
-                let fine = GpuFine::new(gpu, problem, from, &plan, waiting)?;
-                AnyEngine::GpuMultilevel(Box::new(MultilevelEngine::new(problem, fine, &plan)))
-            }
-            Place::Gpu(gpu, waiting) => {
-                let engine = GpuEngine::new(gpu, problem, from, plan)?.waiting(waiting);
-                AnyEngine::Gpu(Box::new(engine))
-            }
-        })
-    }
+        if let Some(stop) = history.stop() {
+            break stop;
+        }
+        let sweep = done + history.sweeps();
+        if observe(&Progress { phase, sweep, f: history.last() }).is_break() {
+            break Stop::Cancelled;
+        }
+    };
+    let positions = strategy.best_positions(&mut engine).await?;
+    let (corrections, levels_left_out) = match &strategy {
+        Strategy::Sweeps => (0, false),
+        Strategy::Corrected(corrections) => (corrections.taken(), corrections.left_out().is_some()),
+    };
+    Ok(End { history, positions, corrections, levels_left_out, stop })
 }
 
 /// How many sweeps to ask for next, so that the caller hears something about ten times a second.

@@ -1,14 +1,30 @@
-//! All that decides: what a caller asks for, the steps of a plan, when a run ends, and the loop over sweeps.
+//! All that decides: what a caller asks for, the steps of a plan, when a run ends, and the loop over sweeps. It knows
+//! the place where a run computes as an [`Engine`] alone.
 
 mod drive;
 mod engine;
+mod history;
+pub(crate) mod line_search;
 pub(crate) mod multilevel;
-mod opening;
+pub(crate) mod opening;
 mod options;
-pub(crate) mod plan;
+mod plan;
+mod shape_guard;
+mod step;
+mod stop;
+mod sweeps;
+mod yielding;
 
 pub use drive::{Observer, Phase, Progress};
-pub(crate) use drive::{Place, Run};
-pub use engine::{Engine, Objectives};
+pub(crate) use drive::{Strategy, drive};
+pub use engine::Objectives;
+pub(crate) use engine::{Engine, Proposal};
+pub(crate) use history::History;
 pub use options::{Desired, Goal, Method, Options};
-pub use plan::{Derivatives, Plan, Sharpness, Stop, StopRule};
+pub use plan::Plan;
+pub(crate) use shape_guard::shape_guard;
+pub use step::{Derivatives, Sharpness, Step};
+pub(crate) use stop::NOISE;
+pub use stop::{Stop, StopRule};
+pub use sweeps::Stepwise;
+pub(crate) use sweeps::StepwiseRun;

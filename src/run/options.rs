@@ -3,7 +3,9 @@
 use crate::error::SmoothError;
 use crate::metric::Metric;
 use crate::metric::Scheme;
-use crate::run::{Derivatives, Plan, Sharpness, StopRule};
+use crate::run::plan::Plan;
+use crate::run::step::{Derivatives, Sharpness};
+use crate::run::stop::StopRule;
 
 /// How a run goes from sweep to sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -118,6 +120,14 @@ impl Options {
             let most = f64::from(self.sharpness.first.max(self.sharpness.last));
             return refuse("sharpness", most, "log2 k can be 10 at most");
         }
+        if self.sharpness.first > self.sharpness.last {
+            let first = f64::from(self.sharpness.first);
+            return refuse(
+                "sharpness",
+                first,
+                "the exponent grows: the first may not be above the last",
+            );
+        }
         if self.scheme.period() > Scheme::LONGEST {
             let period = f64::from(self.scheme.period());
             return refuse("scheme length", period, "a scheme can have 60 metrics at most");
@@ -137,13 +147,13 @@ impl Options {
         }
     }
 
-    /// What the engines are to do by these options, for those who drive an [`Engine`](crate::Engine) themselves. Of
+    /// What the engines are to do by these options, for those who drive sweeps themselves. Of
     /// [`goal`](Self::goal) and [`method`](Self::method) nothing is taken over: the one needs a run before, the other levels.
     pub fn plan(&self) -> Plan {
         self.plan_to(None)
     }
 
-    /// The same, with the run ending below `target` if there is one.
+    /// What the engines are to do by these options, the run ending below `target` if there is one.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
         let alternates = self.scheme.metrics().iter().any(|&m| m != self.scheme.base());
         let own = |metric: Metric| if alternates { 1.0 } else { metric.properties().omega };
@@ -164,6 +174,7 @@ impl Options {
                 max_sweeps: self.max_sweeps,
             },
             track_all: self.track_all,
+            shape_guard: f64::INFINITY,
         }
     }
 }

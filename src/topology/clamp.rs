@@ -1,7 +1,7 @@
 //! How far vertices can be dragged before a triangle gives way.
 
 use crate::error::MeshError;
-use crate::metric::{Corner, Metric};
+use crate::metric::Corner;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
@@ -173,6 +173,5 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
 /// Inverse mean ratio of a triangle that is not flat.
 fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    let corner = Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 };
-    Metric::Imr.quality(&corner)
+    Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 }.inverse_mean_ratio()
 }

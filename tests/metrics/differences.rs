@@ -1,10 +1,8 @@
 //! Finite differences as an engine takes them: a little off, and good enough to smooth with.
 
 use crate::support;
-use gpu_smooth::{
-    Backend, Coloring, CpuEngine, Derivatives, Engine, Gpu, Mesh, Metric, Options, Plan, Problem,
-    Sharpness, Smoother, StopRule, Topology,
-};
+use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
+use gpu_smooth::{Backend, Derivatives, Gpu, Mesh, Metric, Options, Sharpness, Smoother, Topology};
 use std::ops::ControlFlow;
 
 fn plate() -> Mesh {
@@ -28,8 +26,9 @@ fn a_sweep_by_differences_is_a_little_off() {
                 sharpness: Sharpness::FIXED,
                 stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,
+                shape_guard: f64::INFINITY,
             };
-            let mut engine = CpuEngine::new(&problem, problem.positions().to_vec(), plan);
+            let mut engine = run_on_cpu(&problem, problem.positions(), plan);
             engine.advance(1).unwrap();
             engine.best_positions().unwrap()
         };

@@ -5,7 +5,8 @@ use crate::device::{Device, probe};
 use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::gpu::Kernel;
-use gpu_smooth::{Corner, Derivatives, Dual, Metric};
+use gpu_smooth::internal::Dual;
+use gpu_smooth::{Corner, Derivatives, Metric};
 
 /// log2 of the exponent of EDGE's p-norm.
 const SHARPNESS: u32 = 4;
@@ -35,7 +36,7 @@ fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
     let d = metric_derivatives(t, x[5]);
     let down = descent(d.gradient, d.hessian);
     y = array<f32, 12>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z,
-        metric_model(t), {metric}_excess(t), down.x, down.y, down.z, inverse_mean_ratio(t));"
+        metric_model(t), metric_excess(t), down.x, down.y, down.z, inverse_mean_ratio(t));"
     );
     Kernel::Sweep(metric, derivatives).wgsl() + &probe(6, 12, &body)
 }
@@ -123,6 +124,21 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
                 conditions: [1.0 + a * b / doubled; 3],
             }
         }
+        Metric::ShapeSize => {
+            let mean = 2.0 * t.mean_area;
+            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
+            // Derivatives by the squared norm and by the determinant, and how fast these change.
+            let (by_norm, by_det) =
+                (1.0 + 1.0 / (tau * tau), 1.0 + (1.0 + norm / tau) / (tau * tau));
+            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
+            let mixed = 4.0 / tau.powi(3);
+            let bend = by_norm * 2.0 / mean
+                + mixed * (of_norm * of_det + (1.0 + 3.0 * norm / tau) * of_det * of_det);
+            Scales {
+                sizes: [4.0 + norm * by_norm, by_norm * of_norm + 2.0 * by_det * of_det, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
     }
 }
 
@@ -186,17 +202,19 @@ fn values_and_derivatives_are_those_of_dual_numbers() {
 }
 
 /// One mistake in the derivatives of each metric, in the gradient or in the Hessian.
-const MISTAKES: [(Metric, &str, &str); 10] = [
+const MISTAKES: [(Metric, &str, &str); 12] = [
     (Metric::Edge, "own + k * spread", "own - k * spread"),
     (Metric::Edge, "q * g, q *", "1.001 * q * g, q *"),
-    (Metric::Area, "symmetric(dq, dq)", "0.5 * symmetric(dq, dq)"),
-    (Metric::Area, "2.0 * q * dq", "2.001 * q * dq"),
-    (Metric::Rms, "-2.0 * scale * (t.a + t.b)", "2.0 * scale * (t.a + t.b)"),
-    (Metric::Rms, "(4.0 * scale)", "(4.004 * scale)"),
-    (Metric::Imr, "8.0 / 3.0 * scale", "8.01 / 3.0 * scale"),
-    (Metric::Imr, "scale - m * da", "scale + m * da"),
-    (Metric::Ar, "- q * da", "+ q * da"),
-    (Metric::Ar, "- symmetric(dq, da)", "- 0.999 * symmetric(dq, da)"),
+    (Metric::Area, "2.0 * inverse * inverse", "1.0 * inverse * inverse"),
+    (Metric::Area, "2.0 * q * inverse", "2.001 * q * inverse"),
+    (Metric::Rms, "rms_value(t), 1.0 /", "rms_value(t), 1.001 /"),
+    (Metric::Rms, "slopes.excess * (2.0 *", "slopes.excess * (2.002 *"),
+    (Metric::Imr, "m * (3.0 * m + 2.0)", "m * (3.003 * m + 2.0)"),
+    (Metric::Imr, "-m * excess", "m * excess"),
+    (Metric::Ar, "(1.0 - q) * excess", "(1.0 + q) * excess"),
+    (Metric::Ar, "(1.0 - 2.0 * q) * twice", "(1.0 - 2.002 * q) * twice"),
+    (Metric::ShapeSize, "2.0 * e * cube", "2.01 * e * cube"),
+    (Metric::ShapeSize, "3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"),
 ];
 
 #[test]

@@ -1,9 +1,8 @@
 //! The same sweeps on both engines, and the same sweeps however they are asked for.
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
-use gpu_smooth::{
-    CpuEngine, Derivatives, Engine, Metric, Plan, Problem, Sharpness, Stop, StopRule,
-};
+use gpu_smooth::internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu};
+use gpu_smooth::{Backend, Derivatives, Metric, Sharpness, Stop};
 
 /// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU in units of how
 /// far it went.
@@ -73,9 +72,9 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
 fn a_visit_ends_once_its_steps_are_short() {
     let problem = mild();
     let after = |inner| {
-        let mut engine = CpuEngine::new(
+        let mut engine = run_on_cpu(
             &problem,
-            problem.positions().to_vec(),
+            problem.positions(),
             Plan { inner, ..plan(Metric::Imr.into(), 1) },
         );
         engine.advance(1).unwrap();
@@ -113,8 +112,9 @@ fn each_metric_of_a_scheme_is_differentiated_in_its_own_way() {
 fn a_slightly_different_sweep_is_told_apart() {
     let problem = mild();
     for &metric in Metric::ALL {
-        let plan = Plan { plain_sweeps: 0, omega: [1.0; 5], ..plan(metric.into(), 1) };
-        let longer = Plan { omega: [1.05; 5], ..plan.clone() };
+        let plan =
+            Plan { plain_sweeps: 0, omega: [1.0; Metric::ALL.len()], ..plan(metric.into(), 1) };
+        let longer = Plan { omega: [1.05; Metric::ALL.len()], ..plan.clone() };
         let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan, longer]);
         assert!((gpu / cpu - 1.0).abs() > 1e-5 && moved_apart > 1e-2, "{metric}: {moved_apart:e}");
     }
@@ -170,6 +170,38 @@ fn a_target_ends_a_run_at_the_first_sweep_below_it() {
             let mut engine = engine(backend, &problem, Plan { stop, ..plan(scheme("imr"), 0) });
             assert_eq!(engine.advance(20).unwrap().len() - 1, sweep, "on the {}", name(backend));
             assert_eq!(engine.stop(), Some(Stop::Reached));
+        }
+    }
+}
+
+/// The rule stands twice: in Rust, and in `shaders/finish.wgsl` for batches that end on the device.
+#[test]
+fn the_device_ends_a_run_where_the_rule_in_rust_does() {
+    let problem = problem(perturbed());
+    let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
+    let rule = |target, tolerance, max_sweeps| StopRule { target, tolerance, max_sweeps };
+    let cases = [
+        ("imr", rule(Some(1.2), 0.0, 90), Stop::Reached),
+        ("imr", rule(Some(1.0), 0.0, 90), Stop::Stalled),
+        ("imr", rule(None, 1e-4, 90), Stop::Converged),
+        ("rms", rule(None, 1e-6, 90), Stop::Converged),
+        ("area+imr", rule(None, 1e-6, 90), Stop::Stalled),
+        ("edge+imr+imr", rule(None, 1e-2, 90), Stop::Converged),
+        ("edge", rule(None, 0.0, 40), Stop::MaxSweeps),
+    ];
+    for (name, stop, expected) in cases {
+        let plan = Plan { stop, ..plan(scheme(name), 0) };
+        let base = plan.scheme.base();
+        let window = StopRule::window(&plan.scheme) as usize;
+        let mut run = run_on_gpu(gpu, &problem, problem.positions(), plan).unwrap();
+        let log = run.advance(100).unwrap();
+        assert_eq!(run.stop(), Some(expected), "{name}, {stop:?}");
+        let f: Vec<f64> = log.iter().map(|o| o.of(base).unwrap()).collect();
+        for end in 1..=f.len() {
+            let best = (0..end).min_by(|&a, &b| f[a].total_cmp(&f[b])).unwrap();
+            let judged = stop.judge(&f[..end], best, window);
+            let on_device = (end == f.len()).then_some(expected);
+            assert_eq!(judged, on_device, "{name}, {stop:?}, after {} sweeps", end - 1);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Colors: what lets vertices move at the same time.
 
 use crate::{distorted, perturbed, support};
-use gpu_smooth::{Coloring, Mesh, Problem, Topology, UNCOLORED};
+use gpu_smooth::internal::{Coloring, Problem, UNCOLORED};
+use gpu_smooth::{Mesh, Topology};
 
 fn meshes() -> Vec<Mesh> {
     let plain = [

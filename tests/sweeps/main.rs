@@ -16,10 +16,11 @@ mod requests;
 mod safety;
 mod tolerance;
 
-use gpu_smooth::gpu::GpuEngine;
+use gpu_smooth::internal::run_on_gpu;
+use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
 use gpu_smooth::{
-    Backend, Coloring, CpuEngine, Derivatives, Engine, Gpu, Mesh, Metric, Options, Outcome, Plan,
-    Problem, Scheme, Sharpness, Smoother, StopRule, Topology,
+    Backend, Derivatives, Gpu, Mesh, Metric, Options, Outcome, Scheme, Sharpness, Smoother,
+    Topology,
 };
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
@@ -113,13 +114,14 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         sharpness: Sharpness::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
+        shape_guard: f64::INFINITY,
     }
 }
 
-fn engine<'a>(backend: &'a Backend, problem: &'a Problem, plan: Plan) -> Box<dyn Engine + 'a> {
+fn engine<'a>(backend: &'a Backend, problem: &'a Problem, plan: Plan) -> Box<dyn Stepwise + 'a> {
     let start = problem.positions();
     match backend {
-        Backend::Cpu => Box::new(CpuEngine::new(problem, start.to_vec(), plan)),
-        Backend::Gpu(gpu) => Box::new(GpuEngine::new(gpu, problem, start, plan).unwrap()),
+        Backend::Cpu => Box::new(run_on_cpu(problem, start, plan)),
+        Backend::Gpu(gpu) => Box::new(run_on_gpu(gpu, problem, start, plan).unwrap()),
     }
 }

@@ -55,6 +55,11 @@ fn options_out_of_range_are_named() {
         ("inner", Options { inner: 0, ..default() }),
         ("sharpness", Options { sharpness: sharpness(11, 4), ..default() }),
         ("sharpness", Options { sharpness: sharpness(1, 11), ..default() }),
+        // On a device no sweep of such a run was encoded, and it was "converged".
+        (
+            "sharpness",
+            Options { sharpness: Sharpness { first: 5, every: 0, last: 2 }, ..default() },
+        ),
         ("scheme length", Options { scheme: long, ..default() }),
         ("fraction", Options { goal: goal(0.0, 1.0), ..default() }),
         ("fraction", Options { goal: goal(1.5, 1.0), ..default() }),

@@ -54,8 +54,8 @@ fn metrics_without_a_barrier_leave_no_slivers() {
     assert!(support::worst_imr(&mild) < 30.0 && support::worst_imr(perturbed()) > 100.0);
     for mesh in [&mild, perturbed()] {
         let smoother = Smoother::new(mesh).unwrap();
-        for metric in [Metric::Edge, Metric::Area] {
-            let guard = metric.properties().shape_guard;
+        for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
+            let guard = metric.properties().shape_guard.min(support::worst_imr(mesh));
             for backend in backends() {
                 let options =
                     Options { scheme: metric.into(), max_sweeps: 150, ..Options::default() };
@@ -69,6 +69,49 @@ fn metrics_without_a_barrier_leave_no_slivers() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
+    // Graded by a power: sizes differ a thousandfold, shapes are good. Evening out lengths and areas would
+    // flatten triangles up to any fixed guard.
+    let even = support::perturb_random(&plate(2000), 0.2, 3);
+    let graded = |[x, y]: [f64; 2]| {
+        let r = x.hypot(y).max(1e-3);
+        [x * r * r, y * r * r]
+    };
+    let mut mesh = even.clone();
+    mesh.points.iter_mut().for_each(|p| *p = graded(*p));
+    let smoother = Smoother::new(&mesh).unwrap();
+    let before = smoother.quality(&mesh.points).worst_movable_imr;
+    assert!(before < 10.0, "{before}");
+    for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
+        for backend in backends() {
+            let options = Options { scheme: metric.into(), max_sweeps: 100, ..Options::default() };
+            let outcome = run(&smoother, &options, backend);
+            let after = smoother.quality(&outcome.points);
+            let label = format!("{metric} on the {}", name(backend));
+            let start = smoother.quality(&mesh.points).f(metric);
+            assert!(after.f(metric) < start, "{label} does nothing");
+            let worst = after.worst_movable_imr;
+            assert!(worst <= before * (1.0 + 1e-4), "{label}: {worst} from {before}");
+        }
+    }
+}
+
+#[test]
+fn an_optimal_mesh_comes_back_as_it_was() {
+    // A device's rounding moved thousands of vertices by a millionth and raised f in the eighth digit.
+    let smoother = Smoother::new(perturbed()).unwrap();
+    let options = Options { tolerance: 1e-13, max_sweeps: 300, ..Options::default() };
+    let outcome = run(&smoother, &options, &backends()[0]);
+    let optimal = with_points(perturbed(), &outcome.points);
+    let smoother = Smoother::new(&optimal).unwrap();
+    for backend in backends() {
+        let outcome = run(&smoother, &Options::default(), backend);
+        assert!(outcome.points == optimal.points, "on the {}", name(backend));
+        assert_eq!((outcome.best_sweep, outcome.returned), (0, 0));
     }
 }
 
@@ -117,7 +160,27 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         let outcome = run(&smoother, &Options::default(), backend);
-        assert!(outcome.returned > 0, "on the {} nothing was rounded over", name(backend));
         assert!(support::is_ccw(&with_points(&mesh, &outcome.points)), "on the {}", name(backend));
+        let f = |points: &[[f64; 2]]| smoother.quality(points).f(Metric::Imr);
+        let (before, after) = (f(&mesh.points), f(&outcome.points));
+        assert!(after <= before, "on the {}: {after} from {before}", name(backend));
+    }
+}
+
+#[test]
+fn what_rounding_makes_worse_than_the_start_is_not_returned() {
+    // One free vertex among whole numbers: every place it can be written down at is worse than where it is.
+    let far = 2f64.powi(52);
+    let at = |x: f64, y: f64| [far + x, far + y];
+    let mesh = Mesh {
+        points: vec![at(1.0, 3.0), at(0.0, 1.0), at(3.0, 0.0), at(1.0, 2.0)],
+        triangles: vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        fixed: vec![],
+    };
+    let smoother = Smoother::new(&mesh).unwrap();
+    for backend in backends() {
+        let outcome = run(&smoother, &Options::default(), backend);
+        assert_eq!(outcome.points, mesh.points, "on the {}", name(backend));
+        assert_eq!(outcome.best_sweep, 0);
     }
 }

@@ -13,7 +13,7 @@ use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::Publish;
-use crate::gpu::run::Run;
+use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Metric;
 
@@ -50,7 +50,7 @@ impl ObjectiveValues {
 /// A place in a buffer of the application, bound to the sweeps whose scheme is to be judged. Made by
 /// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); outlives the sweeps.
 pub struct BoundObjective {
-    run: Arc<Run>,
+    dispatches: Arc<Dispatches>,
     publish: Pipeline,
     bind_group: wgpu::BindGroup,
 }
@@ -58,14 +58,14 @@ pub struct BoundObjective {
 impl BoundObjective {
     pub(crate) fn new(
         gpu: &Gpu,
-        run: &Arc<Run>,
+        dispatches: &Arc<Dispatches>,
         triangles: usize,
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<Self, GpuError> {
         let window = Window::new(gpu, buffer, offset, size_of::<ObjectiveValues>() as u64)?;
         let mut ideal_squared = [[0.0; 4]; 2];
-        for metric in run.plan.tracked() {
+        for metric in dispatches.plan.tracked() {
             let slot = metric as usize;
             ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
         }
@@ -77,19 +77,19 @@ impl BoundObjective {
         };
         let bind_group = scoped(&gpu.device, || {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
-            let control = run.control.as_entire_binding();
+            let control = dispatches.control.as_entire_binding();
             let resources = [uniform.as_entire_binding(), control, window.binding()];
             gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
         })?;
         let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
-        Ok(Self { run: Arc::clone(run), publish, bind_group })
+        Ok(Self { dispatches: Arc::clone(dispatches), publish, bind_group })
     }
 
     /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
     /// [`ObjectiveValues`].
     pub fn encode(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth objective");
-        self.run.encode_evaluation(&mut passes);
+        self.dispatches.encode_evaluation(&mut passes);
         passes.run(&self.publish, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);
             pass.dispatch_workgroups(1, 1, 1);

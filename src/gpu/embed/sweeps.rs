@@ -7,9 +7,8 @@ use crate::error::SmoothError;
 use crate::gpu::embed::BoundObjective;
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::Encoder;
-use crate::gpu::run::Run;
+use crate::gpu::run::Dispatches;
 use crate::run::Options;
-use crate::run::{Plan, StopRule};
 
 /// A scheme bound to a mesh on the device. Encodes into the application's command encoder; never submits,
 /// never reads back, never stops by itself.
@@ -17,7 +16,7 @@ use crate::run::{Plan, StopRule};
 /// Several can be bound to one mesh, and those of several meshes interleaved in one encoder.
 pub struct Sweeps {
     gpu: crate::gpu::Gpu,
-    run: Arc<Run>,
+    dispatches: Arc<Dispatches>,
     triangles: usize,
     done: u32,
 }
@@ -33,11 +32,12 @@ impl Sweeps {
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         options.check()?;
-        let stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
-        let plan = Plan { stop, ..options.plan() };
-        let run = Arc::new(Run::new(&mesh.gpu, &mesh.problem, &mesh.buffers, plan, false)?);
+        let plan = options.plan().endless();
+        let steps = plan.steps();
+        let DeviceMesh { gpu, problem, buffers, .. } = mesh;
+        let dispatches = Arc::new(Dispatches::new(gpu, problem, buffers, plan, steps, false)?);
         let triangles = mesh.problem.triangles().len();
-        Ok(Self { gpu: mesh.gpu.clone(), run, triangles, done: 0 })
+        Ok(Self { gpu: mesh.gpu.clone(), dispatches, triangles, done: 0 })
     }
 
     /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it.
@@ -45,7 +45,7 @@ impl Sweeps {
         let mut passes = encoder.passes("gpu-smooth sweeps");
         for _ in 0..sweeps {
             self.done = self.done.saturating_add(1);
-            self.run.encode_sweep(&mut passes, self.done);
+            self.dispatches.encode_sweep(&mut passes, &self.dispatches.plan.step(self.done));
         }
     }
 
@@ -65,6 +65,6 @@ impl Sweeps {
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<BoundObjective, GpuError> {
-        BoundObjective::new(&self.gpu, &self.run, self.triangles, buffer, offset)
+        BoundObjective::new(&self.gpu, &self.dispatches, self.triangles, buffer, offset)
     }
 }

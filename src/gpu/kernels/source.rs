@@ -8,8 +8,8 @@ use crate::gpu::kernels::uniforms::{
 };
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
-use crate::run::plan::{NOISE, line_search};
 use crate::run::{Derivatives, Stop};
+use crate::run::{NOISE, line_search};
 
 const COMMON: &str = include_str!("../../../shaders/common.wgsl");
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
@@ -17,6 +17,7 @@ const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.w
 const PAIRS: &str = include_str!("../../../shaders/pairs.wgsl");
 const PARAMS: &str = include_str!("../../../shaders/params.wgsl");
 const CONTROL: &str = include_str!("../../../shaders/control.wgsl");
+const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
 const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
 const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
@@ -123,6 +124,7 @@ fn constants() -> String {
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
         ("HISTORY", HISTORY),
         ("SLOTS", SLOTS as u32),
+        ("SLOT_VECTORS", SLOTS.div_ceil(4) as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),
         ("HELD", HELD),
@@ -153,9 +155,19 @@ fn constants() -> String {
 /// The metric a sweep minimizes, under the names newton.wgsl calls.
 fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
     let properties = metric.properties();
-    let name = metric.name();
-    let guard = properties.shape_guard * (1.0 - line_search::GUARD_RESERVE);
-    let mut text = properties.wgsl.to_owned();
+    let name = wgsl_name(metric);
+    let mut text = INVARIANTS.to_owned() + properties.wgsl;
+    let (excess, model, derivatives_of) = match metric.is_smooth() {
+        true => {
+            let value = format!("{name}_value(invariants(t))");
+            (value.clone(), value, format!("expansion(t, {name}_slopes(invariants(t)))"))
+        }
+        false => (
+            format!("{name}_excess(t)"),
+            format!("{name}_model(t)"),
+            format!("{name}_derivatives(t)"),
+        ),
+    };
     let _ = write!(
         text,
         "
@@ -164,17 +176,15 @@ const EIGENVALUE_FLOOR: f32 = {floor:?}f;
 const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
 const GUARDED: bool = {guarded};
-const SHAPE_GUARD: f32 = {guard:?}f;
 const SETTLED: f32 = {settled:?}f;
-fn metric_model(t: Corner) -> f32 {{ return {name}_model(t); }}
-fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
+fn metric_model(t: Corner) -> f32 {{ return {model}; }}
+fn metric_excess(t: Corner) -> f32 {{ return {excess}; }}
 ",
         index = metric as u32,
         floor = properties.eigenvalue_floor,
         ideal = metric.ideal_squared(),
         quadratic = properties.quadratic,
-        guarded = guard.is_finite(),
-        guard = if guard.is_finite() { guard } else { 0.0 },
+        guarded = properties.shape_guard.is_finite(),
         settled = match derivatives {
             Derivatives::Analytic => line_search::SETTLED,
             Derivatives::FiniteDifference => 0.0,
@@ -184,7 +194,7 @@ fn metric_excess(t: Corner) -> f32 {{ return {name}_excess(t); }}
         Derivatives::Analytic => {
             let _ = write!(
                 text,
-                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return {name}_derivatives(t); }}
+                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return {derivatives_of}; }}
 fn difference_width(p: Patch) -> f32 {{ return 0.0; }}
 "
             );
@@ -211,32 +221,37 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
 /// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted; its shape
 /// beside them.
 fn tracked_metrics(metrics: &[Metric]) -> String {
-    let mut text: String = metrics.iter().map(|m| m.properties().wgsl).collect();
-    // AR is equal to IMR.
-    let known = metrics.iter().position(|m| matches!(m, Metric::Imr | Metric::Ar));
-    let shape = match known {
-        Some(i) => format!("values[{i}]"),
-        None => {
-            text.push_str(Metric::Imr.properties().wgsl);
-            format!("{}_excess(t)", Metric::Imr)
-        }
+    let mut text = INVARIANTS.to_owned();
+    text.extend(metrics.iter().map(|m| m.properties().wgsl));
+    let call = |&metric: &Metric| {
+        let name = wgsl_name(metric);
+        if metric.is_smooth() { format!("{name}_value(i)") } else { format!("{name}_excess(t)") }
     };
-    let mut calls: Vec<String> = metrics.iter().map(|m| format!("{m}_excess(t)")).collect();
+    let mut calls: Vec<String> = metrics.iter().map(call).collect();
     calls.push("select(0.0, 1.0, doubled_area(t) <= 0.0)".to_owned());
     let _ = write!(
         text,
         "const TRACKED: u32 = {count}u;
 fn tracked_values(t: Corner) -> array<f32, TRACKED> {{
+    let i = invariants(t);
     return array<f32, TRACKED>({calls});
 }}
-fn shape_excess(t: Corner, values: array<f32, TRACKED>) -> f32 {{
-    return {shape};
+// The squared inverse mean ratio less one.
+fn shape_excess(t: Corner) -> f32 {{
+    let i = invariants(t);
+    let m = i.excess / i.area;
+    return m * (m + 2.0);
 }}
 ",
         count = calls.len(),
         calls = calls.join(", ")
     );
     text
+}
+
+/// The name of a metric in its WGSL.
+fn wgsl_name(metric: Metric) -> String {
+    metric.name().replace('-', "_")
 }
 
 /// Which slots the tracked sums belong to.

@@ -49,8 +49,9 @@ pub(crate) struct Part {
     pub(crate) count: u32,
     pub(crate) omega: f32,
     pub(crate) sharpness: u32,
+    pub(crate) shape_guard: f32,
     pub(crate) ring_base: u32,
-    pub(crate) padding: [u32; 3],
+    pub(crate) padding: [u32; 2],
 }
 
 /// `LevelOp` in shaders/levels/common.wgsl.
@@ -71,7 +72,8 @@ pub(crate) struct LevelOp {
     pub(crate) out: u32,
     pub(crate) a: f32,
     pub(crate) b: f32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) shape_guard: f32,
+    pub(crate) padding: u32,
 }
 
 /// `Control` in shaders/control.wgsl.
@@ -108,7 +110,7 @@ pub(crate) struct Publish {
     pub(crate) offset: u32,
     pub(crate) triangles: u32,
     pub(crate) padding: [u32; 2],
-    pub(crate) ideal_squared: [[f32; 4]; 2],
+    pub(crate) ideal_squared: [[f32; 4]; SLOTS.div_ceil(4)],
 }
 
 /// A double as the sum of two floats.
@@ -179,7 +181,7 @@ mod tests {
                 mean_area,
             }
         );
-        mirrors!(run, Part { first, count, omega, sharpness, ring_base });
+        mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base });
         mirrors!(
             &Kernel::Apply,
             LevelOp {
@@ -196,7 +198,8 @@ mod tests {
                 step,
                 out,
                 a,
-                b
+                b,
+                shape_guard
             }
         );
         for kernel in [run, &Kernel::Publish] {

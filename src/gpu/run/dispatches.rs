@@ -18,32 +18,31 @@ use crate::gpu::mesh::{Parts, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::run::multilevel::OMEGAS;
-use crate::run::{Plan, Sharpness, StopRule};
+use crate::run::{Derivatives, Plan, Step, StopRule};
 
-/// A plan bound to a mesh on the device: encodes sweeps and evaluations, submits nothing.
-pub(crate) struct Run {
+/// The dispatches of a plan, bound to a mesh on the device: encodes sweeps and evaluations, submits nothing.
+pub(crate) struct Dispatches {
     pub(crate) plan: Plan,
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
     /// One, or one for each part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
-    sweeps: Vec<(Metric, Pipeline)>,
+    sweeps: Vec<(Metric, Derivatives, Pipeline)>,
     objective: Pipeline,
     finish: Pipeline,
     keep_best: Option<Pipeline>,
     objective_groups: u32,
-    steps: Steps,
+    uniforms: Uniforms,
 }
 
 /// What the dispatches are for, and the uniforms that say so: those of sweeps by step, then by color and part; then
 /// those of the triangles; then those of the free vertices.
-struct Steps {
-    /// Every different way a sweep of the plan steps: over-relaxation and sharpness.
-    known: Vec<(f32, u32)>,
+struct Uniforms {
+    /// Every different step of the run.
+    steps: Vec<Step>,
     /// The dispatches of a sweep.
-    sweep: Vec<Dispatch>,
+    sweep: Vec<ColorPart>,
     triangles: Vec<Range<u32>>,
     free: Vec<Range<u32>>,
     /// Bytes from one uniform to the next.
@@ -51,7 +50,7 @@ struct Steps {
 }
 
 /// Free vertices of one color whose one-rings are bound at once.
-struct Dispatch {
+struct ColorPart {
     color: u32,
     /// The number of the part.
     part: usize,
@@ -59,56 +58,39 @@ struct Dispatch {
     ring_base: u32,
 }
 
-impl Steps {
-    fn new(gpu: &Gpu, plan: &Plan, colors: &[Range<u32>], parts: &Parts) -> Self {
-        let Sharpness { first, last, .. } = plan.sharpness;
-        let mut known = Vec::new();
-        for &metric in plan.scheme.metrics() {
-            let corrected = OMEGAS.map(|omega| omega as f32);
-            let own = plan.omega[metric as usize] as f32;
-            for omega in [1.0, own].into_iter().chain(corrected) {
-                for sharpness in first..=last.max(first) {
-                    if !known.contains(&(omega, sharpness)) {
-                        known.push((omega, sharpness));
-                    }
-                }
-            }
-        }
+impl Uniforms {
+    fn new(gpu: &Gpu, steps: Vec<Step>, colors: &[Range<u32>], parts: &Parts) -> Self {
         let mut sweep = Vec::new();
         for (color, of_color) in (0..).zip(colors) {
             for (part, ring) in parts.rings.iter().enumerate() {
                 let first = of_color.start.max(ring.vertices.start);
                 let vertices = first..of_color.end.min(ring.vertices.end);
                 if !vertices.is_empty() {
-                    sweep.push(Dispatch { color, part, vertices, ring_base: ring.entries.start });
+                    sweep.push(ColorPart { color, part, vertices, ring_base: ring.entries.start });
                 }
             }
         }
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
         let stride = alignment.max(size_of::<Part>() as u32);
         let (triangles, free) = (parts.triangles.clone(), parts.free.clone());
-        Self { known, sweep, triangles, free, stride }
+        Self { steps, sweep, triangles, free, stride }
     }
 
-    /// Over-relaxation and sharpness of a sweep.
-    fn of(plan: &Plan, sweep: u32) -> (f32, u32) {
-        (plan.omega(plan.scheme.metric(sweep), sweep) as f32, plan.sharpness.of(sweep))
-    }
-
-    fn uniforms(&self) -> Vec<u8> {
+    fn bytes(&self) -> Vec<u8> {
         let mut parts = Vec::new();
         let part = |range: &Range<u32>| {
             let (first, count) = (range.start, range.end - range.start);
             Part { first, count, ..Part::default() }
         };
-        for &(omega, sharpness) in &self.known {
-            let steps = |d: &Dispatch| Part {
-                omega,
-                sharpness,
+        for step in &self.steps {
+            let of_color = |d: &ColorPart| Part {
+                omega: step.omega as f32,
+                sharpness: step.sharpness,
+                shape_guard: step.shape_guard.min(f32::MAX.into()) as f32,
                 ring_base: d.ring_base,
                 ..part(&d.vertices)
             };
-            parts.extend(self.sweep.iter().map(steps));
+            parts.extend(self.sweep.iter().map(of_color));
         }
         parts.extend(self.triangles.iter().chain(&self.free).map(part));
         let mut bytes = vec![0; parts.len() * self.stride as usize];
@@ -118,13 +100,13 @@ impl Steps {
         bytes
     }
 
-    /// Where the uniforms of a step begin, if it is known.
-    fn of_step(&self, step: (f32, u32)) -> Option<usize> {
-        Some(self.known.iter().position(|&known| known == step)? * self.sweep.len())
+    /// Where the uniforms of a step begin, if it is one of the run's.
+    fn of_step(&self, step: &Step) -> Option<usize> {
+        Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
 
     fn of_triangles(&self) -> usize {
-        self.known.len() * self.sweep.len()
+        self.steps.len() * self.sweep.len()
     }
 
     fn of_free(&self) -> usize {
@@ -132,25 +114,24 @@ impl Steps {
     }
 }
 
-impl Run {
-    /// Makes the pipelines and buffers of a plan. Without `keep_best` the state of interest is always
-    /// the last.
+impl Dispatches {
+    /// Makes the pipelines and buffers of a plan whose sweeps are among `steps`. Without `keep_best` the state of
+    /// interest is always the last.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
         plan: Plan,
+        steps: Vec<Step>,
         keep_best: bool,
     ) -> Result<Self, GpuError> {
         let positions = mesh.parts.positions();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
-        let mut sweeps: Vec<(Metric, Pipeline)> = Vec::new();
-        for &metric in plan.scheme.metrics() {
-            if sweeps.iter().all(|&(known, _)| known != metric) {
-                sweeps.push((
-                    metric,
-                    pipeline(Kernel::Sweep(metric, plan.derivatives[metric as usize]))?,
-                ));
+        let mut sweeps: Vec<(Metric, Derivatives, Pipeline)> = Vec::new();
+        for &Step { metric, derivatives, .. } in &steps {
+            if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
+                let sweep = pipeline(Kernel::Sweep(metric, derivatives))?;
+                sweeps.push((metric, derivatives, sweep));
             }
         }
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;
@@ -161,12 +142,12 @@ impl Run {
         let partial_bytes =
             (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
-        let steps = Steps::new(gpu, &plan, problem.colors(), &mesh.parts);
+        let uniforms = Uniforms::new(gpu, steps, problem.colors(), &mesh.parts);
         let params = params(problem, &plan, partials);
 
         let (control, best, params, bind_groups) = scoped(&gpu.device, || {
             let params = filled(gpu, "params", &[params], Usage::UNIFORM);
-            let uniforms = filled(gpu, "parts", &steps.uniforms(), Usage::UNIFORM);
+            let parts = filled(gpu, "parts", &uniforms.bytes(), Usage::UNIFORM);
             let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
             // Zeros: not done, nothing evaluated.
             let control = zeroed(
@@ -180,12 +161,12 @@ impl Run {
             let bind_groups = (0..mesh.parts.count()).map(|part| {
                 let (positions, beyond) = mesh.bind_positions();
                 let kept = match keep_best {
-                    Some(_) => rows(&best, of_part(&steps.free, part), POSITION),
+                    Some(_) => rows(&best, of_part(&uniforms.free, part), POSITION),
                     None => best.as_entire_binding(),
                 };
                 let mut resources = vec![
                     params.as_entire_binding(),
-                    uniform::<Part>(&uniforms),
+                    uniform::<Part>(&parts),
                     positions,
                     mesh.ring_start.as_entire_binding(),
                     mesh.bind_ring(part),
@@ -211,29 +192,20 @@ impl Run {
             finish,
             keep_best,
             objective_groups: partials / WORKGROUP,
-            steps,
+            uniforms,
         })
     }
 
-    /// One sweep over all colors; sweeps count from 1.
-    pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, sweep: u32) {
-        let step = Steps::of(&self.plan, sweep);
-        self.encode_step(passes, self.plan.scheme.metric(sweep), step);
-    }
-
-    /// One sweep with the base metric, over-relaxed as a multilevel run wants it.
-    pub(crate) fn encode_relaxed_sweep(&self, passes: &mut Passes<'_>, omega: f64) {
-        let step = (omega as f32, self.plan.sharpness.last);
-        self.encode_step(passes, self.plan.scheme.base(), step);
-    }
-
-    fn encode_step(&self, passes: &mut Passes<'_>, metric: Metric, step: (f32, u32)) {
-        let pipeline = self.sweeps.iter().find(|&&(known, _)| known == metric);
-        // Both were made for every sweep of the plan.
-        let (Some((_, pipeline)), Some(first)) = (pipeline, self.steps.of_step(step)) else {
+    /// One sweep over all colors, as one of the run's steps says.
+    pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &Step) {
+        let key = (step.metric, step.derivatives);
+        let pipeline = self.sweeps.iter().find(|known| (known.0, known.1) == key);
+        // Both were made for every step of the run.
+        let (Some((_, _, pipeline)), Some(first)) = (pipeline, self.uniforms.of_step(step)) else {
+            debug_assert!(false, "no step of this run: {step:?}");
             return;
         };
-        for (i, Dispatch { color, part, vertices, .. }) in self.steps.sweep.iter().enumerate() {
+        for (i, ColorPart { color, part, vertices, .. }) in self.uniforms.sweep.iter().enumerate() {
             passes.run(pipeline, Some(*color), |pass| {
                 self.bind(pass, *part, first + i);
                 dispatch(pass, vertices.end - vertices.start);
@@ -243,9 +215,9 @@ impl Run {
 
     /// Evaluates the objectives, judges, and keeps the positions if they are the best.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
-        for part in 0..self.steps.triangles.len() {
+        for part in 0..self.uniforms.triangles.len() {
             passes.run(&self.objective, None, |pass| {
-                self.bind(pass, part, self.steps.of_triangles() + part);
+                self.bind(pass, part, self.uniforms.of_triangles() + part);
                 pass.dispatch_workgroups(self.objective_groups, 1, 1);
             });
         }
@@ -254,16 +226,16 @@ impl Run {
             pass.dispatch_workgroups(1, 1, 1);
         });
         let Some(keep_best) = &self.keep_best else { return };
-        for (part, vertices) in self.steps.free.iter().enumerate() {
+        for (part, vertices) in self.uniforms.free.iter().enumerate() {
             passes.run(keep_best, None, |pass| {
-                self.bind(pass, part, self.steps.of_free() + part);
+                self.bind(pass, part, self.uniforms.of_free() + part);
                 dispatch(pass, vertices.end - vertices.start);
             });
         }
     }
 
     fn bind(&self, pass: &mut wgpu::ComputePass<'_>, part: usize, uniform: usize) {
-        pass.set_bind_group(0, &self.bind_groups[part], &[uniform as u32 * self.steps.stride]);
+        pass.set_bind_group(0, &self.bind_groups[part], &[uniform as u32 * self.uniforms.stride]);
     }
 }
 

@@ -1,155 +1,209 @@
 //! The wgpu engine: several sweeps to a submission, judged on the device.
 
+use std::borrow::Cow;
+
 use glam::DVec2;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::readback::{self, Waiting};
-use crate::gpu::encode::sealed::Target;
+use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
 use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::run::Run;
+use crate::gpu::run::dispatches::Dispatches;
+use crate::gpu::run::levels::Levels;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::run::Objectives;
-use crate::run::{Plan, Stop};
+use crate::run::multilevel::Hierarchy;
+use crate::run::{Engine, History, Objectives, Plan, Proposal, Step, Stop};
 
-/// A run on a device.
-pub struct GpuEngine<'a> {
+/// A mesh that is swept on a device.
+pub(crate) struct GpuEngine<'a> {
     gpu: &'a Gpu,
     problem: &'a Problem,
     start: &'a [DVec2],
     mesh: MeshBuffers,
-    run: Run,
+    dispatches: Dispatches,
+    levels: Option<Levels>,
+    /// What the levels were made from.
+    hierarchy: Option<Hierarchy>,
     waiting: Waiting,
     /// Evaluations read back so far.
     evaluated: u32,
-    stop: Option<Stop>,
 }
 
 impl<'a> GpuEngine<'a> {
     /// Uploads the problem with its vertices at `start` (normalized and in the problem's order)
-    /// and makes the pipelines the plan needs.
+    /// and makes the pipelines of `steps`, all that a run by the plan may take. The plan's stop rule is what the
+    /// device ends [`Engine::sweeps`] by.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or what the device refuses.
-    pub fn new(
+    pub(crate) fn new(
         gpu: &'a Gpu,
         problem: &'a Problem,
         start: &'a [DVec2],
         plan: Plan,
+        steps: Vec<Step>,
+        waiting: Waiting,
     ) -> Result<Self, GpuError> {
         gpu.check()?;
         let mesh = MeshBuffers::new(gpu, problem, start)?;
         let keep_best = !plan.is_monotone();
-        let run = Run::new(gpu, problem, &mesh, plan, keep_best)?;
-        let waiting = Waiting::Block;
-        Ok(Self { gpu, problem, start, mesh, run, waiting, evaluated: 0, stop: None })
+        let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best)?;
+        let (levels, hierarchy) = (None, None);
+        Ok(Self { gpu, problem, start, mesh, dispatches, levels, hierarchy, waiting, evaluated: 0 })
     }
 
-    /// Lets the asynchronous calls wait for somebody else to poll the device.
-    #[must_use]
-    pub(crate) fn waiting(mut self, waiting: Waiting) -> Self {
-        self.waiting = waiting;
-        self
-    }
-
-    /// Submits `sweeps` sweeps, the first evaluation in front if there was none yet.
-    fn submit(&self, sweeps: u32) -> Result<(), GpuError> {
-        let label = Some("gpu-smooth sweeps");
+    fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
+        let label = "gpu-smooth run";
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
         scoped(&self.gpu.device, || {
-            let mut encoder =
-                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-            {
-                let mut passes = encoder.passes("gpu-smooth sweeps");
-                if self.evaluated == 0 {
-                    self.run.encode_evaluation(&mut passes);
-                }
-                let first = self.evaluated.max(1);
-                for sweep in first..first + sweeps {
-                    self.run.encode_sweep(&mut passes, sweep);
-                    self.run.encode_evaluation(&mut passes);
-                }
-            }
+            let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+            encode(&mut encoder.passes(label));
             self.gpu.queue.submit([encoder.finish()]);
         })
     }
 
-    /// Reads what the device has done since the last call.
-    async fn collect(&mut self, log: &mut Vec<Objectives>) -> Result<(), GpuError> {
-        let control: Vec<Control> =
-            readback::read(self.gpu, &self.run.control, 1, self.waiting).await?;
-        let Some(control) = control.first() else { return Ok(()) };
+    async fn control(&self) -> Result<Control, GpuError> {
+        let control = readback::read(self.gpu, &self.dispatches.control, 1, self.waiting).await?;
+        control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
+    }
+
+    /// Submits sweeps, the first evaluation in front if there was none yet, and adds what the device made of them.
+    async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+        self.submit(|passes| {
+            if self.evaluated == 0 {
+                self.dispatches.encode_evaluation(passes);
+            }
+            for step in steps {
+                self.dispatches.encode_sweep(passes, step);
+                self.dispatches.encode_evaluation(passes);
+            }
+        })?;
+        let control = self.control().await?;
         for evaluation in self.evaluated..control.evaluated {
             let sums = control.history[(evaluation % HISTORY) as usize];
-            log.push(objectives_of(&self.run.plan, &sums, self.problem));
+            history.record(self.objectives_of(&sums));
         }
         self.evaluated = control.evaluated;
-        self.stop = Stop::from_code(control.done);
+        history.end(Stop::from_code(control.done), history.remaining());
         Ok(())
     }
 
-    /// [`Engine::advance`](crate::Engine::advance), as a future.
-    pub(crate) async fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
-        let mut log = Vec::new();
-        let mut left = sweeps;
-        while self.stop.is_none() && (left > 0 || self.evaluated == 0) {
-            // The device's history must be read before it wraps.
-            let batch = left.min(HISTORY / 2);
-            self.submit(batch)?;
-            self.collect(&mut log).await?;
-            left -= batch;
+    /// The objectives from the sums of one evaluation.
+    fn objectives_of(&self, sums: &[[f32; 2]; SLOTS]) -> Objectives {
+        let mut values = Objectives::untracked();
+        for metric in self.dispatches.plan.tracked() {
+            let excess = unpair(sums[metric as usize]) / self.problem.triangles().len() as f64;
+            values.set(metric, metric.ideal_squared() + excess);
         }
-        Ok(log)
+        values
     }
 
-    /// [`Engine::best_positions`](crate::Engine::best_positions), as a future.
-    pub(crate) async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+    /// All positions, given those of the free vertices on the device. Fixed vertices have not moved, and a free one that
+    /// has not keeps all its bits, which the device's pairs of floats do not hold.
+    fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
+        let mut positions = self.start.to_vec();
+        for (position, now) in positions.iter_mut().zip(free) {
+            if now != split(*position) {
+                *position = join(now);
+            }
+        }
+        positions
+    }
+
+    /// The four totals of the objective along the correction.
+    async fn totals(&self, levels: &Levels) -> Result<Proposal, GpuError> {
+        let totals: Vec<[f32; 2]> =
+            readback::read(self.gpu, &levels.vectors, 4, self.waiting).await?;
+        let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
+        let triangles = self.problem.triangles().len() as f64;
+        Ok(Proposal {
+            here: total(0) / triangles,
+            there: (total(2) == 0.0).then(|| total(1) / triangles),
+            slope: total(3) / triangles,
+        })
+    }
+}
+
+impl Engine for GpuEngine<'_> {
+    async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
+        self.submit(|passes| self.dispatches.encode_sweep(passes, step))
+    }
+
+    async fn objectives(&mut self) -> Result<Objectives, GpuError> {
+        self.submit(|passes| self.dispatches.encode_evaluation(passes))?;
+        let control = self.control().await?;
+        let last = control.evaluated.saturating_sub(1) % HISTORY;
+        Ok(self.objectives_of(&control.history[last as usize]))
+    }
+
+    async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+        if steps.is_empty() && self.evaluated == 0 {
+            return self.batch(&[], history).await;
+        }
+        // The device's history must be read before it wraps.
+        for steps in steps.chunks(HISTORY as usize / 2) {
+            if history.stop().is_some() {
+                break;
+            }
+            self.batch(steps, history).await?;
+        }
+        Ok(())
+    }
+
+    async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
         let free = self.problem.free_count();
-        let moved = match self.run.plan.is_monotone() {
+        let moved = self.mesh.read_positions(self.gpu, free, self.waiting).await?;
+        Ok(Cow::Owned(self.moved(moved)))
+    }
+
+    async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        let free = self.problem.free_count();
+        let moved = match self.dispatches.plan.is_monotone() {
             true => self.mesh.read_positions(self.gpu, free, self.waiting).await?,
-            false => readback::read(self.gpu, &self.run.best, free, self.waiting).await?,
+            false => readback::read(self.gpu, &self.dispatches.best, free, self.waiting).await?,
         };
-        Ok(moved_positions(moved, self.start))
-    }
-}
-
-/// The positions that started at `start`, the first of them as the device has `moved` them. Fixed vertices have
-/// not moved, and a free one that has not keeps all its bits, which the device's pairs of floats do not hold.
-pub(crate) fn moved_positions(moved: Vec<[f32; 4]>, start: &[DVec2]) -> Vec<DVec2> {
-    let mut positions = start.to_vec();
-    for (position, now) in positions.iter_mut().zip(moved) {
-        if now != split(*position) {
-            *position = join(now);
-        }
-    }
-    positions
-}
-
-/// The objectives from the sums of one evaluation.
-pub(crate) fn objectives_of(
-    plan: &Plan,
-    sums: &[[f32; 2]; SLOTS],
-    problem: &Problem,
-) -> Objectives {
-    let mut values = Objectives::untracked();
-    for metric in plan.tracked() {
-        let excess = unpair(sums[metric as usize]) / problem.triangles().len() as f64;
-        values.set(metric, metric.ideal_squared() + excess);
-    }
-    values
-}
-
-impl crate::run::Engine for GpuEngine<'_> {
-    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
-        pollster::block_on(GpuEngine::advance(self, sweeps))
+        Ok(self.moved(moved))
     }
 
-    fn stop(&self) -> Option<Stop> {
-        self.stop
+    fn take_hierarchy(&mut self) -> Option<Hierarchy> {
+        self.hierarchy.take()
     }
 
-    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        pollster::block_on(GpuEngine::best_positions(self))
+    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        // Two at once would be more than the mesh itself.
+        self.levels = None;
+        let Self { gpu, problem, mesh, dispatches, .. } = self;
+        self.levels = Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy)?);
+        self.hierarchy = Some(hierarchy);
+        Ok(())
+    }
+
+    async fn propose(&mut self, step: &Step, length: f64) -> Result<Proposal, GpuError> {
+        let Some(levels) = &self.levels else {
+            return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
+        };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|passes| {
+            self.dispatches.encode_sweep(passes, step);
+            levels.encode_correction(passes);
+            levels.encode_along(passes);
+        })?;
+        self.totals(levels).await
+    }
+
+    async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
+        let Some(levels) = &self.levels else { return Ok(None) };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|passes| levels.encode_along(passes))?;
+        Ok(self.totals(levels).await?.there)
+    }
+
+    async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
+        let Some(levels) = &self.levels else { return Ok(()) };
+        levels.set_length(self.gpu, length as f32);
+        self.submit(|passes| levels.encode_take(passes))
     }
 }

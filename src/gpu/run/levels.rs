@@ -13,10 +13,10 @@ use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::{LevelOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
+use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::metric::Metric;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
 /// A hierarchy bound to a mesh on the device: encodes, submits nothing.
@@ -215,7 +215,7 @@ struct Uploaded {
 }
 
 impl Levels {
-    /// Uploads a hierarchy and makes the pipelines it needs. `params` are those of the run on `mesh`.
+    /// Uploads a hierarchy and makes the pipelines it needs, for corrections of a run by its base metric.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if it is too large for the device.
@@ -223,10 +223,11 @@ impl Levels {
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
-        params: &wgpu::Buffer,
-        metric: Metric,
+        dispatches: &Dispatches,
         hierarchy: &Hierarchy,
     ) -> Result<Self, GpuError> {
+        let metric = dispatches.plan.scheme.base();
+        let guard = dispatches.plan.base_step(1.0).shape_guard.min(f32::MAX.into()) as f32;
         let mut layout = Layout {
             gpu,
             positions: mesh.parts.positions(),
@@ -275,7 +276,7 @@ impl Levels {
         let mut along = Vec::new();
         for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
             let (rows, first) = (triangles.end - triangles.start, triangles.start);
-            let op = LevelOp { rows, first, out: sums, ..fine };
+            let op = LevelOp { rows, first, out: sums, shape_guard: guard, ..fine };
             let groups = Groups::Just(partials / WORKGROUP);
             along.push(layout.step(Kernel::Along(metric), Bound::Fine { part }, groups, op)?);
         }
@@ -298,7 +299,7 @@ impl Levels {
             ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
         }
         let Uploaded { bind_groups, ops, vectors } =
-            scoped(&gpu.device, || layout.upload(mesh, free, params, &ops))?;
+            scoped(&gpu.device, || layout.upload(mesh, free, &dispatches.params, &ops))?;
         Ok(Self { bind_groups, ops, stride, correction, along, total, take, vectors })
     }
 

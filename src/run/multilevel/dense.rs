@@ -1,6 +1,6 @@
 //! The coarsest level, solved directly.
 
-use super::sparse::Sparse;
+use crate::run::multilevel::sparse::Sparse;
 
 /// The inverse of a symmetric positive definite matrix, row by row.
 ///

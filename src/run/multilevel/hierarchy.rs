@@ -1,13 +1,13 @@
 //! The levels of a mesh: aggregates, and the graph Laplacians on them.
 
 use glam::DVec2;
-use rayon::prelude::*;
 
-use super::aggregate::{Aggregates, NONE};
-use super::dense;
-use super::sparse::Sparse;
 use crate::layout::Problem;
 use crate::metric::Stiffness;
+use crate::parallel::collect;
+use crate::run::multilevel::aggregate::{Aggregates, NONE};
+use crate::run::multilevel::dense;
+use crate::run::multilevel::sparse::Sparse;
 
 /// Unknowns up to which a level is solved directly.
 const DIRECT: usize = 96;
@@ -94,9 +94,10 @@ impl Hierarchy {
             let factor = |&v: &u32| root[v as usize] / self.root[v as usize];
             members.iter().map(factor).sum::<f32>() / members.len() as f32
         };
-        let mut factors: Vec<f32> = (self.member_start.par_windows(2).with_min_len(256))
-            .map(|range| mean(&self.member[range[0] as usize..range[1] as usize]))
-            .collect();
+        let start = &self.member_start;
+        let mut factors = collect(start.len() - 1, |aggregate| {
+            mean(&self.member[start[aggregate] as usize..start[aggregate + 1] as usize])
+        });
         self.root = root;
         self.inverse_diagonal = self.diagonal_inverted(problem);
         for Level { operator, inverse_diagonal, coarser } in &mut self.levels {
@@ -114,8 +115,7 @@ impl Hierarchy {
     fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
             |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
-        let free = 0..problem.free_count();
-        free.into_par_iter().with_min_len(256).map(|v| 1.0 / diagonal(v)).collect()
+        collect(problem.free_count(), |v| 1.0 / diagonal(v))
     }
 
     /// Galerkin's operator on the aggregates. The prolongation to the vertices is not kept: it follows from
@@ -240,7 +240,7 @@ fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f3
     match stiffness {
         Stiffness::BySize(factor) => {
             let sizes = element_sizes(problem, positions);
-            sizes.into_par_iter().map(|size| (factor as f32 / size).sqrt()).collect()
+            sizes.into_iter().map(|size| (factor as f32 / size).sqrt()).collect()
         }
         Stiffness::Uniform(factor) => {
             let root = (factor / (2.0 * problem.mean_area())).sqrt();
@@ -252,29 +252,21 @@ fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f3
 /// The mean doubled area of the triangles at each free vertex, averaged once with its neighbors.
 fn element_sizes(problem: &Problem, positions: &[DVec2]) -> Vec<f32> {
     let free = problem.free_count();
-    let own: Vec<f32> = (0..free)
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|v| {
-            let start = problem.ring_start();
-            let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-            let edge = |k: u32| positions[k as usize] - positions[v];
-            let next = ring.iter().skip(1).chain(ring.first());
-            let doubled: f64 =
-                ring.iter().zip(next).map(|(&a, &b)| edge(a).perp_dot(edge(b)).abs()).sum();
-            (doubled / ring.len() as f64) as f32
-        })
-        .collect();
-    (0..free)
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|v| {
-            let (mut sum, mut count) = (own[v], 1.0);
-            for size in neighbors(problem, v).filter_map(|k| own.get(k as usize)) {
-                sum += size;
-                count += 1.0;
-            }
-            sum / count
-        })
-        .collect()
+    let own: Vec<f32> = collect(free, |v| {
+        let start = problem.ring_start();
+        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
+        let edge = |k: u32| positions[k as usize] - positions[v];
+        let next = ring.iter().skip(1).chain(ring.first());
+        let doubled: f64 =
+            ring.iter().zip(next).map(|(&a, &b)| edge(a).perp_dot(edge(b)).abs()).sum();
+        (doubled / ring.len() as f64) as f32
+    });
+    collect(free, |v| {
+        let (mut sum, mut count) = (own[v], 1.0);
+        for size in neighbors(problem, v).filter_map(|k| own.get(k as usize)) {
+            sum += size;
+            count += 1.0;
+        }
+        sum / count
+    })
 }

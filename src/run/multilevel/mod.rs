@@ -10,13 +10,13 @@
 //! bad the mesh. No Hessian is ever assembled.
 
 mod aggregate;
+mod corrections;
 mod dense;
-mod engine;
 mod hierarchy;
 mod search;
 mod sparse;
 
 pub(crate) use aggregate::NONE;
-pub(crate) use engine::{FineLevel, MultilevelEngine, OMEGAS, Proposal};
+pub(crate) use corrections::Corrections;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
 pub(crate) use sparse::Sparse;

@@ -1,6 +1,6 @@
 //! Sparse matrices of the coarse levels.
 
-use rayon::prelude::*;
+use crate::parallel::map_ranges;
 
 /// A sparse matrix as compressed rows.
 #[derive(Clone, Debug, Default)]
@@ -43,18 +43,15 @@ impl Sparse {
         fill: impl Fn(usize, &mut S, &mut RowSum) + Sync,
     ) -> Self {
         let chunk = rows.div_ceil(4 * rayon::current_num_threads()).max(64);
-        let parts: Vec<Sparse> = (0..rows.div_ceil(chunk))
-            .into_par_iter()
-            .map(|part| {
-                let (mut scratch, mut sum) = (scratch(), RowSum::default());
-                let mut matrix = Sparse::default();
-                for row in part * chunk..rows.min((part + 1) * chunk) {
-                    fill(row, &mut scratch, &mut sum);
-                    sum.drain_into(&mut matrix);
-                }
-                matrix
-            })
-            .collect();
+        let parts: Vec<Sparse> = map_ranges(rows, chunk, |range| {
+            let (mut scratch, mut sum) = (scratch(), RowSum::default());
+            let mut matrix = Sparse::default();
+            for row in range {
+                fill(row, &mut scratch, &mut sum);
+                sum.drain_into(&mut matrix);
+            }
+            matrix
+        });
         let mut whole = Sparse { start: Vec::with_capacity(rows + 1), ..Sparse::default() };
         let entries = parts.iter().map(|part| part.column.len()).sum();
         whole.column.reserve_exact(entries);

@@ -6,8 +6,10 @@ mod rates;
 mod report;
 mod sweeps;
 
-use gpu_smooth::gpu::{GpuEngine, Kernel};
-use gpu_smooth::{CpuEngine, Engine, Gpu, Mesh, Options, Problem, SmoothError, prepare};
+use gpu_smooth::gpu::Kernel;
+use gpu_smooth::internal::run_on_gpu;
+use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
+use gpu_smooth::{Gpu, Mesh, Options, SmoothError};
 
 use crate::cli::{BenchArgs, EngineChoice};
 use crate::smooth::read;
@@ -97,12 +99,12 @@ fn measure(
     let plan = options.plan();
     let (seconds, kernels) = match &place.gpu {
         None => {
-            let mut engine = CpuEngine::new(problem, problem.positions().to_vec(), plan);
+            let mut engine = run_on_cpu(problem, problem.positions(), plan);
             (sweeps::time(&mut engine, args.seconds)?, None)
         }
         Some(gpu) => {
-            let mut engine: Box<dyn Engine> =
-                Box::new(GpuEngine::new(gpu, problem, problem.positions(), plan)?);
+            let mut engine: Box<dyn Stepwise> =
+                Box::new(run_on_gpu(gpu, problem, problem.positions(), plan)?);
             let seconds = sweeps::time(&mut *engine, args.seconds)?;
             drop(engine);
             (seconds, kernels::time(gpu, mesh, &options)?)

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use gpu_smooth::{Engine, Problem, SmoothError};
+use gpu_smooth::SmoothError;
+use gpu_smooth::internal::{Problem, Stepwise};
 
 /// Sweeps before the clock starts: kernels are compiled, caches warm, over-relaxation begun.
 const BEFORE: u32 = 6;
@@ -28,7 +29,7 @@ pub(crate) fn objective_bytes(problem: &Problem) -> u64 {
 }
 
 /// The median time of a sweep with the objective after it, in seconds.
-pub(crate) fn time(engine: &mut dyn Engine, seconds: f64) -> Result<f64, SmoothError> {
+pub(crate) fn time(engine: &mut dyn Stepwise, seconds: f64) -> Result<f64, SmoothError> {
     engine.advance(BEFORE)?;
     let mut timed = |sweeps: u32| -> Result<f64, SmoothError> {
         let start = Instant::now();

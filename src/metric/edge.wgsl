@@ -46,6 +46,11 @@ fn edge_model(t: Corner) -> f32 {
     return edge_norm(edge_powers(t));
 }
 
+// xx, xy, yy of u vᵀ + v uᵀ.
+fn edge_symmetric(u: vec2<f32>, v: vec2<f32>) -> vec3<f32> {
+    return vec3(2.0 * u.x * v.x, u.x * v.y + u.y * v.x, 2.0 * u.y * v.y);
+}
+
 fn edge_derivatives(t: Corner) -> Derivatives {
     let p = edge_powers(t);
     let k = f32(1u << sharpness);
@@ -58,16 +63,16 @@ fn edge_derivatives(t: Corner) -> Derivatives {
     let mean_a = wa.x * u + wa.y * v;
     let mean_b = wb.x * u + wb.y * v;
     let g = mean_a - mean_b;
-    let uu = 0.5 * symmetric(u, u);
-    let vv = 0.5 * symmetric(v, v);
+    let uu = 0.5 * edge_symmetric(u, u);
+    let vv = 0.5 * edge_symmetric(v, v);
     let net = wa - wb;
     let both = wa + wb;
     // Hessian of the logarithm: the edges' own curvature, and how their shares shift.
     let own = net.x * (vec3(2.0, 0.0, 2.0) / p.lengths.x - uu)
         + net.y * (vec3(2.0, 0.0, 2.0) / p.lengths.y - vv);
     let spread = both.x * uu + both.y * vv
-        - 0.5 * (symmetric(mean_a, mean_a) + symmetric(mean_b, mean_b));
+        - 0.5 * (edge_symmetric(mean_a, mean_a) + edge_symmetric(mean_b, mean_b));
     let value = edge_norm(p);
     let q = value + 1.0;
-    return Derivatives(value, q * g, q * (own + k * spread + 0.5 * symmetric(g, g)));
+    return Derivatives(value, q * g, q * (own + k * spread + 0.5 * edge_symmetric(g, g)));
 }

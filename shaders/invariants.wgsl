@@ -1,0 +1,48 @@
+// The invariants of a triangle, and the chain rule from derivatives by them to derivatives by its vertex.
+
+const TARGET_W: f32 = 0.57735026919; // 1/√3
+
+// As the Rust struct Invariants (src/metric/corner.rs): excess is √3/6 times the sum of the squared lengths less
+// the doubled area, by a sum of squares; area is the doubled area; mean the doubled mean area.
+struct Invariants {
+    excess: f32,
+    area: f32,
+    mean: f32,
+}
+
+// The value of a function of the invariants and its partial derivatives, named by what they are taken by.
+struct Slopes {
+    value: f32,
+    excess: f32,
+    area: f32,
+    excess_excess: f32,
+    excess_area: f32,
+    area_area: f32,
+}
+
+// T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3], W equilateral.
+fn distortion(t: Corner) -> vec2<f32> {
+    let s = (2.0 * t.b - t.a) * TARGET_W;
+    return vec2(t.a.x - s.y, s.x + t.a.y);
+}
+
+fn invariants(t: Corner) -> Invariants {
+    let uv = distortion(t);
+    return Invariants(dot(uv, uv) * (0.25 / TARGET_W), doubled_area(t), 2.0 * t.mean_area);
+}
+
+fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
+    let uv = distortion(t);
+    // Moving the vertex changes u by (-1, w) and v by (-w, -1): the Hessian of the excess is 2/√3 times the
+    // identity. The area is linear.
+    let e = vec2(-(uv.x + uv.y * TARGET_W), uv.x * TARGET_W - uv.y) * (0.5 / TARGET_W);
+    let d = vec2(t.a.y - t.b.y, t.b.x - t.a.x);
+    let p = slopes.excess_excess * e + slopes.excess_area * d;
+    let r = slopes.excess_area * e + slopes.area_area * d;
+    let own = slopes.excess * (2.0 * TARGET_W);
+    return Derivatives(
+        slopes.value,
+        slopes.excess * e + slopes.area * d,
+        vec3(own + p.x * e.x + r.x * d.x, p.x * e.y + r.x * d.y, own + p.y * e.y + r.y * d.y),
+    );
+}

@@ -1,0 +1,68 @@
+//! Derivatives by forward differences, as Mesquite takes them. Here to test the cost model of Park & Shontz: slow, so
+//! compiled once, for no particular instructions.
+
+use fearless_simd::prelude::*;
+
+use crate::cpu::lanes::{Lanes, Points};
+use crate::cpu::patch::Patches;
+use crate::metric::{Corner, Dual, Formulas, Real};
+use crate::run::line_search;
+
+/// The patches' objectives with their derivatives, by forward differences.
+pub(crate) fn derivatives<S: Simd>(
+    patches: &Patches<'_, S>,
+    formulas: impl Formulas,
+    at: Points<S>,
+    sharpness: u32,
+) -> Dual<Lanes<S>> {
+    let width = least_height(patches, at) * line_search::DIFFERENCE;
+    let zero = at[0].constant(0.0);
+    let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
+    for i in 0..patches.degree() {
+        let corner = patches.corner(i, at);
+        sum = sum + differences(formulas, &corner, sharpness, width);
+    }
+    sum
+}
+
+/// The least distance of each vertex from the line through a ring edge.
+fn least_height<S: Simd>(patches: &Patches<'_, S>, at: Points<S>) -> Lanes<S> {
+    let mut least = at[0].constant(f64::INFINITY);
+    for i in 0..patches.degree() {
+        let c = patches.corner(i, at);
+        let [x, y] = [c.b[0] - c.a[0], c.b[1] - c.a[1]];
+        least = Real::min(least, c.doubled_area() / Real::sqrt(x * x + y * y));
+    }
+    least
+}
+
+/// Value, gradient and Hessian of the model by forward differences of width `h`.
+fn differences<S: Simd>(
+    formulas: impl Formulas,
+    corner: &Corner<Lanes<S>>,
+    sharpness: u32,
+    h: Lanes<S>,
+) -> Dual<Lanes<S>> {
+    let mut values = [h; 16];
+    let displacements = std::hint::black_box(line_search::DISPLACEMENTS);
+    for k in 0..16 {
+        let [x, y] = displacements[k];
+        let (x, y) = (h * f64::from(x), h * f64::from(y));
+        let a = [corner.a[0] - x, corner.a[1] - y];
+        let b = [corner.b[0] - x, corner.b[1] - y];
+        values[k] = formulas.model(&Corner { a, b, ..*corner }, sharpness);
+    }
+    // Gradients here and one step along x and y, each from a value and its forward neighbors.
+    let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];
+    let [right_x, right_y] = [(values[5] - values[4]) / h, (values[6] - values[4]) / h];
+    let [up_x, up_y] = [(values[9] - values[8]) / h, (values[10] - values[8]) / h];
+    Dual {
+        value: values[0],
+        gradient: [here_x, here_y],
+        hessian: [
+            (right_x - here_x) / h,
+            ((right_y - here_y) + (up_x - here_x)) * 0.5 / h,
+            (up_y - here_y) / h,
+        ],
+    }
+}

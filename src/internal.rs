@@ -1,0 +1,34 @@
+//! What benchmarks, experiments and this library's own tests drive by hand. It changes without notice.
+
+use glam::DVec2;
+
+use crate::cpu::CpuEngine;
+use crate::gpu::{GpuEngine, Waiting};
+use crate::run::StepwiseRun;
+
+pub use crate::gpu::{Interface, Kernel};
+pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
+pub use crate::metric::{Dual, Invariants, Real, Slopes};
+pub use crate::run::{Plan, Step, Stepwise, StopRule};
+use crate::{Gpu, GpuError};
+
+/// A run of sweeps on the CPU, from `positions`, normalized and in the problem's order.
+pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> impl Stepwise + 'a {
+    StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), &plan), plan)
+}
+
+/// A run of sweeps on a device, from `positions`, normalized and in the problem's order.
+///
+/// # Errors
+/// [`GpuError::Limit`] if the mesh is too large for the device, or what the device
+/// refuses.
+pub fn run_on_gpu<'a>(
+    gpu: &'a Gpu,
+    problem: &'a Problem,
+    positions: &'a [DVec2],
+    plan: Plan,
+) -> Result<impl Stepwise + 'a, GpuError> {
+    let steps = plan.steps();
+    let engine = GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block)?;
+    Ok(StepwiseRun::new(engine, plan))
+}

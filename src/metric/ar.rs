@@ -1,0 +1,46 @@
+//! Aspect ratio.
+
+use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::dual::Real;
+use crate::metric::properties::{Properties, SQRT_3, Stiffness};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "ar",
+    formula: "sqrt(3) (L12² + L23² + L13²) / (12 S)",
+    citation: "Dompierre et al., An analysis of simplex shape measures for anisotropic meshes, CMAME 194 (2005); Park & Shontz, Table 1",
+    purpose: "equal to imr for every triangle; kept apart because the paper times both",
+    barrier: true,
+    ideal: 1.0,
+    scale_invariant: true,
+    is_inverse_mean_ratio: true,
+    quadratic: false,
+    eigenvalue_floor: 1e-3,
+    shape_guard: f64::INFINITY,
+    omega: 1.9,
+    stiffness: Some(Stiffness::BySize(4.0 / SQRT_3)),
+    wgsl: include_str!("ar.wgsl"),
+};
+
+/// q = s / area with s = excess + area, √3/6 times the sum of the squared lengths.
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
+    let q = (t.excess + t.area) / t.area;
+    (q - 1.0) * (q + 1.0)
+}
+
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+    let inverse = t.area.constant(1.0) / t.area;
+    let q = (t.excess + t.area) * inverse;
+    let excess = q * 2.0 * inverse;
+    let twice = inverse * inverse * 2.0;
+    let less_one = q - 1.0;
+    Slopes {
+        value: less_one * (q + 1.0),
+        excess,
+        area: less_one * -1.0 * excess,
+        excess_excess: twice,
+        excess_area: (q * 2.0 - 1.0) * -1.0 * twice,
+        area_area: less_one * (q * 3.0 - 1.0) * twice,
+    }
+}

@@ -1,0 +1,22 @@
+// Aspect ratio q = s / area, s = excess + area being √3/6 times the sum of the squared lengths (Dompierre et al. 2005).
+// Equal to imr.
+
+fn ar_value(t: Invariants) -> f32 {
+    let q = (t.excess + t.area) / t.area;
+    return (q - 1.0) * (q + 1.0);
+}
+
+fn ar_slopes(t: Invariants) -> Slopes {
+    let inverse = 1.0 / t.area;
+    let q = (t.excess + t.area) * inverse;
+    let excess = 2.0 * q * inverse;
+    let twice = 2.0 * inverse * inverse;
+    return Slopes(
+        (q - 1.0) * (q + 1.0),
+        excess,
+        (1.0 - q) * excess,
+        twice,
+        (1.0 - 2.0 * q) * twice,
+        (q - 1.0) * (3.0 * q - 1.0) * twice,
+    );
+}

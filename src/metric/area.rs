@@ -1,0 +1,43 @@
+//! Deviation of the area from the mean.
+
+use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::dual::Real;
+use crate::metric::properties::Properties;
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "area",
+    formula: "|S - S_mean| / S_mean",
+    citation: "Wang & Marek-Sadowska, DATE '03 (2003); Park & Shontz, Table 1, divided by the mean so that it has no dimension",
+    purpose: "evens out areas and pays no attention to shape: angles of a few degrees are common, bounded by the shape guard only",
+    barrier: false,
+    ideal: 0.0,
+    scale_invariant: false,
+    is_inverse_mean_ratio: false,
+    quadratic: true,
+    eigenvalue_floor: 1e-3,
+    shape_guard: 30.0,
+    omega: 1.9,
+    stiffness: None,
+    wgsl: include_str!("area.wgsl"),
+};
+
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
+    let q = t.area * (1.0 / t.mean) - 1.0;
+    q * q
+}
+
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+    let inverse = 1.0 / t.mean;
+    let q = t.area * inverse - 1.0;
+    let zero = q.constant(0.0);
+    Slopes {
+        value: q * q,
+        excess: zero,
+        area: q * (2.0 * inverse),
+        excess_excess: zero,
+        excess_area: zero,
+        area_area: q.constant(2.0 * inverse * inverse),
+    }
+}

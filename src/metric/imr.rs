@@ -1,0 +1,45 @@
+//! Inverse mean ratio.
+
+use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::dual::Real;
+use crate::metric::properties::{Properties, SQRT_3, Stiffness};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "imr",
+    formula: "|A W⁻¹|² / (2 det(A W⁻¹)), W equilateral",
+    citation: "Munson, Mesh shape-quality optimization using the inverse mean-ratio metric, Math. Program. 110 (2007)",
+    purpose: "the all-round choice: well-shaped triangles whatever their size, and a barrier against inversion",
+    barrier: true,
+    ideal: 1.0,
+    scale_invariant: true,
+    is_inverse_mean_ratio: true,
+    quadratic: false,
+    eigenvalue_floor: 1e-3,
+    shape_guard: f64::INFINITY,
+    omega: 1.9,
+    stiffness: Some(Stiffness::BySize(4.0 / SQRT_3)),
+    wgsl: include_str!("imr.wgsl"),
+};
+
+/// q² - 1 = m (m + 2) for q = 1 + m, m = excess / area: no cancellation on good triangles.
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
+    let m = t.excess / t.area;
+    m * (m + 2.0)
+}
+
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+    let inverse = t.area.constant(1.0) / t.area;
+    let m = t.excess * inverse;
+    let excess = (m + 1.0) * 2.0 * inverse;
+    let twice = inverse * inverse * 2.0;
+    Slopes {
+        value: m * (m + 2.0),
+        excess,
+        area: excess * m * -1.0,
+        excess_excess: twice,
+        excess_area: (m * 2.0 + 1.0) * -1.0 * twice,
+        area_area: m * (m * 3.0 + 2.0) * twice,
+    }
+}

@@ -1,0 +1,21 @@
+// Inverse mean ratio q = 1 + m, m = excess / area: q² - 1 = m (m + 2) without cancellation (Munson 2007).
+
+fn imr_value(t: Invariants) -> f32 {
+    let m = t.excess / t.area;
+    return m * (m + 2.0);
+}
+
+fn imr_slopes(t: Invariants) -> Slopes {
+    let inverse = 1.0 / t.area;
+    let m = t.excess * inverse;
+    let excess = 2.0 * (m + 1.0) * inverse;
+    let twice = 2.0 * inverse * inverse;
+    return Slopes(
+        m * (m + 2.0),
+        excess,
+        -m * excess,
+        twice,
+        -(2.0 * m + 1.0) * twice,
+        m * (3.0 * m + 2.0) * twice,
+    );
+}

@@ -1,0 +1,42 @@
+//! Root mean square edge length.
+
+use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::dual::Real;
+use crate::metric::properties::{Properties, SQRT_3, Stiffness};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "rms",
+    formula: "sqrt((L12² + L23² + L13²) / 3) / L0, L0² = 4 S_mean / sqrt(3)",
+    citation: "Knupp, Algebraic mesh quality metrics, SIAM J. Sci. Comp. 23 (2001); Park & Shontz, Table 1, divided by L0 so that it is 1 at best",
+    purpose: "shortens edges and evens out sizes: each vertex moves to the mean of its neighbors (Laplacian smoothing that cannot invert); flattens triangles where sizes differ, as far as the shape guard lets it",
+    barrier: false,
+    ideal: 1.0,
+    scale_invariant: false,
+    is_inverse_mean_ratio: false,
+    quadratic: true,
+    eigenvalue_floor: 1e-3,
+    shape_guard: 30.0,
+    omega: 1.9,
+    stiffness: Some(Stiffness::Uniform(2.0 / SQRT_3)),
+    wgsl: include_str!("rms.wgsl"),
+};
+
+/// q² - 1, with q² = (excess + area) / mean.
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
+    (t.excess + t.area) * (1.0 / t.mean) - 1.0
+}
+
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+    let zero = t.area.constant(0.0);
+    let slope = t.area.constant(1.0 / t.mean);
+    Slopes {
+        value: value(t),
+        excess: slope,
+        area: slope,
+        excess_excess: zero,
+        excess_area: zero,
+        area_area: zero,
+    }
+}

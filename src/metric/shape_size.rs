@@ -1,0 +1,48 @@
+//! Shape and size together.
+
+use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::dual::Real;
+use crate::metric::properties::{Properties, SQRT_3, Stiffness};
+
+pub(super) const PROPERTIES: Properties = Properties {
+    name: "shape-size",
+    formula: "|T - T⁻ᵗ|, T = A W⁻¹, W equilateral of area S_mean",
+    citation: "Knupp, Dobrev, Kolev & Tomov, The target-matrix optimization paradigm for high-order meshes, SIAM J. Sci. Comp. 41 (2019), metric 7",
+    purpose: "good shapes and even sizes at once, with a barrier against inversion: for uniform meshes, not for graded ones",
+    barrier: true,
+    ideal: 0.0,
+    scale_invariant: false,
+    is_inverse_mean_ratio: false,
+    quadratic: false,
+    eigenvalue_floor: 1e-3,
+    shape_guard: f64::INFINITY,
+    omega: 1.9,
+    stiffness: Some(Stiffness::Uniform(8.0 / SQRT_3)),
+    wgsl: include_str!("shape_size.wgsl"),
+};
+
+/// q² = |T|² (1 + 1/τ²) - 4 with τ = det T = area / mean and |T|² = 2 (ε + τ), ε = excess / mean: the same as
+/// 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ, which does not cancel.
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
+    let (e, tau) = (t.excess * (1.0 / t.mean), t.area * (1.0 / t.mean));
+    let (inverse, off) = (tau.constant(1.0) / tau, tau - 1.0);
+    (e * (inverse * inverse + 1.0) + off * off * inverse) * 2.0
+}
+
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+    let scale = 1.0 / t.mean;
+    let (e, tau) = (t.excess * scale, t.area * scale);
+    let (inverse, off) = (tau.constant(1.0) / tau, tau - 1.0);
+    let square = inverse * inverse;
+    let cube = square * inverse;
+    Slopes {
+        value: (e * (square + 1.0) + off * off * inverse) * 2.0,
+        excess: (square + 1.0) * (2.0 * scale),
+        area: (off * (tau + 1.0) * square - e * cube * 2.0) * (2.0 * scale),
+        excess_excess: e.constant(0.0),
+        excess_area: cube * (-4.0 * scale * scale),
+        area_area: (e * inverse * 3.0 + 1.0) * cube * (4.0 * scale * scale),
+    }
+}

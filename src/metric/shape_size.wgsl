@@ -1,0 +1,26 @@
+// Shape and size q = |T - T⁻ᵗ|, T = A W⁻¹, W equilateral of the mean area (TMOP's metric 7): with ε = excess / mean and
+// τ = area / mean, q² = 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ.
+
+fn shape_size_value(t: Invariants) -> f32 {
+    let e = t.excess / t.mean;
+    let tau = t.area / t.mean;
+    let inverse = 1.0 / tau;
+    return 2.0 * (e * (inverse * inverse + 1.0) + (tau - 1.0) * (tau - 1.0) * inverse);
+}
+
+fn shape_size_slopes(t: Invariants) -> Slopes {
+    let scale = 1.0 / t.mean;
+    let e = t.excess * scale;
+    let tau = t.area * scale;
+    let inverse = 1.0 / tau;
+    let square = inverse * inverse;
+    let cube = square * inverse;
+    return Slopes(
+        2.0 * (e * (square + 1.0) + (tau - 1.0) * (tau - 1.0) * inverse),
+        2.0 * scale * (square + 1.0),
+        2.0 * scale * ((tau - 1.0) * (tau + 1.0) * square - 2.0 * e * cube),
+        0.0,
+        -4.0 * scale * scale * cube,
+        4.0 * scale * scale * cube * (3.0 * e * inverse + 1.0),
+    );
+}

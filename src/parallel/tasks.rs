@@ -1,0 +1,105 @@
+//! Tasks on all threads, by one loop of rayon's.
+//!
+//! Rayon compiles its machinery for every loop and every type in it: some forty loops made two thirds of this library's
+//! compile time. Here tasks are what is generic, and small; the loop over them is compiled once.
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+/// Does a task for every number below `count`.
+pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(task);
+}
+
+/// Does a task with each of the parts, which it may own or borrow mutably, and its number.
+pub(crate) fn for_each_part<P: Send>(
+    parts: impl IntoIterator<Item = P>,
+    task: impl Fn(usize, P) + Sync,
+) {
+    for_each_of(parts.into_iter().collect(), &task);
+}
+
+/// Compiled once for each type of part.
+fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
+    let parts: Vec<Mutex<Option<P>>> = parts.into_iter().map(|p| Mutex::new(Some(p))).collect();
+    for_each(parts.len(), &|i| {
+        // Nobody else asks for this one.
+        let part = parts[i].lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(part) = part {
+            task(i, part);
+        }
+    });
+}
+
+/// Does a task with each of the parts, as [`for_each_part`], and returns what they make in the order of the parts.
+pub(crate) fn map_parts<P: Send, T: Send>(
+    parts: impl IntoIterator<Item = P>,
+    task: impl Fn(usize, P) -> T + Sync,
+) -> Vec<T> {
+    let mut made: Vec<Option<T>> = Vec::new();
+    let parts: Vec<P> = parts.into_iter().collect();
+    made.resize_with(parts.len(), || None);
+    for_each_part(parts.into_iter().zip(&mut made), |i, (part, made)| *made = Some(task(i, part)));
+    made.into_iter().flatten().collect()
+}
+
+/// The ranges of `size` numbers each, but for the last, that make up those below `count`.
+pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(size.max(1)).map(move |start| start..count.min(start + size))
+}
+
+/// What `task` makes of each range of `size` numbers below `count`, in their order.
+pub(crate) fn map_ranges<T: Send>(
+    count: usize,
+    size: usize,
+    task: impl Fn(Range<usize>) -> T + Sync,
+) -> Vec<T> {
+    map_parts(ranges(count, size), |_, range| task(range))
+}
+
+/// Does a task with each chunk of `size` items, and the number of the first of them.
+pub(crate) fn for_each_chunk<T: Send>(
+    items: &mut [T],
+    size: usize,
+    task: impl Fn(usize, &mut [T]) + Sync,
+) {
+    for_each_part(items.chunks_mut(size), |i, chunk| task(i * size, chunk));
+}
+
+/// What `make` makes of every number below `count`.
+pub(crate) fn collect<T: Send + Copy + Default>(
+    count: usize,
+    make: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    const CHUNK: usize = 1 << 12;
+    let mut made = vec![T::default(); count];
+    for_each_chunk(&mut made, CHUNK, |first, made| {
+        for (i, made) in made.iter_mut().enumerate() {
+            *made = make(first + i);
+        }
+    });
+    made
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_is_met_once_and_in_order() {
+        for count in [0, 1, 7, 4096, 4097, 20_000] {
+            assert_eq!(collect(count, |i| i), (0..count).collect::<Vec<_>>());
+            let sums = map_ranges(count, 100, |range| range.sum::<usize>());
+            assert_eq!(sums.len(), count.div_ceil(100));
+            assert_eq!(sums.iter().sum::<usize>(), (0..count).sum());
+            let mut items = vec![0; count];
+            for_each_chunk(&mut items, 33, |first, chunk| {
+                chunk.iter_mut().zip(first..).for_each(|(item, i)| *item = i + 1);
+            });
+            assert_eq!(items, (1..=count).collect::<Vec<_>>());
+        }
+        assert_eq!(map_parts(["a", "b", "c"], |i, part| format!("{i}{part}")), ["0a", "1b", "2c"]);
+    }
+}

@@ -1,0 +1,115 @@
+//! The objectives of a run, and what they say on whether it is over.
+
+use crate::metric::Metric;
+use crate::run::engine::Objectives;
+use crate::run::plan::Plan;
+use crate::run::stop::{Stop, StopRule};
+
+/// The objectives before the first sweep and after each, the best of them, and why the run ended, if it has.
+#[derive(Clone, Debug)]
+pub(crate) struct History {
+    rule: StopRule,
+    base: Metric,
+    window: usize,
+    log: Vec<Objectives>,
+    /// The base objective of each.
+    f: Vec<f64>,
+    best: usize,
+    stop: Option<Stop>,
+    remaining: Option<f64>,
+}
+
+impl History {
+    /// Nothing yet of a run by `plan`.
+    pub(crate) fn new(plan: &Plan) -> Self {
+        Self {
+            rule: plan.stop,
+            base: plan.scheme.base(),
+            window: StopRule::window(&plan.scheme) as usize,
+            log: Vec::new(),
+            f: Vec::new(),
+            best: 0,
+            stop: None,
+            remaining: None,
+        }
+    }
+
+    /// Adds the objectives after a further sweep, or before the first, without judging. Returns whether they are the
+    /// best so far.
+    pub(crate) fn add(&mut self, objectives: Objectives) -> bool {
+        let evaluation = self.f.len();
+        let f = objectives.of(self.base).unwrap_or(f64::NAN);
+        self.log.push(objectives);
+        self.f.push(f);
+        let is_best = evaluation == 0 || f < self.f[self.best];
+        if is_best {
+            self.best = evaluation;
+        }
+        is_best
+    }
+
+    /// As [`add`](Self::add), and judges by the run's rule.
+    pub(crate) fn record(&mut self, objectives: Objectives) -> bool {
+        let is_best = self.add(objectives);
+        self.stop = self.rule.judge(&self.f, self.best, self.window);
+        self.remaining = self.rule.remaining(&self.f, self.window);
+        is_best
+    }
+
+    /// Notes whether the run is over, and what share of f is estimated to be left, as judged elsewhere.
+    pub(crate) fn end(&mut self, stop: Option<Stop>, remaining: Option<f64>) {
+        self.stop = stop;
+        self.remaining = remaining;
+    }
+
+    /// Whether nothing has been recorded yet.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.f.is_empty()
+    }
+
+    /// Sweeps recorded.
+    pub(crate) fn sweeps(&self) -> u32 {
+        (self.f.len() as u32).saturating_sub(1)
+    }
+
+    /// The base objective before the first sweep and after each.
+    pub(crate) fn f(&self) -> &[f64] {
+        &self.f
+    }
+
+    /// The base objective of the last evaluation.
+    pub(crate) fn last(&self) -> f64 {
+        self.f.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The least base objective.
+    pub(crate) fn least(&self) -> f64 {
+        self.f.get(self.best).copied().unwrap_or(f64::NAN)
+    }
+
+    /// All objectives.
+    pub(crate) fn log(&self) -> &[Objectives] {
+        &self.log
+    }
+
+    /// All objectives, for good.
+    pub(crate) fn into_log(self) -> Vec<Objectives> {
+        self.log
+    }
+
+    /// The rule that the run is judged by.
+    pub(crate) fn rule(&self) -> StopRule {
+        self.rule
+    }
+
+    /// Why the run has ended, if it has.
+    pub(crate) fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    /// The share of f that is estimated to be left to gain, from the decay of the last sweeps; `None` where that says
+    /// nothing.
+    pub(crate) fn remaining(&self) -> Option<f64> {
+        self.remaining
+    }
+}

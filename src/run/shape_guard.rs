@@ -1,0 +1,29 @@
+//! How far metrics without a barrier may flatten triangles.
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::metric::{Corner, Scheme};
+use crate::parallel::map_parts;
+
+/// The largest inverse mean ratio of a triangle with a free vertex: no step may leave a triangle worse than that, so that
+/// metrics that pay no attention to shape do not flatten a good mesh. Infinite where no metric of the scheme is without a
+/// barrier.
+pub(crate) fn shape_guard(problem: &Problem, positions: &[DVec2], scheme: &Scheme) -> f64 {
+    if scheme.metrics().iter().all(|metric| metric.properties().shape_guard.is_infinite()) {
+        return f64::INFINITY;
+    }
+    let free = problem.free_count() as u32;
+    let ratio = |t: &[u32; 3]| {
+        if t.iter().all(|&v| v >= free) {
+            return 1.0;
+        }
+        let [p, q, r] = t.map(|v| positions[v as usize]);
+        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
+        corner.inverse_mean_ratio()
+    };
+    let worst = map_parts(problem.triangles().chunks(4096), |_, chunk| {
+        chunk.iter().map(ratio).fold(1.0, f64::max)
+    });
+    worst.into_iter().fold(1.0, f64::max)
+}

@@ -1,0 +1,72 @@
+//! One sweep, settled in every detail.
+
+use crate::metric::Metric;
+
+/// How every free vertex is visited in one sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The metric that the sweep lowers.
+    pub metric: Metric,
+    /// Over-relaxation: each Newton step is first tried at this multiple.
+    pub omega: f64,
+    /// The most Newton steps per visit of a vertex.
+    pub inner: u32,
+    /// log2 of the exponent of EDGE's p-norm.
+    pub sharpness: u32,
+    /// How the metric is differentiated.
+    pub derivatives: Derivatives,
+    /// The inverse mean ratio up to which a step may flatten any triangle, infinite where the metric's barrier does
+    /// that work: [`Plan::shape_guard`](super::Plan::shape_guard) less a reserve for rounding.
+    pub shape_guard: f64,
+}
+
+/// How a metric is differentiated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Derivatives {
+    /// Exactly, by formulas that tests hold against dual numbers.
+    #[default]
+    Analytic,
+    /// By forward differences of the value, 16 evaluations an element, as Mesquite differentiates
+    /// a metric that has no derivatives of its own (Park & Shontz's EDGE, AREA and RMS). Slower
+    /// and no better: here to test the paper's cost model.
+    FiniteDifference,
+}
+
+/// Newton on EDGE works on a p-norm with exponent k = 2^sharpness; this says which k each sweep uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sharpness {
+    /// log2 k of the first sweep.
+    pub first: u32,
+    /// k doubles after this many sweeps; 0 keeps it.
+    pub every: u32,
+    /// log2 of the largest k.
+    pub last: u32,
+}
+
+impl Sharpness {
+    /// k = 16 throughout: good after a few sweeps.
+    pub const FIXED: Self = Self { first: 4, every: 0, last: 4 };
+    /// k from 2 to 512, doubling every 5 sweeps: the best optimum, over more sweeps.
+    pub const CONTINUED: Self = Self { first: 1, every: 5, last: 9 };
+
+    /// The largest log2 k: beyond it even the ratio nearest to one vanishes in single precision.
+    pub const MOST: u32 = 10;
+
+    /// log2 k of a sweep; sweeps count from 1.
+    pub fn of(self, sweep: u32) -> u32 {
+        let doublings = sweep.saturating_sub(1).checked_div(self.every).unwrap_or(0);
+        self.first.saturating_add(doublings).min(self.last.max(self.first))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sharpness_doubles_k_up_to_the_last() {
+        let of = |k| Sharpness::CONTINUED.of(k);
+        assert_eq!([of(1), of(5), of(6), of(40), of(41), of(1000)], [1, 1, 2, 8, 9, 9]);
+        assert_eq!([Sharpness::FIXED.of(1), Sharpness::FIXED.of(99)], [4, 4]);
+    }
+}

@@ -1,0 +1,157 @@
+//! When a run ends.
+
+use crate::metric::Scheme;
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stop {
+    /// The base objective passed the asked fraction of the way to the desired value.
+    Reached,
+    /// What is left to gain is estimated below the tolerance.
+    Converged,
+    /// The base objective no longer improves: a goal is not reached, or an alternating scheme has
+    /// drifted away from the base metric's optimum.
+    Stalled,
+    /// The largest number of sweeps was done.
+    MaxSweeps,
+    /// The caller's progress callback asked for it.
+    Cancelled,
+}
+
+impl Stop {
+    /// Codes of the reasons the device can find, injected into finish.wgsl; 0 is to go on.
+    pub(crate) const CODES: [(Stop, u32); 4] =
+        [(Stop::Reached, 1), (Stop::Converged, 2), (Stop::Stalled, 3), (Stop::MaxSweeps, 4)];
+
+    pub(crate) fn from_code(code: u32) -> Option<Self> {
+        Self::CODES.iter().find(|&&(_, c)| c == code).map(|&(stop, _)| stop)
+    }
+
+    /// A word for reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stop::Reached => "reached",
+            Stop::Converged => "converged",
+            Stop::Stalled => "stalled",
+            Stop::MaxSweeps => "max-sweeps",
+            Stop::Cancelled => "cancelled",
+        }
+    }
+}
+
+/// When a run ends, judged after every sweep on the base objective alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StopRule {
+    /// The run is done when the base objective is below this.
+    pub target: Option<f64>,
+    /// The run is done when the estimated distance to the limit, relative to f, is below this; 0
+    /// never is.
+    pub tolerance: f64,
+    /// The run ends after this many sweeps.
+    pub max_sweeps: u32,
+}
+
+/// A change of f over a window below this share of f is rounding, not progress.
+pub(crate) const NOISE: f64 = 1e-9;
+
+impl StopRule {
+    /// The longer of the two windows the remaining distance is estimated from, in sweeps: a
+    /// multiple of the scheme's period, so that like is compared with like.
+    pub fn window(scheme: &Scheme) -> u32 {
+        8u32.next_multiple_of(2 * scheme.period())
+    }
+
+    /// Judges after the last sweep of `history`, the base objective before the first sweep and
+    /// after each. `best` is the sweep with the least of them. `shaders/finish.wgsl` states the same rule for runs that are
+    /// judged on the device.
+    ///
+    /// An empty history is not over.
+    pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
+        let (last, f) = (history.len().checked_sub(1)?, *history.last()?);
+        if self.target.is_some_and(|target| f < target) {
+            return Some(Stop::Reached);
+        }
+        if last >= window.saturating_mul(2) && (self.target.is_some() || self.tolerance > 0.0) {
+            let still = (history[last - window] - f).abs() <= NOISE * f;
+            if still || last.saturating_sub(best) >= 2 * window {
+                // Nothing happens any more. Without a goal that is what was asked for.
+                let done = still && self.target.is_none();
+                return Some(if done { Stop::Converged } else { Stop::Stalled });
+            }
+            if self.remaining(history, window).is_some_and(|left| left <= self.tolerance) {
+                return Some(Stop::Converged);
+            }
+        }
+        (last as u32 >= self.max_sweeps).then_some(Stop::MaxSweeps)
+    }
+
+    /// The share of f that is estimated to be left to gain after the last sweep of `history`: twice what a geometric
+    /// decay would still gain, as slow modes outlast those that a window sees. `None` where `history` is shorter than two
+    /// windows, or the gains do not decay.
+    pub fn remaining(&self, history: &[f64], window: usize) -> Option<f64> {
+        let last = history.len().checked_sub(1)?;
+        if last < window.saturating_mul(2) {
+            return None;
+        }
+        let gain = |from: usize, to: usize| history[from] - history[to];
+        let remaining =
+            |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
+        let left = 2.0 * remaining(window).max(remaining(window.div_ceil(2))) / history[last];
+        Some(left).filter(|left| left.is_finite())
+    }
+}
+
+/// What a geometric decay would still gain, from the gains of two successive windows; infinite where
+/// these are none.
+fn remaining_gain(before: f64, gain: f64) -> f64 {
+    if gain > 0.0 && gain < before { gain * gain / (before - gain) } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_history_is_not_over() {
+        assert_eq!(rule(None, 1e-6).judge(&[], 0, 8), None);
+        assert_eq!(rule(None, 1e-6).judge(&[1.0], 7, usize::MAX), None);
+    }
+
+    fn rule(target: Option<f64>, tolerance: f64) -> StopRule {
+        StopRule { target, tolerance, max_sweeps: 1000 }
+    }
+
+    #[test]
+    fn a_geometric_decay_ends_at_its_tolerance() {
+        let history: Vec<f64> = (0..400).map(|k| 1.0 + 0.9f64.powi(k)).collect();
+        let ends =
+            (1..400).find(|&n| rule(None, 1e-6).judge(&history[..n], n - 1, 8).is_some()).unwrap();
+        let left = history[ends - 1] - 1.0;
+        assert!(left <= 1e-6 && left > 0.25e-6, "{left:e} left at the end");
+    }
+
+    #[test]
+    fn a_fast_start_is_not_taken_for_convergence() {
+        // A steep drop, then a slow decay: what a strongly perturbed mesh does.
+        let slow = |k: i32| 1.0 + 100.0 * 0.1f64.powi(k) + 1e-2 * 0.99f64.powi(k);
+        let history: Vec<f64> = (0..30).map(slow).collect();
+        assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], n - 1, 8).is_none()));
+    }
+
+    #[test]
+    fn a_drift_away_from_the_best_ends_as_stalled() {
+        let history: Vec<f64> = (0..99).map(|k| 2.0 + (k as f64 / 99.0 - 0.2).abs()).collect();
+        let ends = |n: &usize| rule(None, 1e-6).judge(&history[..*n], 20.min(n - 1), 8).is_some();
+        assert_eq!((1..99).find(ends), Some(37));
+        assert_eq!(rule(None, 1e-6).judge(&history[..37], 20, 8), Some(Stop::Stalled));
+        assert_eq!(rule(None, 0.0).judge(&history[..37], 20, 8), None);
+    }
+
+    #[test]
+    fn a_goal_out_of_reach_ends_as_stalled() {
+        let history: Vec<f64> = (0..99).map(|k| 2.0 + 0.1f64.powi(k)).collect();
+        assert_eq!(rule(Some(1.0), 0.0).judge(&history, 98, 8), Some(Stop::Stalled));
+        assert_eq!(rule(Some(2.5), 0.0).judge(&history, 98, 8), Some(Stop::Reached));
+        assert_eq!(rule(None, 1e-6).judge(&history, 98, 8), Some(Stop::Converged));
+    }
+}

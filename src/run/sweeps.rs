@@ -1,0 +1,72 @@
+//! Runs of sweeps alone, by one metric or several in turn.
+
+use glam::DVec2;
+
+use crate::error::GpuError;
+use crate::run::engine::{Engine, Objectives};
+use crate::run::history::History;
+use crate::run::plan::Plan;
+use crate::run::stop::Stop;
+
+/// Does up to `sweeps` further sweeps of the plan; fewer when the run stops.
+pub(crate) async fn advance(
+    engine: &mut impl Engine,
+    plan: &Plan,
+    history: &mut History,
+    sweeps: u32,
+) -> Result<(), GpuError> {
+    let first = history.sweeps() + 1;
+    let steps: Vec<_> =
+        (first..first.saturating_add(sweeps)).map(|sweep| plan.step(sweep)).collect();
+    engine.sweeps(&steps, history).await
+}
+
+/// A run of sweeps that is driven call by call, for benchmarks and experiments.
+pub(crate) struct StepwiseRun<E> {
+    engine: E,
+    plan: Plan,
+    history: History,
+}
+
+impl<E: Engine> StepwiseRun<E> {
+    pub(crate) fn new(engine: E, plan: Plan) -> Self {
+        let history = History::new(&plan);
+        Self { engine, plan, history }
+    }
+}
+
+/// What can be asked of a run that is driven call by call, wherever it computes. Blocks.
+pub trait Stepwise {
+    /// Does up to `sweeps` further sweeps and returns the objectives after each. The first call
+    /// puts those before the first sweep in front. Fewer come back when the run stopped.
+    ///
+    /// # Errors
+    /// When the device fails; the run is then lost.
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError>;
+
+    /// Why the run has ended, if it has.
+    fn stop(&self) -> Option<Stop>;
+
+    /// The normalized positions of the best state seen by the base metric.
+    ///
+    /// # Errors
+    /// When the device fails.
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
+}
+
+impl<E: Engine> Stepwise for StepwiseRun<E> {
+    fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError> {
+        let before = self.history.log().len();
+        let Self { engine, plan, history } = self;
+        pollster::block_on(advance(engine, plan, history, sweeps))?;
+        Ok(self.history.log()[before..].to_vec())
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        self.history.stop()
+    }
+
+    fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        pollster::block_on(self.engine.best_positions())
+    }
+}
