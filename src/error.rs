@@ -218,6 +218,20 @@ pub enum GpuError {
         /// Its value on this device.
         available: u64,
     },
+    /// The mesh has more vertices or triangles than the kernels can number.
+    #[error(
+        "the mesh has {vertices} vertices and {triangles} triangles, but the GPU kernels number at most {most_vertices} and {most_triangles}; only the CPU engine takes them"
+    )]
+    TooLarge {
+        /// Number of vertices.
+        vertices: usize,
+        /// Number of triangles.
+        triangles: usize,
+        /// The most vertices.
+        most_vertices: usize,
+        /// The most triangles.
+        most_triangles: usize,
+    },
     /// A feature that this takes was not asked for when the device was made.
     #[error("{what} needs a device made with the feature {feature}")]
     Feature {

@@ -50,7 +50,12 @@ pub(crate) fn may_fall_back(args: &SmoothArgs, error: &SmoothError) -> bool {
 
 /// Whether the GPU cannot hold the mesh.
 pub(crate) fn is_too_large(error: &SmoothError) -> bool {
-    matches!(error, SmoothError::Gpu(GpuError::Limit { .. } | GpuError::OutOfMemory(_)))
+    matches!(
+        error,
+        SmoothError::Gpu(
+            GpuError::Limit { .. } | GpuError::TooLarge { .. } | GpuError::OutOfMemory(_)
+        )
+    )
 }
 
 fn is_optional(args: &SmoothArgs) -> bool {

@@ -1,9 +1,9 @@
-//! What a mesh takes on a device, known before anything is allocated.
+//! How much memory a mesh takes on a device, known before anything is allocated.
 
 use crate::error::GpuError;
 use crate::gpu::kernels::pipelines::storage_bindings;
 use crate::gpu::kernels::table::Positions;
-use crate::gpu::kernels::uniforms::{Control, SLOTS, WORKGROUP};
+use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
 
 /// How large a mesh is, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits) and
 /// [`Gpu::check_size`](crate::gpu::Gpu::check_size).
@@ -34,12 +34,17 @@ enum Spread {
 
 /// Bytes of a position, a pair of floats for each coordinate.
 pub(crate) const POSITION: u64 = size_of::<[f32; 4]>() as u64;
-/// What a binding begins at a multiple of, at the most.
+/// The largest alignment of the start of a binding.
 const ALIGNMENT: u64 = 256;
 /// Bytes of a triangle.
 pub(crate) const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
 /// Bytes of a vertex number.
 pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
+
+/// The one-rings have at most one entry for each corner of a triangle, and the bit [`HELD`] of a ring start is taken.
+const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
+/// Kernels number vertices, and the end of their rings, in 32 bits.
+const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
     /// Each buffer. Of the one-rings, which hold each corner of a triangle at most once, the bound; of the best
@@ -48,15 +53,16 @@ impl MeshSize {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
         let objective = u64::from(objective_invocations(self.triangles));
-        let (best, rings) = (vertices * POSITION, 3 * triangles * NUMBER);
+        let (best, rings) =
+            (vertices.saturating_mul(POSITION), triangles.saturating_mul(3 * NUMBER));
         let sums = (SLOTS as u64 * objective * size_of::<[f32; 2]>() as u64)
             .max(size_of::<Control>() as u64);
-        let starts = (vertices + 1) * NUMBER;
+        let starts = vertices.saturating_add(1).saturating_mul(NUMBER);
         let need = |what, bytes, spread| Need { what, bytes, spread };
         let round = Spread::Parts { least: objective * TRIANGLE };
         [
-            need("the buffer of vertex positions", best + room, Spread::Two),
-            need("the buffer of triangles", triangles * TRIANGLE, round),
+            need("the buffer of vertex positions", best.saturating_add(room), Spread::Two),
+            need("the buffer of triangles", triangles.saturating_mul(TRIANGLE), round),
             need("the buffer of one-rings", rings, Spread::Parts { least: 0 }),
             need("the buffer of ring starts", starts, Spread::No),
             need("the buffer of best positions", best, Spread::Parts { least: 0 }),
@@ -64,10 +70,11 @@ impl MeshSize {
         ]
     }
 
-    /// The bytes of device memory that the mesh and sweeps on it take, at the most: 84 a vertex. A scheme whose last
-    /// state is its best takes 68. Corrections from coarser levels are not in it; they take some 60 more.
+    /// The most bytes of device memory that the mesh and sweeps on it take: 84 a vertex. A scheme whose last state is
+    /// its best takes 68. Corrections from coarser levels are not included; they take some 60 more. [`u64::MAX`] for
+    /// a mesh that takes more than that.
     pub fn bytes(self) -> u64 {
-        self.needs(Positions::Whole).iter().map(|need| need.bytes).sum()
+        self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }
 
     /// The largest buffer.
@@ -75,15 +82,21 @@ impl MeshSize {
         self.needs(positions).iter().map(|need| need.bytes).fold(0, u64::max)
     }
 
-    /// Fails if the mesh does not fit the limits, however it is bound.
+    /// Fails if the mesh has more corners than the kernels can number, or does not fit the limits, however it is
+    /// bound.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
+        let Self { vertices, triangles } = self;
+        if triangles > MOST_TRIANGLES || vertices > MOST_VERTICES {
+            let (most_vertices, most_triangles) = (MOST_VERTICES, MOST_TRIANGLES);
+            return Err(GpuError::TooLarge { vertices, triangles, most_vertices, most_triangles });
+        }
         let bound = limits.max_storage_buffer_binding_size;
         let positions = Positions::of(self.vertices, limits);
         for Need { what, bytes, spread } in self.needs(positions) {
-            let what = || format!("{what} ({} vertices)", self.vertices);
+            let what = || format!("{what} ({vertices} vertices)");
             check_limit("max_buffer_size", limits.max_buffer_size, &what, bytes)?;
             let at_once = match spread {
-                Spread::Two if positions == Positions::InTwo => self.vertices as u64 * POSITION / 2,
+                Spread::Two if positions == Positions::InTwo => vertices as u64 * (POSITION / 2),
                 Spread::No | Spread::Two => bytes,
                 Spread::Parts { least } => least,
             };
@@ -93,7 +106,7 @@ impl MeshSize {
         if positions == Positions::Whole {
             return Ok(());
         }
-        let what = || format!("a kernel that binds positions in two ({} vertices)", self.vertices);
+        let what = || format!("a kernel that binds positions in two ({vertices} vertices)");
         let (needed, limit) =
             (storage_bindings(Positions::InTwo), "max_storage_buffers_per_shader_stage");
         let available = limits.max_storage_buffers_per_shader_stage;
@@ -117,5 +130,63 @@ pub(crate) fn check_limit(
 /// Invocations of a sum over the triangles: few enough to end it in one workgroup, enough to fill a large
 /// GPU.
 pub(crate) fn objective_invocations(triangles: usize) -> u32 {
-    (triangles as u32).div_ceil(2048).clamp(1, 1024) * WORKGROUP
+    u32::try_from(triangles).unwrap_or(u32::MAX).div_ceil(2048).clamp(1, 1024) * WORKGROUP
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that binds whatever is asked for.
+    fn boundless() -> wgpu::Limits {
+        wgpu::Limits {
+            max_buffer_size: u64::MAX,
+            max_storage_buffer_binding_size: u64::MAX,
+            ..wgpu::Limits::default()
+        }
+    }
+
+    #[test]
+    fn ring_starts_that_meet_the_bit_of_held_vertices_are_refused() {
+        let size = |triangles| MeshSize { vertices: 360_000_000, triangles };
+        // The last ring ends at three times the triangles.
+        let most = (HELD as usize - 1) / 3;
+        size(most).check(&boundless()).unwrap();
+        let error = size(most + 1).check(&boundless()).unwrap_err();
+        assert!(matches!(error, GpuError::TooLarge { triangles, .. } if triangles == most + 1));
+        let text = error.to_string();
+        assert!(text.contains("715827883 triangles") && text.contains("715827882"), "{text}");
+    }
+
+    #[test]
+    fn vertices_that_32_bits_do_not_number_are_refused() {
+        let size = MeshSize { vertices: u32::MAX as usize, triangles: 1 };
+        let error = size.check(&boundless()).unwrap_err();
+        assert!(matches!(error, GpuError::TooLarge { .. }), "{error}");
+    }
+
+    #[test]
+    fn bytes_of_an_impossible_mesh_do_not_wrap() {
+        for size in [
+            MeshSize { vertices: usize::MAX, triangles: usize::MAX },
+            MeshSize { vertices: usize::MAX, triangles: 1 },
+            MeshSize { vertices: 1, triangles: usize::MAX },
+            MeshSize { vertices: usize::MAX / 16 + 1, triangles: usize::MAX / 12 + 1 },
+        ] {
+            assert_eq!(size.bytes(), u64::MAX, "{size:?}");
+            for positions in Positions::ALL {
+                assert!(size.largest(positions) > u64::MAX / 2, "{size:?}");
+            }
+            assert!(size.check(&boundless()).is_err());
+        }
+        let bytes = |vertices| MeshSize { vertices, triangles: 2 * vertices }.bytes();
+        assert_eq!(bytes(20_000_000) - bytes(10_000_000), 84 * 10_000_000);
+    }
+
+    #[test]
+    fn more_triangles_are_never_fewer_invocations() {
+        let counts = [0, 1, 1 << 20, 1 << 31, (1 << 32) - 1, 1 << 32, usize::MAX];
+        let invocations = counts.map(objective_invocations);
+        assert!(invocations.is_sorted(), "{invocations:?}");
+    }
 }

@@ -92,7 +92,7 @@ impl Positions {
 
     /// Those of so many vertices.
     pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
-        let bytes = vertices as u64 * size_of::<[f32; 4]>() as u64;
+        let bytes = (vertices as u64).saturating_mul(size_of::<[f32; 4]>() as u64);
         let fits = bytes <= limits.max_storage_buffer_binding_size;
         if fits { Positions::Whole } else { Positions::InTwo }
     }
