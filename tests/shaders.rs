@@ -14,10 +14,16 @@ const MOST_WORKGROUP_BYTES: u32 = 16384;
 
 fn kernels() -> Vec<Kernel> {
     let mut kernels = vec![Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish];
-    kernels.extend([Kernel::SmoothGradient, Kernel::HandDown, Kernel::HandUp, Kernel::Apply]);
-    kernels.extend([Kernel::Chebyshev, Kernel::Direct, Kernel::Total, Kernel::Take]);
+    kernels.extend([
+        Kernel::SmoothGradient,
+        Kernel::Restrict,
+        Kernel::Prolong,
+        Kernel::MatrixVector,
+    ]);
+    kernels.extend([Kernel::Chebyshev, Kernel::CoarsestSolve, Kernel::SumAlongCorrection]);
+    kernels.extend([Kernel::MoveAlongCorrection]);
     for &metric in Metric::ALL {
-        kernels.extend([Kernel::Gradient(metric), Kernel::Along(metric)]);
+        kernels.extend([Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)]);
         for derivatives in [Derivatives::Analytic, Derivatives::FiniteDifference] {
             kernels.push(Kernel::Sweep(metric, derivatives));
         }
@@ -36,7 +42,7 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// The modules of each kernel: for most meshes, and for large ones.
+/// The modules of each kernel, for meshes bound whole and for large ones.
 fn modules() -> impl Iterator<Item = (Kernel, Module)> {
     let both = |kernel: Kernel| {
         [kernel.wgsl(), kernel.wgsl_for_large_meshes()].map(|wgsl| {
@@ -79,7 +85,7 @@ fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
     for (kernel, module) in modules() {
         let size = module.entry_points[0].workgroup_size;
         let width = match kernel {
-            Kernel::Finish(_) | Kernel::Total => 256,
+            Kernel::Finish(_) | Kernel::SumAlongCorrection => 256,
             // One for each metric, one for the inverted and one for the worst.
             Kernel::Publish => Metric::ALL.len() as u32 + 2,
             _ => 64,
@@ -163,7 +169,7 @@ fn no_invocation_leaves_before_a_barrier() {
         let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
         assert_eq!(
             count > 0,
-            matches!(kernel, Kernel::Finish(_) | Kernel::Total),
+            matches!(kernel, Kernel::Finish(_) | Kernel::SumAlongCorrection),
             "{}",
             kernel.label()
         );

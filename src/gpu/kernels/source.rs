@@ -1,4 +1,4 @@
-//! The composition of each kernel's WGSL.
+//! The WGSL of each kernel, composed from the files in `shaders/`.
 
 use std::fmt::Write;
 
@@ -35,16 +35,19 @@ const FINE: &str = include_str!("../../../shaders/levels/fine.wgsl");
 const TRANSFER: &str = include_str!("../../../shaders/levels/transfer.wgsl");
 const COARSE: &str = include_str!("../../../shaders/levels/coarse.wgsl");
 const GRADIENT: &str = include_str!("../../../shaders/levels/gradient.wgsl");
-const SMOOTH: &str = include_str!("../../../shaders/levels/smooth.wgsl");
-const HAND_DOWN: &str = include_str!("../../../shaders/levels/hand_down.wgsl");
-const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
-const HAND_UP: &str = include_str!("../../../shaders/levels/hand_up.wgsl");
-const APPLY: &str = include_str!("../../../shaders/levels/apply.wgsl");
+const SMOOTH_GRADIENT: &str = include_str!("../../../shaders/levels/smooth_gradient.wgsl");
+const RESTRICT: &str = include_str!("../../../shaders/levels/restrict.wgsl");
+const NEIGHBORS: &str = include_str!("../../../shaders/levels/neighbors.wgsl");
+const PROLONG: &str = include_str!("../../../shaders/levels/prolong.wgsl");
+const MATRIX_VECTOR: &str = include_str!("../../../shaders/levels/matrix_vector.wgsl");
 const CHEBYSHEV: &str = include_str!("../../../shaders/levels/chebyshev.wgsl");
-const DIRECT: &str = include_str!("../../../shaders/levels/direct.wgsl");
-const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
-const TOTAL: &str = include_str!("../../../shaders/levels/total.wgsl");
-const TAKE: &str = include_str!("../../../shaders/levels/take.wgsl");
+const COARSEST_SOLVE: &str = include_str!("../../../shaders/levels/coarsest_solve.wgsl");
+const OBJECTIVE_ALONG_CORRECTION: &str =
+    include_str!("../../../shaders/levels/objective_along_correction.wgsl");
+const SUM_ALONG_CORRECTION: &str =
+    include_str!("../../../shaders/levels/sum_along_correction.wgsl");
+const MOVE_ALONG_CORRECTION: &str =
+    include_str!("../../../shaders/levels/move_along_correction.wgsl");
 
 impl Kernel {
     /// The complete WGSL module.
@@ -52,7 +55,7 @@ impl Kernel {
         self.composed(Positions::Whole)
     }
 
-    /// The same for a mesh whose positions are more than the device binds at once.
+    /// The complete WGSL module for a mesh whose positions are more than the device binds at once.
     pub fn wgsl_for_large_meshes(&self) -> String {
         self.composed(Positions::InTwo)
     }
@@ -96,21 +99,25 @@ impl Kernel {
             Kernel::Import => source.push_str(IMPORT),
             Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
-            Kernel::Gradient(metric) | Kernel::Along(metric) => {
+            Kernel::Gradient(metric) | Kernel::ObjectiveAlongCorrection(metric) => {
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
-                source.push_str(if matches!(self, Kernel::Along(_)) { ALONG } else { GRADIENT });
+                source.push_str(if matches!(self, Kernel::ObjectiveAlongCorrection(_)) {
+                    OBJECTIVE_ALONG_CORRECTION
+                } else {
+                    GRADIENT
+                });
             }
             Kernel::SmoothGradient => {
-                [AROUND, SMOOTH].iter().for_each(|part| source.push_str(part))
+                [NEIGHBORS, SMOOTH_GRADIENT].iter().for_each(|part| source.push_str(part))
             }
-            Kernel::HandDown => source.push_str(HAND_DOWN),
-            Kernel::HandUp => [AROUND, HAND_UP].iter().for_each(|part| source.push_str(part)),
-            Kernel::Apply => source.push_str(APPLY),
+            Kernel::Restrict => source.push_str(RESTRICT),
+            Kernel::Prolong => [NEIGHBORS, PROLONG].iter().for_each(|part| source.push_str(part)),
+            Kernel::MatrixVector => source.push_str(MATRIX_VECTOR),
             Kernel::Chebyshev => source.push_str(CHEBYSHEV),
-            Kernel::Direct => source.push_str(DIRECT),
-            Kernel::Total => source.push_str(TOTAL),
-            Kernel::Take => source.push_str(TAKE),
+            Kernel::CoarsestSolve => source.push_str(COARSEST_SOLVE),
+            Kernel::SumAlongCorrection => source.push_str(SUM_ALONG_CORRECTION),
+            Kernel::MoveAlongCorrection => source.push_str(MOVE_ALONG_CORRECTION),
         }
         source
     }

@@ -1,4 +1,4 @@
-//! The table of the kernels there are, and what each binds.
+//! The kernels: their entry points, labels and bindings.
 
 use crate::metric::Metric;
 use crate::run::{Derivatives, Plan};
@@ -8,13 +8,13 @@ use crate::run::{Derivatives, Plan};
 pub enum Kernel {
     /// Newton steps on the free vertices of one color.
     Sweep(Metric, Derivatives),
-    /// Partial sums of the objectives of these metrics.
+    /// Partial sums of the objectives of these metrics over the triangles.
     Objective(Vec<Metric>),
-    /// Completes the sums of these metrics, and judges.
+    /// Completes the sums of [`Objective`](Self::Objective) and decides whether the run ends.
     Finish(Vec<Metric>),
-    /// Keeps the positions if they are the best so far.
+    /// Copies the positions aside if they are the best so far.
     KeepBest,
-    /// Takes positions from an application's vertex buffer.
+    /// Reads positions from an application's vertex buffer.
     Import,
     /// Writes positions to an application's vertex buffer.
     Export,
@@ -22,24 +22,24 @@ pub enum Kernel {
     Publish,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
-    /// The same, smoothed.
+    /// Smooths that gradient over the one-rings, before it is restricted.
     SmoothGradient,
-    /// From the free vertices to the aggregates of the first coarse level.
-    HandDown,
-    /// And back.
-    HandUp,
-    /// A matrix times a vector, plus a vector.
-    Apply,
-    /// A smoothing step on a coarse level.
+    /// Sums the smoothed gradient over each aggregate: from the free vertices to the first coarse level.
+    Restrict,
+    /// Interpolates the coarse solution: from the first coarse level to a correction of the free vertices.
+    Prolong,
+    /// A matrix times a vector, plus a vector, on a coarse level.
+    MatrixVector,
+    /// One step of Chebyshev's iteration on a coarse level.
     Chebyshev,
-    /// The solution on the coarsest level.
-    Direct,
-    /// Partial sums of the objective along a correction.
-    Along(Metric),
-    /// Completes these sums.
-    Total,
-    /// Moves the vertices along a correction.
-    Take,
+    /// Multiplies by the inverse on the coarsest level.
+    CoarsestSolve,
+    /// Partial sums of the objective with the vertices moved along the correction, and of the slope there.
+    ObjectiveAlongCorrection(Metric),
+    /// Completes the sums of [`ObjectiveAlongCorrection`](Self::ObjectiveAlongCorrection).
+    SumAlongCorrection,
+    /// Moves the free vertices along the correction.
+    MoveAlongCorrection,
 }
 
 /// What a kernel binds as group 0.
@@ -69,7 +69,7 @@ impl Interface {
         Interface::Coarse,
     ];
 
-    /// How its kernels see the positions: as one if not at all.
+    /// How its kernels bind positions on a mesh bound like this: interfaces without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
             Interface::Run | Interface::Exchange | Interface::Fine => positions,
@@ -78,19 +78,19 @@ impl Interface {
     }
 }
 
-/// How kernels see the positions of a mesh.
+/// How kernels bind the positions of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Positions {
     /// As one binding.
     Whole,
-    /// High parts and low parts by themselves, where a device binds less than the buffer at once.
+    /// As two bindings, the high parts and the low parts, where a device binds less than the buffer at once.
     InTwo,
 }
 
 impl Positions {
     pub(crate) const ALL: [Self; 2] = [Positions::Whole, Positions::InTwo];
 
-    /// Those of so many vertices.
+    /// The form that positions of this many vertices take.
     pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
         let bytes = (vertices as u64).saturating_mul(size_of::<[f32; 4]>() as u64);
         let fits = bytes <= limits.max_storage_buffer_binding_size;
@@ -99,7 +99,7 @@ impl Positions {
 }
 
 impl Kernel {
-    /// Every kernel that a plan and what belongs to it may need, on an application's device or in a run.
+    /// Every kernel that a run by this plan, or an application's frame, may need.
     pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
         let sweeps =
             plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives[m as usize]));
@@ -109,18 +109,18 @@ impl Kernel {
         kernels
     }
 
-    /// Every kernel that corrections from coarser levels take.
+    /// Every kernel that corrections from coarser levels need.
     pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
-        let of_metric = [Kernel::Gradient(metric), Kernel::Along(metric)];
+        let of_metric = [Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)];
         let others = [
             Kernel::SmoothGradient,
-            Kernel::HandDown,
-            Kernel::HandUp,
-            Kernel::Apply,
+            Kernel::Restrict,
+            Kernel::Prolong,
+            Kernel::MatrixVector,
             Kernel::Chebyshev,
-            Kernel::Direct,
-            Kernel::Total,
-            Kernel::Take,
+            Kernel::CoarsestSolve,
+            Kernel::SumAlongCorrection,
+            Kernel::MoveAlongCorrection,
         ];
         of_metric.into_iter().chain(others).collect()
     }
@@ -137,18 +137,18 @@ impl Kernel {
             Kernel::Publish => "publish",
             Kernel::Gradient(_) => "find_gradient",
             Kernel::SmoothGradient => "smooth_gradient",
-            Kernel::HandDown => "hand_down",
-            Kernel::HandUp => "hand_up",
-            Kernel::Apply => "apply",
+            Kernel::Restrict => "restrict_gradient",
+            Kernel::Prolong => "prolong_solution",
+            Kernel::MatrixVector => "matrix_vector",
             Kernel::Chebyshev => "chebyshev",
-            Kernel::Direct => "direct",
-            Kernel::Along(_) => "along",
-            Kernel::Total => "total",
-            Kernel::Take => "take",
+            Kernel::CoarsestSolve => "coarsest_solve",
+            Kernel::ObjectiveAlongCorrection(_) => "objective_along_correction",
+            Kernel::SumAlongCorrection => "sum_along_correction",
+            Kernel::MoveAlongCorrection => "move_along_correction",
         }
     }
 
-    /// What it binds.
+    /// The bindings of the kernel.
     pub fn interface(&self) -> Interface {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
@@ -156,9 +156,14 @@ impl Kernel {
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }
-            Kernel::Gradient(_) | Kernel::Along(_) | Kernel::Take => Interface::Fine,
-            Kernel::SmoothGradient | Kernel::HandDown | Kernel::HandUp => Interface::Transfer,
-            Kernel::Apply | Kernel::Chebyshev | Kernel::Direct | Kernel::Total => Interface::Coarse,
+            Kernel::Gradient(_)
+            | Kernel::ObjectiveAlongCorrection(_)
+            | Kernel::MoveAlongCorrection => Interface::Fine,
+            Kernel::SmoothGradient | Kernel::Restrict | Kernel::Prolong => Interface::Transfer,
+            Kernel::MatrixVector
+            | Kernel::Chebyshev
+            | Kernel::CoarsestSolve
+            | Kernel::SumAlongCorrection => Interface::Coarse,
         }
     }
 

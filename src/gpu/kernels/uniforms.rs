@@ -183,7 +183,7 @@ mod tests {
         );
         mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base });
         mirrors!(
-            &Kernel::Apply,
+            &Kernel::MatrixVector,
             LevelOp {
                 rows,
                 first,

@@ -189,7 +189,7 @@ impl Engine for GpuEngine<'_> {
         self.submit(|passes| {
             self.dispatches.encode_sweep(passes, step);
             levels.encode_correction(passes);
-            levels.encode_along(passes);
+            levels.encode_objective(passes);
         })?;
         self.totals(levels).await
     }
@@ -197,13 +197,13 @@ impl Engine for GpuEngine<'_> {
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         let Some(levels) = &self.levels else { return Ok(None) };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|passes| levels.encode_along(passes))?;
+        self.submit(|passes| levels.encode_objective(passes))?;
         Ok(self.totals(levels).await?.there)
     }
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
         let Some(levels) = &self.levels else { return Ok(()) };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|passes| levels.encode_take(passes))
+        self.submit(|passes| levels.encode_movement(passes))
     }
 }

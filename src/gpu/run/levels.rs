@@ -27,9 +27,9 @@ pub(crate) struct Levels {
     stride: u32,
     /// From the positions to the correction.
     correction: Vec<Dispatch>,
-    along: Vec<Dispatch>,
-    total: Dispatch,
-    take: Dispatch,
+    objective: Vec<Dispatch>,
+    sum: Dispatch,
+    movement: Dispatch,
     pub(crate) vectors: wgpu::Buffer,
 }
 
@@ -121,7 +121,7 @@ impl Layout<'_> {
             let (values, [entries]) = self.values.place([&inverse[..]])?;
             let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::default() };
             let bound = Bound::Coarse { structure: 0, values };
-            list.push(self.step(Kernel::Direct, bound, Groups::ForRows, op)?);
+            list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, op)?);
             return Ok(x);
         }
         let (other, step) = (self.vector(rows), self.vector(rows));
@@ -139,18 +139,18 @@ impl Layout<'_> {
         smooth(self, list, [NONE, other, x])?;
         let Coarser::Level { prolongation, restriction } = &level.coarser else { return Ok(x) };
         let residual = LevelOp { x, out: other, a: 1.0, b: -1.0, ..smoother };
-        list.push(self.step(Kernel::Apply, bound, Groups::ForRows, residual)?);
+        list.push(self.step(Kernel::MatrixVector, bound, Groups::ForRows, residual)?);
         let below_right = self.vector(restriction.rows());
-        list.push(self.apply(restriction, other, NONE, below_right)?);
+        list.push(self.matrix_vector(restriction, other, NONE, below_right)?);
         let solution = self.solve(below, below_right, list)?;
-        list.push(self.apply(prolongation, solution, x, other)?);
+        list.push(self.matrix_vector(prolongation, solution, x, other)?);
         let end = self.vector(rows);
         smooth(self, list, [other, x, end])?;
         Ok(end)
     }
 
     /// out = right + M x.
-    fn apply(
+    fn matrix_vector(
         &mut self,
         matrix: &Sparse,
         x: u32,
@@ -159,7 +159,7 @@ impl Layout<'_> {
     ) -> Result<Dispatch, GpuError> {
         let (bound, op) = self.matrix(matrix, &[])?;
         let op = LevelOp { x, right, out, a: 1.0, b: 1.0, ..op };
-        self.step(Kernel::Apply, bound, Groups::ForRows, op)
+        self.step(Kernel::MatrixVector, bound, Groups::ForRows, op)
     }
 
     /// The buffers, and the bind groups for what was listed. `params` are those of the run on `mesh`.
@@ -268,22 +268,32 @@ impl Levels {
         by_rings(&mut layout, &mut correction, Kernel::SmoothGradient, fine)?;
         let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
         let bound = Bound::Transfer { part: 0, structure: members, values };
-        correction.push(layout.step(Kernel::HandDown, bound, Groups::ForRows, op)?);
+        correction.push(layout.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
         let solution = layout.solve(hierarchy.levels(), right, &mut correction)?;
         let op = LevelOp { starts: of, x: solution, ..fine };
-        by_rings(&mut layout, &mut correction, Kernel::HandUp, op)?;
+        by_rings(&mut layout, &mut correction, Kernel::Prolong, op)?;
 
-        let mut along = Vec::new();
+        let mut objective = Vec::new();
         for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
             let (rows, first) = (triangles.end - triangles.start, triangles.start);
             let op = LevelOp { rows, first, out: sums, shape_guard: guard, ..fine };
             let groups = Groups::Just(partials / WORKGROUP);
-            along.push(layout.step(Kernel::Along(metric), Bound::Fine { part }, groups, op)?);
+            objective.push(layout.step(
+                Kernel::ObjectiveAlongCorrection(metric),
+                Bound::Fine { part },
+                groups,
+                op,
+            )?);
         }
         let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
         let bound = Bound::Coarse { structure: 0, values: 0 };
-        let total = layout.step(Kernel::Total, bound, Groups::Just(1), op)?;
-        let take = layout.step(Kernel::Take, Bound::Fine { part: 0 }, Groups::ForRows, fine)?;
+        let sum = layout.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
+        let movement = layout.step(
+            Kernel::MoveAlongCorrection,
+            Bound::Fine { part: 0 },
+            Groups::ForRows,
+            fine,
+        )?;
 
         let limits = gpu.device.limits();
         let what = || "the vectors of the coarse levels".to_owned();
@@ -294,13 +304,13 @@ impl Levels {
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
         let mut ops = vec![0u8; (stride * layout.listed) as usize];
-        for step in correction.iter().chain(&along).chain([&total, &take]) {
+        for step in correction.iter().chain(&objective).chain([&sum, &movement]) {
             let at = (step.number * stride) as usize;
             ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
         }
         let Uploaded { bind_groups, ops, vectors } =
             scoped(&gpu.device, || layout.upload(mesh, free, &dispatches.params, &ops))?;
-        Ok(Self { bind_groups, ops, stride, correction, along, total, take, vectors })
+        Ok(Self { bind_groups, ops, stride, correction, objective, sum, movement, vectors })
     }
 
     /// From the positions to the correction.
@@ -309,19 +319,19 @@ impl Levels {
     }
 
     /// Evaluates the objective along the correction; the totals are then at the start of `vectors`.
-    pub(crate) fn encode_along(&self, passes: &mut Passes<'_>) {
-        self.along.iter().for_each(|step| self.encode(passes, step));
-        self.encode(passes, &self.total);
+    pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
+        self.objective.iter().for_each(|step| self.encode(passes, step));
+        self.encode(passes, &self.sum);
     }
 
     /// Moves the vertices along the correction.
-    pub(crate) fn encode_take(&self, passes: &mut Passes<'_>) {
-        self.encode(passes, &self.take);
+    pub(crate) fn encode_movement(&self, passes: &mut Passes<'_>) {
+        self.encode(passes, &self.movement);
     }
 
     /// Sets how far the next submission goes along the correction.
     pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) {
-        for step in self.along.iter().chain([&self.take]) {
+        for step in self.objective.iter().chain([&self.movement]) {
             let op = LevelOp { a: length, ..step.op };
             let at = u64::from(step.number * self.stride);
             gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));

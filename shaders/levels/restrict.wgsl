@@ -1,7 +1,7 @@
 // Sums what the members of each aggregate hand down, with the sign of descent.
 
 @compute @workgroup_size(WORKGROUP)
-fn hand_down(
+fn restrict_gradient(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

@@ -1,9 +1,9 @@
-// Adds up the four rows of partial sums that along.wgsl left. One workgroup.
+// Adds up the four rows of partial sums that objective_along_correction.wgsl left. One workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
 @compute @workgroup_size(FINISH_WORKGROUP)
-fn total(@builtin(local_invocation_index) local: u32) {
+fn sum_along_correction(@builtin(local_invocation_index) local: u32) {
     for (var i = 0u; i < 4u; i++) {
         var sum = vec2(0.0);
         for (var k = local; k < op.rows; k += FINISH_WORKGROUP) {

@@ -1,7 +1,7 @@
 // Moves each free vertex a times along the correction.
 
 @compute @workgroup_size(WORKGROUP)
-fn take(
+fn move_along_correction(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

@@ -1,6 +1,6 @@
 // The objective here and at a times the correction, the number of triangles that are broken there,
 // and the slope, from the gradient: each invocation leaves four partial sums as pairs of floats, which
-// total.wgsl adds up. Further parts of the triangles add to what the ones before left.
+// sum_along_correction.wgsl adds up. Further parts of the triangles add to what the ones before left.
 
 fn moved(v: u32) -> vec2<f32> {
     if v >= op.free {
@@ -26,7 +26,7 @@ fn added(sum: vec2<f32>, value: f32) -> vec2<f32> {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn along(
+fn objective_along_correction(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

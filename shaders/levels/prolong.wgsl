@@ -13,7 +13,7 @@ fn carried(k: u32) -> vec2<f32> {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn hand_up(
+fn prolong_solution(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
@@ -23,5 +23,5 @@ fn hand_up(
     }
     let v = op.first + index;
     let share = SMOOTHING * values[op.diagonal + v] * root(v);
-    direction[v] = value_at(v) * (1.0 - SMOOTHING) + around(v) * share;
+    direction[v] = value_at(v) * (1.0 - SMOOTHING) + sum_over_neighbors(v) * share;
 }

@@ -15,5 +15,5 @@ fn smooth_gradient(
         return;
     }
     let v = op.first + index;
-    direction[v] = gradient[v] * (1.0 - SMOOTHING) + around(v) * (SMOOTHING * root(v));
+    direction[v] = gradient[v] * (1.0 - SMOOTHING) + sum_over_neighbors(v) * (SMOOTHING * root(v));
 }

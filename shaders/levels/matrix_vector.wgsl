@@ -1,7 +1,7 @@
 // out = a right + b M x, for a residual, and on the way down and up.
 
 @compute @workgroup_size(WORKGROUP)
-fn apply(
+fn matrix_vector(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

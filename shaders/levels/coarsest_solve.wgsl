@@ -1,7 +1,7 @@
 // The coarsest level: the product of its inverse, stored row by row, with the right-hand side.
 
 @compute @workgroup_size(WORKGROUP)
-fn direct(@builtin(global_invocation_id) id: vec3<u32>) {
+fn coarsest_solve(@builtin(global_invocation_id) id: vec3<u32>) {
     let row = id.x;
     if row >= op.rows {
         return;
