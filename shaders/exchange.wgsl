@@ -1,7 +1,7 @@
 // Positions between this library's buffer and a vertex buffer of the application.
 
 struct Exchange {
-    // A zero the compiler cannot know; see `opaque`.
+    // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
     zero: u32,
     vertices: u32,
     // In floats, from the start of the binding.
@@ -18,11 +18,11 @@ struct Exchange {
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> vertex_buffer: array<f32>;
 
-fn opaque(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) ^ exchange.zero);
+fn runtime_zero() -> u32 {
+    return exchange.zero;
 }
 
-// In the application's unit and precision.
+// A position in the unit of the application, rounded to single precision.
 fn exported(p: vec4<f32>) -> vec2<f32> {
     let high = p.xy * exchange.inverse_scale;
     let low = p.zw * exchange.inverse_scale;

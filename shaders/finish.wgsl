@@ -1,5 +1,5 @@
 // Ends a sweep: adds up the partial sums, writes the history, and decides whether the run is over by
-// the rule of StopRule::judge in src/plan.rs. One workgroup.
+// the rule of StopRule::judge in src/run/plan.rs. One workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
@@ -9,9 +9,7 @@ fn base_sum(evaluation: u32) -> vec2<f32> {
 }
 
 fn gain(earlier: u32, later: u32) -> f32 {
-    let a = base_sum(earlier);
-    let b = base_sum(later);
-    return (a.x - b.x) + (a.y - b.y);
+    return pair_difference(base_sum(earlier), base_sum(later));
 }
 
 // What a geometric decay would still gain, from the gains of two successive windows.

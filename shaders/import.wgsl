@@ -1,12 +1,7 @@
-// Takes the positions of an application's vertex buffer.
+// Reads the positions from an application's vertex buffer.
 
 fn imported(x: f32, center: vec2<f32>) -> vec2<f32> {
     return pair_add(vec2(x, 0.0), -center) * exchange.scale;
-}
-
-// By its bits: compilers may take it that there are no other numbers.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -26,7 +21,7 @@ fn import_positions(
     }
     let x = imported(given.x, vec2(exchange.center.x, exchange.center.z));
     let y = imported(given.y, vec2(exchange.center.y, exchange.center.w));
-    // One vertex that is nowhere would take its neighbors along, and these theirs.
+    // A vertex at no finite place would spoil its neighbors, and these theirs.
     if is_finite(x.x) && is_finite(y.x) {
         set_position(vertex, vec4(x.x, y.x, x.y, y.y));
     }

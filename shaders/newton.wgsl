@@ -2,15 +2,14 @@
 // the same steps as src/cpu/newton.rs.
 
 // Sum of the metric's model over the patch with the vertex moved by d; x is the sum, y is 0 if a
-// triangle is inverted or breaks the shape guard.
+// triangle is inverted, has an area that is not a number, or breaks the shape guard.
 fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var sum = 0.0;
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
         let t = Corner(a, b, p.mean_area);
-        // Not the other way round: an area that is not a number is refused as well.
-        if !(doubled_area(t) > 0.0) {
+        if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
         if GUARDED && inverse_mean_ratio(t) > limit {

@@ -27,8 +27,7 @@ fn objective(
         let corner = Corner(a, b, params.mean_area);
         let values = tracked_values(corner);
         for (var i = 0u; i < TRACKED; i++) {
-            let s = two_sum(sums[i].x, values[i]);
-            sums[i] = vec2(s.x, sums[i].y + s.y);
+            sums[i] = pair_accumulate(sums[i], values[i]);
         }
         worst = max(worst, shape_excess(corner));
     }

@@ -1,10 +1,41 @@
-// Arithmetic in pairs of floats, and the numbering of invocations. Needs `opaque`.
+// Arithmetic in pairs of floats, and the numbering of invocations. Needs `runtime_zero`.
+//
+// Compilers may treat floats as real numbers: they reorder sums, take (a + b) - a for b, and assume that there are no
+// infinities and NaNs. WGSL permits it, and Metal does it by default. A pair would then lose its low part. So every
+// sum that has to be rounded just as it is written passes through `opaque`, and tests of numbers go by their bits.
+// tests/fast_math.rs simulates such a compiler; check_arithmetic.wgsl tries the compiler of each adapter.
 
-// a + b exactly, as the rounded sum and what rounding lost (Knuth's two-sum).
-fn two_sum(a: f32, b: f32) -> vec2<f32> {
+// The bits of x. The exclusive or with a zero that is only known at run time keeps a compiler from relating them to x.
+fn opaque_bits(x: f32) -> u32 {
+    return bitcast<u32>(x) ^ runtime_zero();
+}
+
+// x, as a number of unknown origin.
+fn opaque(x: f32) -> f32 {
+    return bitcast<f32>(opaque_bits(x));
+}
+
+fn opaque2(v: vec2<f32>) -> vec2<f32> {
+    return bitcast<vec2<f32>>(bitcast<vec2<u32>>(v) ^ vec2(runtime_zero()));
+}
+
+// Whether x is greater than zero and finite. False for NaN, where a compiler may turn !(x > 0) into x <= 0.
+fn is_positive(x: f32) -> bool {
+    return opaque_bits(x) - 1u < 0x7f7fffffu;
+}
+
+fn is_finite(x: f32) -> bool {
+    return (opaque_bits(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+// x + y without error, as the rounded sum and its rounding error (Knuth's two-sum).
+fn two_sum(x: f32, y: f32) -> vec2<f32> {
+    let a = opaque(x);
+    let b = opaque(y);
     let s = opaque(a + b);
     let bb = opaque(s - a);
-    return vec2(s, (a - opaque(s - bb)) + (b - bb));
+    let aa = opaque(s - bb);
+    return vec2(s, opaque(a - aa) + opaque(b - bb));
 }
 
 fn pair_add(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
@@ -12,11 +43,22 @@ fn pair_add(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     return two_sum(s.x, s.y + (a.y + b.y));
 }
 
+// A pair plus a float, as a term of a long sum. Cheaper than pair_add; the low part is not kept small.
+fn pair_accumulate(sum: vec2<f32>, term: f32) -> vec2<f32> {
+    let s = two_sum(sum.x, term);
+    return vec2(s.x, sum.y + s.y);
+}
+
+// a - b, rounded to a float.
+fn pair_difference(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    return opaque(a.x - b.x) + opaque(a.y - b.y);
+}
+
 fn pair_less(a: vec2<f32>, b: vec2<f32>) -> bool {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-// The position moved by d, with its low part kept below half a unit of its high part.
+// The position moved by d. Its low part stays below half a unit in the last place of its high part.
 fn advanced(at: vec4<f32>, d: vec2<f32>) -> vec4<f32> {
     let x = pair_add(at.xz, vec2(d.x, 0.0));
     let y = pair_add(at.yw, vec2(d.y, 0.0));

@@ -1,9 +1,9 @@
-// Constants of a run: what every kernel sees but those that exchange positions with an application.
+// Constants of a run, for every kernel but those that exchange positions with an application.
 //
-// Constants in CAPITALS that are declared nowhere here are put in front by src/gpu/shaders.rs.
+// Constants in CAPITALS that are declared in no shader are put in front by src/gpu/kernels/source.rs.
 
 struct Params {
-    // A zero the compiler cannot know; see `opaque`.
+    // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
     zero: u32,
     triangles: u32,
     // Invocations of the objective kernel.
@@ -22,7 +22,6 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 
-// Compilers may take (a + b) - a for b. They cannot see through this.
-fn opaque(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
+fn runtime_zero() -> u32 {
+    return params.zero;
 }

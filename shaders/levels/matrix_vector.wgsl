@@ -1,4 +1,4 @@
-// out = a right + b M x, for a residual, and on the way down and up.
+// out = a right + b M x: a residual, or the transfer between two coarse levels.
 
 @compute @workgroup_size(WORKGROUP)
 fn matrix_vector(

@@ -1,5 +1,4 @@
-// The sum over a free vertex's free neighbors of what each carries. A kernel says what that is in
-// `carried(k)`.
+// The sum of `carried(k)`, which the kernel defines, over the free neighbors k of a free vertex.
 
 fn sum_over_neighbors(v: u32) -> vec2<f32> {
     var sum = vec2(0.0);

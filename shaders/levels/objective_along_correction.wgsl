@@ -1,28 +1,30 @@
-// The objective here and at a times the correction, the number of triangles that are broken there,
-// and the slope, from the gradient: each invocation leaves four partial sums as pairs of floats, which
-// sum_along_correction.wgsl adds up. Further parts of the triangles add to what the ones before left.
+// The objective here and with the vertices moved a times along the correction, the number of triangles that are broken
+// there, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
+// which sum_along_correction.wgsl adds up. Further parts of the triangles continue the sums of the parts before.
 
-fn moved(v: u32) -> vec2<f32> {
+// How far a vertex moves: the same float as in move_along_correction.wgsl.
+fn displacement(v: u32) -> vec2<f32> {
     if v >= op.free {
         return vec2(0.0);
     }
-    return op.a * direction[v];
+    return opaque2(op.a * direction[v]);
 }
 
-// Whether a triangle is inverted or flat, or breaks the shape guard and is worse than it was.
+// An edge after its vertices have moved. A correction may carry both much farther than the edge is long.
+fn moved_edge(e: vec2<f32>, tail_displacement: vec2<f32>, head_displacement: vec2<f32>) -> vec2<f32> {
+    return e + opaque2(head_displacement - tail_displacement);
+}
+
+// Whether a triangle is inverted or flat, has an area that is not a number, or breaks the shape guard and is worse
+// than it was.
 fn is_broken(here: Corner, there: Corner) -> bool {
-    if !(doubled_area(there) > 0.0) {
+    if !is_positive(doubled_area(there)) {
         return true;
     }
     if !GUARDED {
         return false;
     }
     return inverse_mean_ratio(there) > max(op.shape_guard, inverse_mean_ratio(here));
-}
-
-fn added(sum: vec2<f32>, value: f32) -> vec2<f32> {
-    let s = two_sum(sum.x, value);
-    return vec2(s.x, sum.y + s.y);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -38,7 +40,7 @@ fn objective_along_correction(
         }
     } else {
         for (var v = id.x; v < op.free; v += stride) {
-            sums[3] = added(sums[3], dot(gradient[v], direction[v]));
+            sums[3] = pair_accumulate(sums[3], dot(gradient[v], direction[v]));
         }
     }
     for (var t = id.x; t < op.rows; t += stride) {
@@ -46,15 +48,18 @@ fn objective_along_correction(
         let p = position(corners.x);
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
-        let d = moved(corners.x);
+        let d = displacement(corners.x);
         let here = Corner(a, b, params.mean_area);
-        let there =
-            Corner(a + (moved(corners.y) - d), b + (moved(corners.z) - d), params.mean_area);
-        sums[0] = added(sums[0], metric_excess(here));
+        let there = Corner(
+            moved_edge(a, d, displacement(corners.y)),
+            moved_edge(b, d, displacement(corners.z)),
+            params.mean_area,
+        );
+        sums[0] = pair_accumulate(sums[0], metric_excess(here));
         if is_broken(here, there) {
             sums[2].x += 1.0;
         } else {
-            sums[1] = added(sums[1], metric_excess(there));
+            sums[1] = pair_accumulate(sums[1], metric_excess(there));
         }
     }
     for (var i = 0u; i < 4u; i++) {

@@ -1,4 +1,5 @@
-// What the aggregates' solution x is at each free vertex: the aggregate's value, smoothed once.
+// Prolongation from the first coarse level: each free vertex takes the solution x of its aggregate, smoothed once over
+// the one-rings.
 
 fn value_at(v: u32) -> vec2<f32> {
     let aggregate = structure[op.starts + v];

@@ -1,4 +1,4 @@
-// Sums what the members of each aggregate hand down, with the sign of descent.
+// Restriction to the first coarse level: the sum over the members of each aggregate, with the sign of descent.
 
 @compute @workgroup_size(WORKGROUP)
 fn restrict_gradient(

@@ -1,5 +1,5 @@
-// What each free vertex hands down: the gradient, smoothed as the prolongation is. It stands where the correction
-// will.
+// The gradient, smoothed as the prolongation is, for restrict.wgsl. It is kept in `direction`, which holds nothing else
+// yet.
 
 fn carried(k: u32) -> vec2<f32> {
     return gradient[k] * (values[op.diagonal + k] * root(k));

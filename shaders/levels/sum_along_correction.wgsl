@@ -1,4 +1,4 @@
-// Adds up the four rows of partial sums that objective_along_correction.wgsl left. One workgroup.
+// Completes the four sums of which objective_along_correction.wgsl left the parts, in one workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 

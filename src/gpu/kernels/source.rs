@@ -235,7 +235,7 @@ fn tracked_metrics(metrics: &[Metric]) -> String {
         if metric.is_smooth() { format!("{name}_value(i)") } else { format!("{name}_excess(t)") }
     };
     let mut calls: Vec<String> = metrics.iter().map(call).collect();
-    calls.push("select(0.0, 1.0, doubled_area(t) <= 0.0)".to_owned());
+    calls.push("select(1.0, 0.0, is_positive(doubled_area(t)))".to_owned());
     let _ = write!(
         text,
         "const TRACKED: u32 = {count}u;
