@@ -232,6 +232,17 @@ pub enum GpuError {
         /// The most triangles.
         most_triangles: usize,
     },
+    /// The compiler of the adapter reorders or drops operations that the kernels rely on, so that results would be
+    /// wrong without notice. Found by a trial, see [`Gpu::check_arithmetic`](crate::Gpu::check_arithmetic).
+    #[error(
+        "the adapter {adapter} cannot be used: {operation}. Use another adapter or the CPU (--engine cpu)"
+    )]
+    Arithmetic {
+        /// The adapter.
+        adapter: String,
+        /// Which operation failed, and how.
+        operation: &'static str,
+    },
     /// A feature that this takes was not asked for when the device was made.
     #[error("{what} needs a device made with the feature {feature}")]
     Feature {

@@ -174,8 +174,9 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
-        if let Some((gpu, _)) = device {
+        if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
+            gpu.arithmetic_checked(waiting).await?;
         }
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());

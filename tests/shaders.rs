@@ -21,7 +21,7 @@ fn kernels() -> Vec<Kernel> {
         Kernel::MatrixVector,
     ]);
     kernels.extend([Kernel::Chebyshev, Kernel::CoarsestSolve, Kernel::SumAlongCorrection]);
-    kernels.extend([Kernel::MoveAlongCorrection]);
+    kernels.extend([Kernel::MoveAlongCorrection, Kernel::CheckArithmetic]);
     for &metric in Metric::ALL {
         kernels.extend([Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)]);
         for derivatives in [Derivatives::Analytic, Derivatives::FiniteDifference] {
@@ -56,7 +56,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 2 * (12 + 4 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 2 * (13 + 4 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]

@@ -17,7 +17,7 @@ mod run;
 pub(crate) mod scope;
 
 pub(crate) use device::Waiting;
-pub use device::{AdapterSummary, Gpu, MeshSize, adapters};
+pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub use embed::{BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer};
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};

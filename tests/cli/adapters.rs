@@ -10,6 +10,8 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
     let report = folder.json("r.json");
     let [name, driver] = ["adapter", "driver"].map(|key| report["engine"][key].as_str().unwrap());
     assert!(list.starts_with(name) && list.contains(driver), "{name}, {driver} not in:\n{list}");
+    let first = list.lines().next().unwrap();
+    assert!(first.ends_with(": arithmetic checked"), "{first}");
 
     let part: String = name.chars().take(4).collect();
     for part in [part.to_uppercase(), part.to_lowercase()] {

@@ -32,7 +32,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Tells how good a mesh is
     Quality(QualityArgs),
-    /// Lists the GPU adapters there are, the one taken by default first
+    /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters,
     /// Tells what each metric measures and what it is good for
     Metrics,

@@ -17,7 +17,14 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<(Backend, Option<String>), Strin
     match Gpu::open(args.adapter.as_deref()) {
         Ok(gpu) => Ok((Backend::Gpu(gpu), None)),
         Err(error) if is_optional(args) => {
-            Ok((Backend::Cpu, Some(format!("{error}: smoothing on the CPU"))))
+            let cause = match error {
+                // Its own remedy is what happens already.
+                GpuError::Arithmetic { adapter, operation } => {
+                    format!("the adapter {adapter} cannot be used ({operation})")
+                }
+                error => error.to_string(),
+            };
+            Ok((Backend::Cpu, Some(format!("{cause}: smoothing on the CPU"))))
         }
         Err(error) => Err(refusal(error)),
     }
@@ -35,6 +42,7 @@ fn refusal(error: GpuError) -> String {
             format!("no GPU adapter has '{name}' in its name. There are: {available}")
         }
         GpuError::NoAdapter { .. } => format!("no GPU adapter was found. {INSTALL}"),
+        GpuError::Arithmetic { .. } => error.to_string(),
         error => format!("{error}. {INSTALL}"),
     }
 }

@@ -3,7 +3,8 @@
 
 use std::io::{ErrorKind, Write};
 
-use gpu_smooth::{Metric, Quality, Topology};
+use gpu_smooth::gpu::AdapterSummary;
+use gpu_smooth::{GpuError, Metric, Quality, Topology};
 
 use crate::cli::QualityArgs;
 use crate::engine::INSTALL;
@@ -77,15 +78,19 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
 
 /// `gpu-smooth adapters`.
 pub(crate) fn adapters() -> Result<(), String> {
-    let adapters = gpu_smooth::gpu::adapters();
+    let adapters = gpu_smooth::gpu::checked_adapters();
     if adapters.is_empty() {
         say(&format!("no GPU adapter was found. {INSTALL}"));
     }
-    for adapter in adapters {
-        say(&format!(
-            "{} ({}, {}; {})",
-            adapter.name, adapter.kind, adapter.backend, adapter.driver
-        ));
+    for (AdapterSummary { name, driver, backend, kind }, usable) in adapters {
+        let state = match usable {
+            Ok(()) => "arithmetic checked".to_owned(),
+            Err(GpuError::Arithmetic { operation, .. }) => {
+                format!("wrong arithmetic, not used: {operation}")
+            }
+            Err(error) => format!("not used: {error}"),
+        };
+        say(&format!("{name} ({kind}, {backend}; {driver}): {state}"));
     }
     Ok(())
 }

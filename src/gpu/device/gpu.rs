@@ -1,9 +1,9 @@
-//! Adapters and devices, and every way wgpu says no.
+//! A device with its pipelines.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::error::{GpuError, SmoothError};
-use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters};
+use crate::gpu::device::adapters::AdapterSummary;
 use crate::gpu::device::limits;
 use crate::gpu::device::size::MeshSize;
 use crate::gpu::kernels::pipelines::Pipelines;
@@ -18,55 +18,21 @@ pub struct Gpu {
     pub(crate) pipelines: Arc<Pipelines>,
     summary: Arc<AdapterSummary>,
     lost: Arc<Mutex<Option<String>>>,
+    /// The operation that [`Gpu::check_arithmetic`] found to be wrong, if any, once it was called.
+    pub(super) arithmetic: Arc<OnceLock<Option<&'static str>>>,
 }
 
 impl Gpu {
-    /// Opens the best adapter, or the first whose name contains `name` (whatever the case).
-    /// Discrete GPUs come before integrated, virtual and software ones.
-    ///
-    /// # Errors
-    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], or what the device refuses.
-    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
-        let adapters = ranked_adapters();
-        let has_name = |adapter: &&wgpu::Adapter| {
-            let text = adapter.get_info().name.to_lowercase();
-            name.is_none_or(|name| text.contains(&name.to_lowercase()))
-        };
-        let adapter = adapters.iter().find(has_name).ok_or_else(|| {
-            let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
-            GpuError::NoAdapter { wanted: name.map(str::to_owned), available: names.join(", ") }
-        })?;
-        let summary = AdapterSummary::new(&adapter.get_info());
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("gpu-smooth device"),
-            required_features: adapter.features() & Self::optional_features(),
-            required_limits: adapter.limits(),
-            ..Default::default()
-        }))
-        .map_err(|error| GpuError::NoDevice {
-            adapter: summary.name.clone(),
-            message: error.to_string(),
-        })?;
-        let lost = Arc::new(Mutex::new(None));
-        let flag = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, message| {
-            let text = if message.is_empty() { format!("{reason:?}") } else { message };
-            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
-        });
-        // Every call is in an error scope; what still arrives here would otherwise panic.
-        let flag = Arc::clone(&lost);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
-        }));
-        Self::with(device, queue, summary, lost)
-    }
-
     /// Takes an application's own device and queue (both are handles: clones name the same device).
     ///
     /// It has to be made with [`Self::required_limits`] or better. Its callbacks for errors and
     /// for loss stay the application's: this library catches the errors of its own calls in error
     /// scopes, and learns of a lost device by reading back. What is wrong with an encoder that was passed in (it
     /// is of another device, or finished) wgpu reports when the application finishes it, to the application.
+    ///
+    /// Nothing is submitted and nothing waits, so this may be called on any thread. The arithmetic of the adapter is
+    /// therefore not tried here: runs of [`Smoother`](crate::Smoother) do it first, and an application that encodes
+    /// sweeps itself calls [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
     ///
     /// # Panics
     /// Nothing here does. But wgpu itself panics where resources of two *instances* meet, in its own calls as in
@@ -79,15 +45,15 @@ impl Gpu {
         Self::with(device, queue, summary, Arc::default())
     }
 
-    fn with(
+    pub(super) fn with(
         device: wgpu::Device,
         queue: wgpu::Queue,
         summary: AdapterSummary,
         lost: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, GpuError> {
         limits::check(&device.limits())?;
-        let pipelines = Arc::new(Pipelines::default());
-        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost })
+        let (pipelines, arithmetic) = (Arc::new(Pipelines::default()), Arc::default());
+        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
     }
 
     /// Compiles all that meshes take with these options, so that neither a frame nor a later

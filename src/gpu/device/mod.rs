@@ -1,13 +1,16 @@
 //! Adapters and devices: what they can do, and memory on them.
 
 mod adapters;
+mod arithmetic;
 pub(crate) mod buffers;
 mod gpu;
 pub(crate) mod limits;
+mod open;
 pub(crate) mod readback;
 pub(crate) mod size;
 
 pub use adapters::{AdapterSummary, adapters};
 pub use gpu::Gpu;
+pub use open::checked_adapters;
 pub(crate) use readback::Waiting;
 pub use size::MeshSize;

@@ -1,4 +1,4 @@
-//! Pipelines and bind groups: the only place that makes them, each pipeline once per device.
+//! Pipelines and bind groups. All are made here; the pipelines of a run once per device.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -16,7 +16,7 @@ fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
     bindings
 }
 
-/// Those where the positions are one binding.
+/// The bindings of group 0 where the positions are one binding.
 fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
     use Binding::{ReadOnly, ReadWrite, Uniform};
     const UNIFORM: Binding = Uniform { dynamic: false };
@@ -57,6 +57,7 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
             ReadWrite,
         ],
         Interface::Coarse => &[UNIFORM, Uniform { dynamic: true }, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Arithmetic => &[UNIFORM, ReadOnly, ReadWrite],
     }
 }
 
@@ -159,7 +160,7 @@ impl Pipelines {
         })
     }
 
-    /// The pipeline of a kernel.
+    /// The pipeline of a kernel, compiled when first asked for.
     pub(crate) fn get(
         &self,
         device: &wgpu::Device,
@@ -171,23 +172,33 @@ impl Pipelines {
         if let Some(raw) = made.get(&(kernel.clone(), positions)) {
             return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });
         }
-        let label = kernel.label();
-        let raw = scoped(device, || {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(&label),
-                source: wgpu::ShaderSource::Wgsl(kernel.composed(positions).into()),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&label),
-                layout: Some(&self.layout(device, kernel.interface(), positions).pipeline),
-                module: &module,
-                entry_point: Some(kernel.entry_point()),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        })?;
+        let wgsl = kernel.composed(positions);
+        let raw = scoped(device, || self.compile(device, kernel, positions, wgsl))?;
         made.insert((kernel.clone(), positions), raw.clone());
         Ok(Pipeline { kernel: kernel.clone(), raw })
+    }
+
+    /// Compiles `wgsl` with the entry point and the bindings of a kernel. To be called in an error scope.
+    pub(crate) fn compile(
+        &self,
+        device: &wgpu::Device,
+        kernel: &Kernel,
+        positions: Positions,
+        wgsl: String,
+    ) -> wgpu::ComputePipeline {
+        let label = kernel.label();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(&label),
+            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+        });
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&label),
+            layout: Some(&self.layout(device, kernel.interface(), positions).pipeline),
+            module: &module,
+            entry_point: Some(kernel.entry_point()),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
     }
 }
 
@@ -206,7 +217,7 @@ mod tests {
         let differences = |&metric| Kernel::Sweep(metric, Derivatives::FiniteDifference);
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
-        kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish]);
+        kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

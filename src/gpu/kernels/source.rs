@@ -29,6 +29,7 @@ const EXCHANGE: &str = include_str!("../../../shaders/exchange.wgsl");
 const IMPORT: &str = include_str!("../../../shaders/import.wgsl");
 const EXPORT: &str = include_str!("../../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
+const CHECK_ARITHMETIC: &str = include_str!("../../../shaders/check_arithmetic.wgsl");
 
 const LEVELS: &str = include_str!("../../../shaders/levels/common.wgsl");
 const FINE: &str = include_str!("../../../shaders/levels/fine.wgsl");
@@ -69,6 +70,7 @@ impl Kernel {
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
+            Interface::Arithmetic => (&[PARAMS, PAIRS, PATCH], None),
         };
         parts.iter().for_each(|part| source.push_str(part));
         if let Some((first, second)) = bindings {
@@ -118,6 +120,7 @@ impl Kernel {
             Kernel::CoarsestSolve => source.push_str(COARSEST_SOLVE),
             Kernel::SumAlongCorrection => source.push_str(SUM_ALONG_CORRECTION),
             Kernel::MoveAlongCorrection => source.push_str(MOVE_ALONG_CORRECTION),
+            Kernel::CheckArithmetic => source.push_str(CHECK_ARITHMETIC),
         }
         source
     }

@@ -40,6 +40,8 @@ pub enum Kernel {
     SumAlongCorrection,
     /// Moves the free vertices along the correction.
     MoveAlongCorrection,
+    /// Tries the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
+    CheckArithmetic,
 }
 
 /// What a kernel binds as group 0.
@@ -57,23 +59,29 @@ pub enum Interface {
     Transfer,
     /// The coarse levels: `shaders/levels/coarse.wgsl`.
     Coarse,
+    /// Inputs and results of [`Kernel::CheckArithmetic`]: `shaders/check_arithmetic.wgsl`.
+    Arithmetic,
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 6] = [
+    pub(crate) const ALL: [Self; 7] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
+        Interface::Arithmetic,
     ];
 
     /// How its kernels bind positions on a mesh bound like this: interfaces without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
             Interface::Run | Interface::Exchange | Interface::Fine => positions,
-            Interface::Publish | Interface::Transfer | Interface::Coarse => Positions::Whole,
+            Interface::Publish
+            | Interface::Transfer
+            | Interface::Coarse
+            | Interface::Arithmetic => Positions::Whole,
         }
     }
 }
@@ -145,6 +153,7 @@ impl Kernel {
             Kernel::ObjectiveAlongCorrection(_) => "objective_along_correction",
             Kernel::SumAlongCorrection => "sum_along_correction",
             Kernel::MoveAlongCorrection => "move_along_correction",
+            Kernel::CheckArithmetic => "check_arithmetic",
         }
     }
 
@@ -153,6 +162,7 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
+            Kernel::CheckArithmetic => Interface::Arithmetic,
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }

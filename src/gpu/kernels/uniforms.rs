@@ -1,4 +1,4 @@
-//! Mirrors of the WGSL structs; tests hold their offsets against naga's.
+//! Rust mirrors of the WGSL structs. Tests compare their offsets with naga's.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
@@ -7,22 +7,22 @@ use crate::metric::Metric;
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`.
+/// Invocations in a workgroup of every kernel but `finish`, `sum_along_correction` and `publish`.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Invocations of the `finish` kernel.
+/// Invocations of the `finish` and `sum_along_correction` kernels.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
-/// What is had of the triangles: every metric's q² - ideal² and the number of inverted ones, summed, and the
+/// The values kept of an evaluation: the sum of q² - ideal² for every metric, the number of inverted triangles, and the
 /// worst imr² - 1.
 pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
-/// The slot after the metrics'.
+/// The slot of the number of inverted triangles.
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
-/// The slot after that.
+/// The slot of the worst imr² - 1.
 pub(crate) const WORST: u32 = INVERTED + 1;
-/// Set in the ring start of a vertex that is to stay, though it has a ring.
+/// Set in the ring start of a vertex that is to stay, though it has a ring. Ring starts must be less.
 pub(crate) const HELD: u32 = 1 << 31;
 
-/// `Params` in shaders/common.wgsl.
+/// `Params` in shaders/params.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Params {
@@ -113,13 +113,33 @@ pub(crate) struct Publish {
     pub(crate) ideal_squared: [[f32; 4]; SLOTS.div_ceil(4)],
 }
 
+/// `ArithmeticInput` in shaders/check_arithmetic.wgsl: two positions as pairs of floats.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ArithmeticInput {
+    pub(crate) a: [f32; 4],
+    pub(crate) b: [f32; 4],
+}
+
+/// `ArithmeticResult` in shaders/check_arithmetic.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ArithmeticResult {
+    pub(crate) two_sum: [f32; 2],
+    pub(crate) pair_add: [f32; 2],
+    pub(crate) edge: [f32; 2],
+    pub(crate) difference: f32,
+    pub(crate) is_positive: f32,
+    pub(crate) advanced: [f32; 4],
+}
+
 /// A double as the sum of two floats.
 pub(crate) fn pair(x: f64) -> [f32; 2] {
     let high = x as f32;
     [high, (x - f64::from(high)) as f32]
 }
 
-/// The double a pair of floats stands for.
+/// The value of a pair of floats.
 pub(crate) fn unpair([high, low]: [f32; 2]) -> f64 {
     f64::from(high) + f64::from(low)
 }
@@ -208,6 +228,12 @@ mod tests {
         mirrors!(
             &Kernel::Import,
             Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
+        );
+        let check = &Kernel::CheckArithmetic;
+        mirrors!(check, ArithmeticInput { a, b });
+        mirrors!(
+            check,
+            ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
         );
         mirrors!(&Kernel::Publish, Publish { offset, triangles, ideal_squared });
     }

@@ -1,0 +1,38 @@
+// Tries the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and the test of areas
+// on areas that are no numbers. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
+
+// Two positions as pairs of floats, xy + zw.
+struct ArithmeticInput {
+    a: vec4<f32>,
+    b: vec4<f32>,
+}
+
+struct ArithmeticResult {
+    two_sum: vec2<f32>,
+    pair_add: vec2<f32>,
+    edge: vec2<f32>,
+    // pair_difference of x, and whether the triangle at the origin with corners a and b has a positive area.
+    difference: f32,
+    is_positive: f32,
+    advanced: vec4<f32>,
+}
+
+@group(0) @binding(1) var<storage, read> inputs: array<ArithmeticInput>;
+@group(0) @binding(2) var<storage, read_write> results: array<ArithmeticResult>;
+
+@compute @workgroup_size(WORKGROUP)
+fn check_arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&inputs) {
+        return;
+    }
+    let a = inputs[id.x].a;
+    let b = inputs[id.x].b;
+    results[id.x] = ArithmeticResult(
+        two_sum(a.x, b.x),
+        pair_add(a.xz, b.xz),
+        edge(a, b),
+        pair_difference(a.xz, b.xz),
+        select(0.0, 1.0, is_positive(doubled_area(Corner(a.xy, b.xy, 1.0)))),
+        advanced(a, b.xy),
+    );
+}

@@ -1,0 +1,114 @@
+//! Opening adapters, of which only those are taken whose arithmetic is right.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters};
+
+impl Gpu {
+    /// Opens the best adapter, or the best whose name contains `name` (whatever the case). Discrete GPUs come before
+    /// integrated, virtual and software ones. An adapter that fails [`Gpu::check_arithmetic`] is passed over.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] of the best adapter if none passes, or
+    /// what the device refuses.
+    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = ranked_adapters();
+        let has_name = |adapter: &&wgpu::Adapter| {
+            let text = adapter.get_info().name.to_lowercase();
+            name.is_none_or(|name| text.contains(&name.to_lowercase()))
+        };
+        first_that_passes(adapters.iter().filter(has_name), open).unwrap_or_else(|| {
+            let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+            let (wanted, available) = (name.map(str::to_owned), names.join(", "));
+            Err(GpuError::NoAdapter { wanted, available })
+        })
+    }
+}
+
+/// Every adapter there is, the one that would be chosen first in front, and why it cannot be used if it cannot. Opens
+/// each of them; [`adapters`](crate::gpu::adapters) only lists them.
+pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
+    let checked = |adapter: &wgpu::Adapter| {
+        (AdapterSummary::new(&adapter.get_info()), open(adapter).map(|_| ()))
+    };
+    ranked_adapters().iter().map(checked).collect()
+}
+
+/// Opens candidates until one has the right arithmetic. If none has, the error is that of the first; `None` if there are
+/// no candidates.
+fn first_that_passes<A, G>(
+    candidates: impl Iterator<Item = A>,
+    mut open: impl FnMut(A) -> Result<G, GpuError>,
+) -> Option<Result<G, GpuError>> {
+    let mut failed = None;
+    for candidate in candidates {
+        match open(candidate) {
+            Err(error @ GpuError::Arithmetic { .. }) => failed = failed.or(Some(Err(error))),
+            opened => return Some(opened),
+        }
+    }
+    failed
+}
+
+/// Opens an adapter with all it has, and checks its arithmetic.
+fn open(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
+    let summary = AdapterSummary::new(&adapter.get_info());
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("gpu-smooth device"),
+        required_features: adapter.features() & Gpu::optional_features(),
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }))
+    .map_err(|error| GpuError::NoDevice {
+        adapter: summary.name.clone(),
+        message: error.to_string(),
+    })?;
+    let lost = Arc::new(Mutex::new(None));
+    let flag = Arc::clone(&lost);
+    device.set_device_lost_callback(move |reason, message| {
+        let text = if message.is_empty() { format!("{reason:?}") } else { message };
+        *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+    });
+    // Every call is in an error scope; what still arrives here would otherwise panic.
+    let flag = Arc::clone(&lost);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+    }));
+    let gpu = Gpu::with(device, queue, summary, lost)?;
+    gpu.check_arithmetic()?;
+    Ok(gpu)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drops_digits(adapter: &str) -> GpuError {
+        GpuError::Arithmetic { adapter: adapter.to_owned(), operation: "digits are lost" }
+    }
+
+    #[test]
+    fn an_adapter_that_drops_digits_is_passed_over() {
+        let open = |name: &'static str| match name {
+            "fast" | "faster" => Err(drops_digits(name)),
+            "gone" => Err(GpuError::Lost("gone".into())),
+            name => Ok(name),
+        };
+        let first = |names: &[&'static str]| first_that_passes(names.iter().copied(), open);
+        assert_eq!(first(&["fast", "right", "other"]).unwrap().unwrap(), "right");
+        let error = first(&["fast", "faster"]).unwrap().unwrap_err();
+        assert!(matches!(&error, GpuError::Arithmetic { adapter, .. } if adapter == "fast"));
+        // Any other fault is reported, not worked around.
+        assert!(matches!(first(&["gone", "right"]), Some(Err(GpuError::Lost(_)))));
+        assert!(first(&[]).is_none());
+    }
+
+    #[test]
+    fn the_adapter_that_is_opened_is_the_first_that_passes() {
+        let checked = checked_adapters();
+        let (first, _) = checked.iter().find(|(_, usable)| usable.is_ok()).unwrap();
+        assert_eq!(Gpu::open(None).unwrap().adapter(), first);
+    }
+}
