@@ -1,7 +1,7 @@
-// What the kernels of a run of sweeps see, beside params.wgsl.
+// Bindings of the kernels of a run of sweeps, beside params.wgsl.
 
-// What one dispatch is for: free vertices of one color and how the sweep steps, or triangles, or free vertices of
-// any color. `ring`, `triangles` and `best_positions` are bound from what it needs first.
+// The range of one dispatch: free vertices of one color, with how the sweep steps; or triangles; or free vertices of
+// any color. `ring`, `triangles` and `best_positions` are bound from the first entry that the range needs.
 struct Part {
     first: u32,
     count: u32,
@@ -9,7 +9,7 @@ struct Part {
     sharpness: u32,
     // The inverse mean ratio up to which any step may flatten a triangle, where the metric is GUARDED.
     shape_guard: f32,
-    // What of `ring` is in front of the binding.
+    // Entries of `ring` in front of the binding.
     @size(12) ring_base: u32,
 }
 
@@ -21,7 +21,7 @@ struct Part {
 @group(0) @binding(7) var<storage, read_write> control: Control;
 @group(0) @binding(8) var<storage, read_write> best_positions: array<vec4<f32>>;
 
-// Where in `ring` the neighbors of a vertex start, from its ring start.
+// The place in `ring` that a ring start stands for.
 fn ring_place(start: u32) -> u32 {
     return (start & ~HELD) - part.ring_base;
 }

@@ -1,7 +1,7 @@
-// Sums over all triangles of what is tracked, q² - ideal² of metrics and the inverted, and behind them the
-// worst imr² - 1: each invocation strides over the triangles and leaves one pair of floats each;
-// finish.wgsl puts those together. Further parts of the triangles add to what the ones before left. No barrier:
-// those are dear on software adapters.
+// Partial sums over the triangles: of q² - ideal² for each tracked metric, and of the inverted triangles; behind them the
+// worst imr² - 1. Each invocation strides over the triangles and leaves one pair of floats for each; finish.wgsl adds
+// them up. Further parts of the triangles continue the sums of the parts before. There is no barrier, as barriers are
+// slow on software adapters.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective(

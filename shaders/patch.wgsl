@@ -8,7 +8,7 @@ struct Corner {
     mean_area: f32,
 }
 
-// With respect to the vertex the edges start from; the Hessian as xx, xy, yy.
+// A value and its derivatives with respect to the vertex that the edges start from. The Hessian is xx, xy, yy.
 struct Derivatives {
     value: f32,
     gradient: vec2<f32>,

@@ -1,6 +1,6 @@
-// Positions of a mesh that is too large for one binding: as in positions.wgsl, but the high parts of all vertices and
-// the low parts by themselves. To have some vertices in one binding and the rest in the other would take twice the
-// loads on adapters that follow both branches.
+// Positions of a mesh that is too large for one binding: as in positions.wgsl, but with the high parts of all vertices
+// in one binding and the low parts in another. Half of the vertices in each would take twice the loads on adapters
+// that follow both branches.
 
 @group(0) @binding(POSITIONS) var<storage, read_write> high_positions: array<vec2<f32>>;
 @group(0) @binding(LOW_POSITIONS) var<storage, read_write> low_positions: array<vec2<f32>>;

@@ -9,7 +9,7 @@
 @group(0) @binding(7) var<storage, read_write> direction: array<vec2<f32>>;
 @group(0) @binding(8) var<storage, read_write> vectors: array<vec2<f32>>;
 
-// Of a free vertex the root of the stiffness of the metric over the size of its elements.
+// The square root of a free vertex's weight: the stiffness of the metric over the size of the vertex's elements.
 fn root(v: u32) -> f32 {
     return values[op.entries + v];
 }

@@ -15,13 +15,15 @@ use support::SplitMix64;
 /// Numbers by the names of a function's arguments.
 type Inputs = Vec<(&'static str, f32)>;
 
-/// A function of a kernel, numbers to try it on, and how far its results are from exact ones, in units of what may be
-/// lost.
+/// The error of results, given the arguments by name, in units of what rounding may lose.
+type ErrorOf = fn(&dyn Fn(&str) -> f64, &[f64]) -> f64;
+
+/// A function of a kernel, numbers to try it on, and how far its results are from exact ones.
 struct Case {
     function: &'static str,
     kernel: Kernel,
     inputs: fn(&mut SplitMix64) -> Inputs,
-    error: fn(&dyn Fn(&str) -> f64, &[f64]) -> f64,
+    error: ErrorOf,
 }
 
 /// Half a unit in the last place of a float near one, with room for several roundings.

@@ -1,4 +1,4 @@
-//! What the application's device has to be made with.
+//! The limits that an application's device must have.
 
 use crate::error::GpuError;
 use crate::gpu::device::size::MeshSize;
@@ -16,7 +16,7 @@ macro_rules! row {
     };
 }
 
-/// What the kernels need, on meshes bound like this. Tests make a device of exactly this.
+/// The limits that the kernels need on meshes bound like this. Tests make a device of exactly these.
 fn rows(positions: Positions) -> [Row; 11] {
     let storage = storage_bindings(positions);
     let largest = FINISH_WORKGROUP.max(WORKGROUP);

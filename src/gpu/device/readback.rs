@@ -1,4 +1,4 @@
-//! Getting bytes back: the one place that maps a buffer.
+//! Reading buffers back to the host. Buffers are mapped for reading nowhere else.
 
 use bytemuck::Pod;
 use futures_intrusive::channel::shared::oneshot_channel;

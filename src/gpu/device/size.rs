@@ -22,13 +22,13 @@ struct Need {
     spread: Spread,
 }
 
-/// How a buffer is bound where it is larger than a binding.
+/// How a buffer that is larger than a binding is bound.
 enum Spread {
-    /// Not at all.
+    /// It cannot be bound.
     No,
-    /// In two bindings of every kernel, half of it in each.
+    /// As two bindings, half of the buffer in each.
     Two,
-    /// Part by part, in a dispatch each, a part being of these many bytes at the least.
+    /// Part by part, with a dispatch for each. A part has at least this many bytes.
     Parts { least: u64 },
 }
 
@@ -47,8 +47,8 @@ const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
 const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
-    /// Each buffer. Of the one-rings, which hold each corner of a triangle at most once, the bound; of the best
-    /// positions, which hold free vertices alone, too.
+    /// The bytes of each buffer. For the one-rings it is a bound: they hold each corner of a triangle at most once. For
+    /// the best positions too: they hold only free vertices.
     fn needs(self, positions: Positions) -> [Need; 6] {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);

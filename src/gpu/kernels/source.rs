@@ -228,8 +228,8 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// The formulas of the tracked metrics, evaluated together, and whether the triangle is inverted; its shape
-/// beside them.
+/// The tracked values of a triangle: q² - ideal² of each metric, and 1 if its area is not positive. Beside them
+/// imr² - 1.
 fn tracked_metrics(metrics: &[Metric]) -> String {
     let mut text = INVARIANTS.to_owned();
     text.extend(metrics.iter().map(|m| m.properties().wgsl));
@@ -264,7 +264,7 @@ fn wgsl_name(metric: Metric) -> String {
     metric.name().replace('-', "_")
 }
 
-/// Which slots the tracked sums belong to.
+/// The slots of the history that the tracked sums belong to.
 fn tracked_slots(metrics: &[Metric]) -> String {
     let slots: Vec<String> = metrics
         .iter()
