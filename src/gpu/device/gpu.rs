@@ -140,7 +140,8 @@ impl Gpu {
     ///
     /// # Errors
     /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it
-    /// names the limit. Of `own` nothing is checked: that the adapter does when it is asked for the device.
+    /// names the limit. [`GpuError::TooLarge`] for a mesh that the kernels cannot number on any device. `own` is not
+    /// checked here; the adapter checks it when it is asked for the device.
     pub fn required_limits(
         own: wgpu::Limits,
         size: MeshSize,
@@ -152,7 +153,8 @@ impl Gpu {
     /// Says whether meshes of this size fit the device, however their buffers are bound. Allocates nothing.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if not; it names the buffer and the limit.
+    /// [`GpuError::Limit`] if not; it names the buffer and the limit. [`GpuError::TooLarge`] for a mesh that the kernels
+    /// cannot number on any device.
     pub fn check_size(&self, size: MeshSize) -> Result<(), GpuError> {
         size.check(&self.device.limits())
     }
