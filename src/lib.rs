@@ -18,7 +18,7 @@
 //!     fixed: vec![],
 //! };
 //! let smoother = Smoother::new(&mesh)?;
-//! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?)
+//! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?), or what Backend::auto chooses
 //! let outcome = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()))?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
@@ -78,6 +78,7 @@
 //! changes no bit of the result; but positions, which every kernel sees whole, take two bindings at the most: where
 //! 128 MiB are the limit, 16 million vertices. [`Gpu::check_size`] tells before anything is done.
 
+mod choice;
 mod cpu;
 mod error;
 mod file;
@@ -100,6 +101,7 @@ pub mod validity {
 #[doc(hidden)]
 pub mod internal;
 
+pub use choice::Reason;
 pub use error::{GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
 pub use file::{Format, MeshFile, Place};
 pub use gpu::{

@@ -16,8 +16,8 @@ mod mesh;
 mod run;
 pub(crate) mod scope;
 
-pub(crate) use device::Waiting;
 pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
+pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer};
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};

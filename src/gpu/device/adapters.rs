@@ -31,6 +31,11 @@ impl AdapterSummary {
             kind,
         }
     }
+
+    /// Whether the driver computes on the CPU, as Mesa's lavapipe does.
+    pub fn is_software(&self) -> bool {
+        self.kind == "CPU"
+    }
 }
 
 /// Every adapter there is, the one that would be chosen first in front.

@@ -9,6 +9,7 @@ mod open;
 pub(crate) mod readback;
 pub(crate) mod size;
 
+pub(crate) use adapters::ranked_adapters;
 pub use adapters::{AdapterSummary, adapters};
 pub use gpu::Gpu;
 pub use open::checked_adapters;

@@ -19,11 +19,40 @@ impl Gpu {
             let text = adapter.get_info().name.to_lowercase();
             name.is_none_or(|name| text.contains(&name.to_lowercase()))
         };
-        first_that_passes(adapters.iter().filter(has_name), open).unwrap_or_else(|| {
+        first_that_passes(adapters.iter().filter(has_name), Self::start).unwrap_or_else(|| {
             let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
             let (wanted, available) = (name.map(str::to_owned), names.join(", "));
             Err(GpuError::NoAdapter { wanted, available })
         })
+    }
+
+    /// Opens an adapter with all it has, and checks its arithmetic.
+    pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let summary = AdapterSummary::new(&adapter.get_info());
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("gpu-smooth device"),
+            required_features: adapter.features() & Self::optional_features(),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::NoDevice {
+            adapter: summary.name.clone(),
+            message: error.to_string(),
+        })?;
+        let lost = Arc::new(Mutex::new(None));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            let text = if message.is_empty() { format!("{reason:?}") } else { message };
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+        });
+        // Every call is in an error scope; what still arrives here would otherwise panic.
+        let flag = Arc::clone(&lost);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+        }));
+        let gpu = Self::with(device, queue, summary, lost)?;
+        gpu.check_arithmetic()?;
+        Ok(gpu)
     }
 }
 
@@ -31,7 +60,7 @@ impl Gpu {
 /// each of them; [`adapters`](crate::gpu::adapters) only lists them.
 pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     let checked = |adapter: &wgpu::Adapter| {
-        (AdapterSummary::new(&adapter.get_info()), open(adapter).map(|_| ()))
+        (AdapterSummary::new(&adapter.get_info()), Gpu::start(adapter).map(|_| ()))
     };
     ranked_adapters().iter().map(checked).collect()
 }
@@ -50,35 +79,6 @@ fn first_that_passes<A, G>(
         }
     }
     failed
-}
-
-/// Opens an adapter with all it has, and checks its arithmetic.
-fn open(adapter: &wgpu::Adapter) -> Result<Gpu, GpuError> {
-    let summary = AdapterSummary::new(&adapter.get_info());
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        label: Some("gpu-smooth device"),
-        required_features: adapter.features() & Gpu::optional_features(),
-        required_limits: adapter.limits(),
-        ..Default::default()
-    }))
-    .map_err(|error| GpuError::NoDevice {
-        adapter: summary.name.clone(),
-        message: error.to_string(),
-    })?;
-    let lost = Arc::new(Mutex::new(None));
-    let flag = Arc::clone(&lost);
-    device.set_device_lost_callback(move |reason, message| {
-        let text = if message.is_empty() { format!("{reason:?}") } else { message };
-        *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
-    });
-    // Every call is in an error scope; what still arrives here would otherwise panic.
-    let flag = Arc::clone(&lost);
-    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
-    }));
-    let gpu = Gpu::with(device, queue, summary, lost)?;
-    gpu.check_arithmetic()?;
-    Ok(gpu)
 }
 
 #[cfg(test)]

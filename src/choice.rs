@@ -1,0 +1,204 @@
+//! Chooses the backend that is estimated to smooth a mesh soonest.
+
+use std::fmt;
+
+use crate::error::GpuError;
+use crate::gpu::{AdapterSummary, Gpu, MeshSize, ranked_adapters};
+use crate::run::Options;
+use crate::smoother::Backend;
+
+/// Vertex updates per second and core of the CPU engine, measured on two cores by imr (`docs/performance.md`).
+const CPU_UPDATES_PER_CORE: f64 = 16e6;
+/// Seconds that a GPU's driver, device and kernels take to start. An assumption on the safe side: no graphics card has
+/// been measured yet; Mesa's software driver takes 0.06 to 0.25.
+const GPU_START: f64 = 0.3;
+/// Vertex updates per second of a graphics card of its own. An assumption on the safe side, as is the next.
+const DISCRETE_UPDATES: f64 = 1e9;
+/// Vertex updates per second of a GPU that shares the CPU's memory, or of a kind that is not known.
+const INTEGRATED_UPDATES: f64 = 150e6;
+/// The work of a run with corrections from coarser levels, in sweeps: some 12 sweeps, and 5 corrections that take 1.5 sweeps each.
+const CORRECTED_SWEEPS: f64 = 20.0;
+/// Sweeps of a run without corrections: what over-relaxed imr takes to come within 1e-6 of its limit.
+const PLAIN_SWEEPS: f64 = 130.0;
+
+/// Why [`Backend::auto`] has chosen as it did. Displays as a phrase in English.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The CPU is estimated to be done before a GPU.
+    CpuIsFaster {
+        /// The GPU that was found. `None` if none was looked for, as none could be faster.
+        adapter: Option<AdapterSummary>,
+        /// From how many vertices on the GPU is estimated to be faster, if it is for any number.
+        pays_from: Option<usize>,
+    },
+    /// The only adapter is a driver that itself computes on the CPU, which the CPU engine does faster.
+    OnlySoftware(AdapterSummary),
+    /// There is no GPU, or it cannot do the run.
+    GpuFails(GpuError),
+    /// The GPU is estimated to be done before the CPU.
+    GpuIsFaster {
+        /// From how many vertices on that is so.
+        pays_from: usize,
+    },
+}
+
+impl Backend {
+    /// The backend on which a run is estimated to end soonest, the start of the GPU's driver included, and why.
+    ///
+    /// A software adapter is never chosen; [`Gpu::open`] opens it. Where the mesh is too small for any GPU to pay, no driver is started. The
+    /// estimate is cautious about GPUs, of which none has been measured yet: `gpu-smooth bench` tells what is fastest.
+    pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
+        let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
+        let best = pays_from(FASTEST, cores, sweeps);
+        if best.is_none_or(|least| size.vertices < least) {
+            return (Self::Cpu, Reason::CpuIsFaster { adapter: None, pays_from: best });
+        }
+        let adapters = ranked_adapters();
+        let Some(adapter) = adapters.first() else {
+            let none = GpuError::NoAdapter { wanted: None, available: String::new() };
+            return (Self::Cpu, Reason::GpuFails(none));
+        };
+        let summary = AdapterSummary::new(&adapter.get_info());
+        if summary.is_software() {
+            return (Self::Cpu, Reason::OnlySoftware(summary));
+        }
+        match pays_from(summary.kind, cores, sweeps) {
+            Some(pays_from) if size.vertices >= pays_from => {
+                let fitting = |gpu: Gpu| gpu.check_size(size).map(|()| gpu);
+                match Gpu::start(adapter).and_then(fitting) {
+                    Ok(gpu) => (Self::Gpu(gpu), Reason::GpuIsFaster { pays_from }),
+                    Err(error) => (Self::Cpu, Reason::GpuFails(error)),
+                }
+            }
+            pays_from => (Self::Cpu, Reason::CpuIsFaster { adapter: Some(summary), pays_from }),
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CpuIsFaster { pays_from: Some(least), adapter: None } => {
+                write!(f, "fewer than {} vertices", grouped(*least))
+            }
+            Self::CpuIsFaster { pays_from: Some(least), adapter: Some(adapter) } => {
+                write!(f, "fewer than {} vertices for {}", grouped(*least), adapter.name)
+            }
+            Self::CpuIsFaster { pays_from: None, adapter } => {
+                let gpu = adapter.as_ref().map_or("a GPU", |adapter| &adapter.name);
+                write!(f, "so many cores are estimated to be faster than {gpu}")
+            }
+            Self::OnlySoftware(adapter) => {
+                write!(f, "only a software adapter ({})", adapter.name)
+            }
+            Self::GpuFails(error) => write!(f, "{error}"),
+            Self::GpuIsFaster { pays_from } => {
+                write!(f, "{} vertices or more", grouped(*pays_from))
+            }
+        }
+    }
+}
+
+/// The kind of adapter for which the fewest vertices pay.
+const FASTEST: &str = "discrete GPU";
+
+/// Vertex updates per second of an adapter of this kind, as [`AdapterSummary`] names it; none of a
+/// software adapter, which the CPU engine always outdoes.
+fn gpu_updates(kind: &str) -> Option<f64> {
+    match kind {
+        "discrete GPU" => Some(DISCRETE_UPDATES),
+        "CPU" => None,
+        _ => Some(INTEGRATED_UPDATES),
+    }
+}
+
+/// How many sweeps a run is likely to take, with corrections counted as sweeps.
+fn expected_sweeps(options: &Options) -> f64 {
+    let usual = if options.is_multilevel() { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
+    usual.min(options.max_sweeps.into())
+}
+
+/// The least number of vertices, rounded up to two digits, for which an adapter of this kind is done before the CPU.
+fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
+    let cpu_updates = CPU_UPDATES_PER_CORE * cores as f64;
+    let saved = sweeps * (1.0 / cpu_updates - 1.0 / gpu_updates(kind)?);
+    if saved <= 0.0 {
+        return None;
+    }
+    let least = GPU_START / saved;
+    let unit = 10f64.powf(least.log10().floor() - 1.0).max(1.0);
+    Some(((least / unit).ceil() * unit) as usize)
+}
+
+/// A number with a comma before every three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::Metric;
+    use crate::run::Method;
+
+    #[test]
+    fn a_gpu_pays_from_where_its_start_is_made_up_for() {
+        // 500,000 vertices, 20 sweeps, 32 million a second: 0.3125 s on the CPU, 0.310 s on the card.
+        assert_eq!(pays_from("discrete GPU", 2, 20.0), Some(500_000));
+        for kind in ["integrated GPU", "virtual GPU", "other"] {
+            assert_eq!(pays_from(kind, 2, 20.0), Some(620_000));
+        }
+        // The more cores, the later, until the CPU is as fast as the GPU.
+        assert_eq!(pays_from("discrete GPU", 16, 20.0), Some(5_200_000));
+        assert_eq!(pays_from("integrated GPU", 10, 20.0), None);
+        assert_eq!(pays_from("discrete GPU", 63, 20.0), None);
+        for (cores, sweeps) in [(1, 20.0), (2, 20.0), (4, 130.0), (8, 1.0)] {
+            let least = pays_from("discrete GPU", cores, sweeps).unwrap() as f64;
+            let cpu = least * sweeps / (CPU_UPDATES_PER_CORE * cores as f64);
+            let gpu = GPU_START + least * sweeps / DISCRETE_UPDATES;
+            assert!(gpu <= cpu && cpu <= 1.1 * gpu, "{cores} cores: {gpu} s, {cpu} s");
+        }
+    }
+
+    #[test]
+    fn a_run_that_takes_many_sweeps_pays_for_a_gpu_earlier() {
+        let expected = |scheme: Metric, method, max_sweeps| {
+            let scheme = scheme.into();
+            expected_sweeps(&Options { scheme, method, max_sweeps, ..Options::default() })
+        };
+        assert_eq!(expected(Metric::Imr, Method::Auto, 1000), 20.0);
+        assert_eq!(expected(Metric::Imr, Method::Sweeps, 1000), 130.0);
+        assert_eq!(expected(Metric::Edge, Method::Auto, 1000), 130.0);
+        assert_eq!(expected(Metric::Edge, Method::Auto, 7), 7.0);
+        assert_eq!(pays_from("discrete GPU", 2, 0.0), None);
+    }
+
+    #[test]
+    fn a_software_adapter_never_pays() {
+        assert_eq!(pays_from("CPU", 1, 1e6), None);
+    }
+
+    #[test]
+    fn no_driver_is_started_for_a_small_mesh() {
+        let size = MeshSize { vertices: 2001, triangles: 3735 };
+        let (backend, reason) = Backend::auto(size, &Options::default());
+        assert!(matches!(backend, Backend::Cpu));
+        let Reason::CpuIsFaster { adapter: None, pays_from } = &reason else { panic!("{reason}") };
+        if let Some(least) = pays_from {
+            assert_eq!(reason.to_string(), format!("fewer than {} vertices", grouped(*least)));
+        }
+        assert_eq!(
+            [7, 1234, 500_000, 1_200_000].map(grouped),
+            ["7", "1,234", "500,000", "1,200,000"]
+        );
+    }
+}
