@@ -103,7 +103,7 @@ pub mod internal;
 
 pub use choice::Reason;
 pub use error::{GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
-pub use file::{Format, MeshFile, Place};
+pub use file::{AbandonedWrites, Format, MeshFile, Place, abandon_writes};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,

@@ -5,6 +5,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A file to be written: its path, and what writes its content.
 pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
@@ -14,7 +15,10 @@ pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::R
 /// Each is first written beside its destination. Symbolic links are followed, permissions kept.
 pub(crate) fn replace(jobs: &[Job<'_>]) -> Result<(), WriteError> {
     let staged = jobs.iter().map(|(path, content)| stage(path, content));
-    let mut staged = staged.collect::<Result<Vec<_>, _>>()?;
+    let staged = staged.collect::<Result<Vec<_>, _>>()?;
+    // Declared before what it protects, so that it is dropped after it.
+    let _committing = lock(&COMMITTING);
+    let mut staged = staged;
     for next in 0..staged.len() {
         let more_follow = next + 1 < staged.len();
         if let Err(source) = staged[next].commit(more_follow) {
@@ -23,6 +27,32 @@ pub(crate) fn replace(jobs: &[Job<'_>]) -> Result<(), WriteError> {
         }
     }
     Ok(())
+}
+
+/// Held while written files take their places.
+static COMMITTING: Mutex<()> = Mutex::new(());
+/// The temporary files of this process.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn lock<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps every thread from writing mesh files, see [`abandon_writes`].
+pub struct AbandonedWrites {
+    _committing: MutexGuard<'static, ()>,
+    _temporaries: MutexGuard<'static, Vec<PathBuf>>,
+}
+
+/// Abandons all that [`MeshFile::write`](crate::MeshFile::write) is doing on other threads, for a program that is about to end:
+/// removes the temporary files, which [`std::process::exit`] would leave behind. Files that are just taking
+/// their places do so first, all of them. No thread can write a mesh file as long as the returned value lives.
+pub fn abandon_writes() -> AbandonedWrites {
+    let (committing, mut temporaries) = (lock(&COMMITTING), lock(&TEMPORARIES));
+    for path in temporaries.drain(..) {
+        let _ = fs::remove_file(path);
+    }
+    AbandonedWrites { _committing: committing, _temporaries: temporaries }
 }
 
 /// Finds out, as far as can be told, whether a file can be written there.
@@ -140,8 +170,12 @@ impl Temporary {
     fn create(directory: &Path) -> io::Result<(Temporary, File)> {
         loop {
             let path = Self::unused_name(directory);
+            let mut temporaries = lock(&TEMPORARIES);
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((Temporary(path), file)),
+                Ok(file) => {
+                    temporaries.push(path.clone());
+                    return Ok((Temporary(path), file));
+                }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -159,6 +193,7 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         let _ = fs::remove_file(&self.0);
+        lock(&TEMPORARIES).retain(|path| *path != self.0);
     }
 }
 
