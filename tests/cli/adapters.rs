@@ -1,6 +1,7 @@
 //! Which adapter a run takes, and what happens without one.
 
-use super::{Folder, Run, assert_holds, small};
+use super::{Folder, Run, assert_holds, finish, small, support};
+use std::process::Command;
 
 #[test]
 fn the_adapter_listed_first_is_taken_and_found_by_name() {
@@ -15,8 +16,7 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
 
     let part: String = name.chars().take(4).collect();
     for part in [part.to_uppercase(), part.to_lowercase()] {
-        let engines = ["gpu", "auto"];
-        for engine in engines {
+        for engine in ["gpu", "auto"] {
             let args = ["in", "out", "--engine", engine, "--adapter", &part, "--report", "r.json"];
             folder.run(args).clean();
             assert_eq!(folder.json("r.json")["engine"]["adapter"], name);
@@ -28,7 +28,7 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
 fn an_unknown_adapter_is_answered_with_those_there_are() {
     let folder = small();
     let before = folder.content();
-    folder.line("in there --report r.json").clean();
+    folder.line("in there --engine gpu --report r.json").clean();
     let report = folder.json("r.json");
     let name = report["engine"]["adapter"].as_str().unwrap();
     for file in ["there.node", "there.ele", "r.json"] {
@@ -43,15 +43,19 @@ fn an_unknown_adapter_is_answered_with_those_there_are() {
 
 /// Hides every driver from the loaders of Vulkan and of OpenGL.
 #[cfg(target_os = "linux")]
-fn without_drivers(folder: &Folder, line: &str) -> Run {
-    let mut command = folder.command();
+fn hide_drivers(command: &mut Command) -> &mut Command {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "__EGL_VENDOR_LIBRARY_FILENAMES"] {
         command.env(variable, "/nonexistent");
     }
     for variable in ["VK_ADD_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS"] {
         command.env_remove(variable);
     }
-    super::finish(command.args(line.split(' ')))
+    command
+}
+
+#[cfg(target_os = "linux")]
+fn without_drivers(folder: &Folder, line: &str) -> Run {
+    finish(hide_drivers(&mut folder.command()).args(line.split(' ')))
 }
 
 #[cfg(target_os = "linux")]
@@ -69,19 +73,54 @@ fn without_an_adapter_the_gpu_engine_tells_what_to_install() {
     assert_holds(&list, &install[..1]);
 }
 
-#[cfg(target_os = "linux")]
 #[test]
-fn without_an_adapter_the_cpu_does_it_and_says_so() {
+fn a_small_mesh_is_smoothed_on_the_cpu_and_the_summary_says_why() {
     let folder = small();
-    folder.line("in cpu --engine cpu").clean();
+    folder.line("in cpu --engine cpu --report r.json").clean();
+    assert!(folder.json("r.json")["engine"]["reason"].is_null());
     for options in ["", " --engine auto"] {
-        let run = without_drivers(&folder, &format!("in out{options} --report r.json"));
-        assert_eq!(run.code, Some(0));
-        assert_eq!(run.err, "gpu-smooth: no GPU adapter was found: smoothing on the CPU\n");
-        assert_eq!(folder.json("r.json")["engine"]["kind"], "cpu");
+        let out = folder.line(&format!("in out{options} --report r.json")).clean().out;
+        let engine = &folder.json("r.json")["engine"];
+        let reason = engine["reason"].as_str().unwrap();
+        assert_eq!(engine["kind"], "cpu");
+        assert_holds(reason, &["; --engine gpu to force"]);
+        assert_holds(&out, &[&format!("\nimr on cpu (all cores): {reason}\n")]);
         assert_eq!(folder.text("out.node"), folder.text("cpu.node"));
     }
-    assert_eq!(without_drivers(&folder, "in out -q").clean().out, "");
+    assert_eq!(folder.line("in out -q").clean().out, "");
     // What is wrong with the file comes alone.
-    without_drivers(&folder, "none out").refused(&["none: "]);
+    folder.line("none out").refused(&["none: "]);
+}
+
+/// A mesh so large, and a scheme that takes so many sweeps, that one core looks for a GPU. The goal is met at the start, so
+/// that the run itself is short.
+fn large() -> (Folder, [&'static str; 6]) {
+    let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    (folder, ["in", "out", "--scheme", "edge", "--desired", "1e6"])
+}
+
+#[test]
+fn a_software_adapter_is_not_taken_unless_asked_for() {
+    let (folder, args) = large();
+    let adapters = folder.line("adapters").clean().out;
+    let is_software =
+        adapters.lines().next().unwrap().contains("): software, used only where asked");
+    let run = finish(folder.command().args(args).env("RAYON_NUM_THREADS", "1"));
+    let out = run.clean().out;
+    // The test machine may have a real GPU.
+    let name = adapters.split(" (").next().unwrap();
+    let told = match is_software {
+        true => format!("edge on cpu (all cores): only a software adapter ({name}"),
+        false => format!("edge on gpu ({name}"),
+    };
+    assert_holds(&out, &[&told]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter_the_cpu_does_a_large_mesh_and_says_so() {
+    let (folder, args) = large();
+    let run = finish(hide_drivers(folder.command().args(args)).env("RAYON_NUM_THREADS", "1"));
+    assert_holds(&run.clean().out, &["\nedge on cpu (all cores): no GPU adapter was found\n"]);
 }

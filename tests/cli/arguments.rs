@@ -73,6 +73,43 @@ fn contradictions_are_refused() {
 }
 
 #[test]
+fn quiet_and_verbose_before_a_command_do_not_make_it_a_file() {
+    let folder = small();
+    let quality = folder.line("quality in").clean().out;
+    for line in ["-q quality in", "quality -q in", "--verbose quality in", "quality in --quiet"] {
+        assert_eq!(folder.line(line).clean().out, quality, "{line}");
+    }
+    let bench = "bench in --engine cpu --seconds 0";
+    for line in [format!("--quiet {bench}"), format!("{bench} -v"), "-v adapters".into()] {
+        assert_ne!(folder.line(&line).clean().out, "", "{line}");
+    }
+    assert_eq!(folder.line("-q metrics").clean().out, folder.line("metrics").clean().out);
+    assert_usage(&folder, "-q quality", &["<MESH>"]);
+}
+
+#[test]
+fn a_file_called_like_a_command_is_given_by_its_path() {
+    let folder = small();
+    for ending in ["node", "ele"] {
+        let [from, to] = ["in", "quality"].map(|name| folder.path(&format!("{name}.{ending}")));
+        std::fs::copy(from, to).unwrap();
+    }
+    folder.line("./quality ./bench -q --engine cpu").clean();
+    folder.line("quality ./bench").clean();
+    folder.line("quality quality").clean();
+}
+
+#[test]
+fn arguments_of_a_run_before_a_command_are_refused() {
+    let folder = small();
+    assert_usage(&folder, "--engine cpu bench", &["'--engine' stands before the command 'bench'"]);
+    assert_usage(&folder, "--report r.json quality in", &["'--report'", "'quality'", "after it"]);
+    assert_usage(&folder, "in metrics", &["'metrics' is a command", "./metrics"]);
+    assert_usage(&folder, "in quality", &["<MESH>", "gpu-smooth quality"]);
+    assert_usage(&folder, "in quality out", &["'quality' is a command", "./quality"]);
+}
+
+#[test]
 fn help_and_version_go_to_standard_output() {
     let folder = Folder::new(&[]);
     for (line, parts) in [

@@ -8,6 +8,7 @@ mod adapters;
 mod arguments;
 mod bench;
 mod files;
+mod interrupt;
 mod options;
 mod output;
 mod plate;

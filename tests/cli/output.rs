@@ -105,6 +105,21 @@ fn quiet_prints_nothing() {
 }
 
 #[test]
+fn a_worst_element_that_got_worse_is_told_with_what_helps() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    let out = folder.run([plate, "good", "--engine", "cpu"]).clean().out;
+    assert!(!out.contains(" rose "), "{out}");
+    let line = "good out --engine cpu --scheme area --max-sweeps 30 --report r.json";
+    let out = folder.line(line).clean().out;
+    let report = folder.json("r.json");
+    let [before, after] = ["before", "after"].map(|key| number(&report[key]["worst_movable_imr"]));
+    assert!(after > 1.01 * before);
+    let told = format!("\nworst imr rose from {before:.4}");
+    assert_holds(&out, &[&told[..told.len() - 1], " to ", "--scheme imr or area+imr"]);
+}
+
+#[test]
 fn verbose_prints_every_sweep() {
     let folder = small();
     for engine in ["gpu", "cpu"] {

@@ -55,6 +55,6 @@ fn engine_and_scheme_have_defaults() {
     let folder = Folder::new(&[]);
     let plate = plate_path().to_str().unwrap();
     folder.run([plate, "a"]).clean();
-    folder.run([plate, "b", "--engine", "gpu", "--scheme", "imr", "--tolerance", "1e-6"]).clean();
+    folder.run([plate, "b", "--engine", "cpu", "--scheme", "imr", "--tolerance", "1e-6"]).clean();
     assert!(folder.text("a.node") == folder.text("b.node"));
 }

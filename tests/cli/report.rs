@@ -43,7 +43,7 @@ fn report_holds_the_documented_keys() {
                 "seconds",
             ],
         );
-        assert_keys(&report["engine"], &["kind", "adapter", "driver"]);
+        assert_keys(&report["engine"], &["kind", "adapter", "driver", "reason"]);
         assert_eq!(report["engine"]["kind"], engine);
         for name in ["adapter", "driver"] {
             let of_gpu = engine == "gpu";

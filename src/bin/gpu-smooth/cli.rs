@@ -1,9 +1,11 @@
 //! The command line.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness};
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
@@ -11,8 +13,8 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness}
 #[derive(Parser)]
 #[command(
     version,
-    args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
+    override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines stay where they are. Formats: \
                   Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary).\n\n\
                   Examples:\n  \
@@ -26,6 +28,19 @@ pub(crate) struct Cli {
     pub(crate) command: Option<Command>,
     #[command(flatten)]
     pub(crate) smooth: SmoothArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+}
+
+/// How much is printed, whatever the command.
+#[derive(Args)]
+pub(crate) struct OutputArgs {
+    /// Print errors only, and what a command is there to print
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Output")]
+    pub(crate) quiet: bool,
+    /// Print every sweep
+    #[arg(short, long, global = true, help_heading = "Output")]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Subcommand)]
@@ -95,10 +110,11 @@ pub(crate) struct SmoothArgs {
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
 
-    /// Where to compute: on a GPU adapter (software ones included) if there is one, else on the CPU
+    /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
+    /// done first, and a software adapter never
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) engine: EngineChoice,
-    /// Take the first adapter with NAME in its name
+    /// Take the first GPU adapter with NAME in its name (see `gpu-smooth adapters`)
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
 
@@ -149,12 +165,6 @@ pub(crate) struct SmoothArgs {
     /// What f the report's history holds: the first metric's, or every metric's
     #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
-    /// Print errors only
-    #[arg(short, long, conflicts_with = "verbose", help_heading = "Output")]
-    pub(crate) quiet: bool,
-    /// Print every sweep
-    #[arg(short, long, help_heading = "Output")]
-    pub(crate) verbose: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -193,7 +203,12 @@ pub(crate) enum History {
 impl Cli {
     /// The command line, or the end of the process with what is wrong with it.
     pub(crate) fn read() -> Self {
-        let cli = Self::try_parse().unwrap_or_else(|error| one_mesh_only(error).exit());
+        let matches = Self::command().try_get_matches();
+        let matches = matches.unwrap_or_else(|error| one_mesh_only(error).exit());
+        if let Some(text) = misplaced(&matches) {
+            Self::command().error(ErrorKind::ArgumentConflict, text).exit();
+        }
+        let cli = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         if let Some((kept, dropped)) = cli.smooth.contradiction() {
             let text = format!("{kept} leaves nothing for {dropped} to choose: drop one of them");
             Self::command().error(ErrorKind::ArgumentConflict, text).exit();
@@ -202,10 +217,36 @@ impl Cli {
     }
 }
 
-/// Says of a third file that it is one too many, where clap takes it for a misplaced command.
+/// What is wrong with a command that comes after arguments of a run, if it does.
+fn misplaced(matches: &ArgMatches) -> Option<String> {
+    let name = matches.subcommand_name()?;
+    let command = Cli::command();
+    let given = |arg: &&Arg| {
+        let source = matches.value_source(arg.get_id().as_str());
+        !arg.is_global_set() && source == Some(ValueSource::CommandLine)
+    };
+    let arg = command.get_arguments().find(given)?;
+    Some(match arg.get_long() {
+        Some(long) => {
+            format!(
+                "'--{long}' stands before the command '{name}': options of a command go after it"
+            )
+        }
+        None => format!(
+            "'{name}' is a command here, and takes no mesh before it; a file of that name is ./{name}"
+        ),
+    })
+}
+
+/// Says of a third file that it is one too many.
 fn one_mesh_only(error: clap::Error) -> clap::Error {
-    match error.get(ContextKind::InvalidSubcommand) {
-        Some(ContextValue::String(extra)) if error.kind() == ErrorKind::ArgumentConflict => {
+    let is_command = |arg: &OsString| Cli::command().find_subcommand(arg).is_some();
+    match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(extra))
+            if error.kind() == ErrorKind::UnknownArgument
+                && !extra.starts_with('-')
+                && !std::env::args_os().skip(1).any(|arg| is_command(&arg)) =>
+        {
             let text = format!("unexpected argument '{extra}': IN and OUT are all, one mesh a run");
             Cli::command().error(ErrorKind::UnknownArgument, text)
         }

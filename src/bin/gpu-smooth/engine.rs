@@ -1,33 +1,43 @@
 //! Which engine a run gets.
 
-use gpu_smooth::{Backend, Gpu, GpuError, SmoothError};
+use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Reason, SmoothError};
 
 use crate::cli::{EngineChoice, SmoothArgs};
-use crate::tell;
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
-/// Opens the engine that the command line asks for. Without an adapter, `auto` is the CPU; the remark
-/// that comes along says so.
-pub(crate) fn open(args: &SmoothArgs) -> Result<(Backend, Option<String>), String> {
-    if args.engine == EngineChoice::Cpu {
-        return Ok((Backend::Cpu, None));
-    }
-    match Gpu::open(args.adapter.as_deref()) {
-        Ok(gpu) => Ok((Backend::Gpu(gpu), None)),
-        Err(error) if is_optional(args) => {
-            let cause = match error {
-                // Its own remedy is what happens already.
-                GpuError::Arithmetic { adapter, operation } => {
-                    format!("the adapter {adapter} cannot be used ({operation})")
-                }
-                error => error.to_string(),
-            };
-            Ok((Backend::Cpu, Some(format!("{cause}: smoothing on the CPU"))))
+/// An engine, and why it was taken if the command line left that open.
+pub(crate) struct Taken {
+    pub(crate) backend: Backend,
+    pub(crate) reason: Option<String>,
+}
+
+/// Whether the engine is to be chosen by the size of the mesh.
+pub(crate) fn is_open(args: &SmoothArgs) -> bool {
+    args.engine == EngineChoice::Auto && args.adapter.is_none()
+}
+
+/// Opens the engine that the command line asks for.
+pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
+    let backend = match args.engine {
+        EngineChoice::Cpu => Backend::Cpu,
+        EngineChoice::Gpu | EngineChoice::Auto => {
+            Backend::Gpu(open_adapter(args.adapter.as_deref())?)
         }
-        Err(error) => Err(refusal(error)),
-    }
+    };
+    Ok(Taken { backend, reason: None })
+}
+
+/// Chooses the engine for a mesh of this size and opens it.
+pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
+    let (backend, reason) = Backend::auto(size, &args.options());
+    let reason = match reason {
+        Reason::GpuFails(_) => reason.to_string(),
+        Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
+        _ => format!("{reason}; --engine gpu to force"),
+    };
+    Taken { backend, reason: Some(reason) }
 }
 
 /// Opens an adapter, for a command that needs one.
@@ -47,15 +57,6 @@ fn refusal(error: GpuError) -> String {
     }
 }
 
-/// Whether a run that failed for this reason may be done on the CPU instead; says so if it may.
-pub(crate) fn may_fall_back(args: &SmoothArgs, error: &SmoothError) -> bool {
-    let falls_back = is_optional(args) && is_too_large(error);
-    if falls_back {
-        tell::note(args.quiet, &format!("{error}: smoothing on the CPU"));
-    }
-    falls_back
-}
-
 /// Whether the GPU cannot hold the mesh.
 pub(crate) fn is_too_large(error: &SmoothError) -> bool {
     matches!(
@@ -64,8 +65,4 @@ pub(crate) fn is_too_large(error: &SmoothError) -> bool {
             GpuError::Limit { .. } | GpuError::TooLarge { .. } | GpuError::OutOfMemory(_)
         )
     )
-}
-
-fn is_optional(args: &SmoothArgs) -> bool {
-    args.engine == EngineChoice::Auto && args.adapter.is_none()
 }

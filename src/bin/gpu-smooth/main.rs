@@ -4,6 +4,7 @@ mod bench;
 mod cli;
 mod engine;
 mod explain;
+mod interrupt;
 mod progress;
 mod report;
 mod smooth;
@@ -19,11 +20,11 @@ fn main() -> ExitCode {
         Some(Command::Quality(args)) => tell::quality(args),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
-        Some(Command::Bench(args)) => bench::run(args),
-        None => smooth::run(&cli.smooth),
+        Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
+        None => smooth::run(&cli.smooth, &cli.output),
     };
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => interrupt::exit_code(),
         Err(message) => {
             tell::error(&message);
             ExitCode::FAILURE

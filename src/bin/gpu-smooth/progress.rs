@@ -1,29 +1,40 @@
 //! The bar on the terminal during long runs.
 
+use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{Phase, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::cli::OutputArgs;
+use crate::tell;
+
 /// A run shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_millis(700);
+/// Time between lines where there is no bar.
+const INTERVAL: Duration = Duration::from_secs(1);
 
-/// Shows sweeps, f and speed on standard error, if that is a terminal and the run takes a while.
+/// Shows sweeps, f and speed on standard error if the run takes a while: as a bar if that is a terminal, else as lines where
+/// the user wants every sweep.
 pub(crate) struct Bar {
     started: Instant,
     /// And when it began.
     phase: Option<(Phase, Instant)>,
     bar: ProgressBar,
+    /// When the next line is due, if there are lines.
+    next_line: Option<Instant>,
     max_sweeps: u32,
 }
 
 impl Bar {
-    pub(crate) fn new(quiet: bool, max_sweeps: u32) -> Self {
+    pub(crate) fn new(show: &OutputArgs, max_sweeps: u32) -> Self {
         // Drawing to standard error is a no-op where that is not a terminal.
         let target =
-            if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+            if show.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(max_sweeps.into()), target);
-        Self { started: Instant::now(), phase: None, bar, max_sweeps }
+        let started = Instant::now();
+        let lines = show.verbose && !std::io::stderr().is_terminal();
+        Self { started, phase: None, bar, next_line: lines.then_some(started), max_sweeps }
     }
 
     pub(crate) fn update(&mut self, progress: &Progress) {
@@ -47,6 +58,13 @@ impl Bar {
                 ("{bar:24} {msg}", format!("sweep {sweep}/{}  {figures}", self.max_sweeps))
             }
         };
+        if let Some(due) = &mut self.next_line {
+            if *due <= Instant::now() {
+                tell::note(false, &message);
+                *due = Instant::now() + INTERVAL;
+            }
+            return;
+        }
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.bar.set_style(style);
         }

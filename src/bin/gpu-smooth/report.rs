@@ -20,7 +20,7 @@ pub(crate) struct Report {
     pub(crate) levels_left_out: bool,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
-    /// reached, converged, stalled or max-sweeps.
+    /// reached, converged, stalled, max-sweeps or cancelled.
     pub(crate) stop: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) goal: Option<GoalReport>,
@@ -38,6 +38,8 @@ pub(crate) struct EngineReport {
     pub(crate) kind: &'static str,
     pub(crate) adapter: Option<String>,
     pub(crate) driver: Option<String>,
+    /// Why it was taken, if the command line left that open.
+    pub(crate) reason: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -132,7 +134,11 @@ impl Report {
             "{vertices} vertices ({free} free, {colors} color{s}), {triangles} triangles"
         );
         let on = self.engine.adapter.as_deref().unwrap_or("all cores");
-        let _ = writeln!(text, "{} on {} ({on})", self.scheme, self.engine.kind);
+        let _ = write!(text, "{} on {} ({on})", self.scheme, self.engine.kind);
+        if let Some(reason) = &self.engine.reason {
+            let _ = write!(text, ": {reason}");
+        }
+        text.push('\n');
         text.push('\n');
         let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
         let mut row = |name: &str, before: String, after: String| {
@@ -156,12 +162,31 @@ impl Report {
         }
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
         let _ = writeln!(text, "\n{}", self.ending());
+        if let Some(warning) = self.warning() {
+            let _ = writeln!(text, "{warning}");
+        }
         let Seconds { read, prepare, smooth, write, total } = self.seconds;
         let _ = write!(
             text,
             "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
         );
         text
+    }
+
+    /// What to know of the worst element if it is worse than before, by a hundredth at least.
+    fn warning(&self) -> Option<String> {
+        let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
+        if after <= 1.01 * before {
+            return None;
+        }
+        let shape = self.scheme.split('+').any(|metric| matches!(metric, "imr" | "ar"));
+        let base = self.scheme.split('+').next().unwrap_or_default();
+        let remedy = match shape {
+            true => "f is a mean, which may fall as one element gets worse".to_owned(),
+            false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
+        };
+        let (before, after) = (six(before), six(after));
+        Some(format!("worst imr rose from {before} to {after}: {remedy}"))
     }
 
     /// Why the run ended, in a sentence.
@@ -189,11 +214,13 @@ impl Report {
                     (false, "stalled") => {
                         format!("not reached: no more progress after {sweeps}, {went}")
                     }
+                    (false, "cancelled") => format!("interrupted after {sweeps}, {went}"),
                     (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
             }
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}"),
+            ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => format!(
                 "stopped after {sweeps}, the most allowed; more may gain more (--max-sweeps)"
             ),

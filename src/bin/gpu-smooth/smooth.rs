@@ -5,11 +5,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use gpu_smooth::{Backend, Mesh, MeshFile, Outcome, SmoothError, Smoother, Stop};
+use gpu_smooth::{
+    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop,
+};
 
-use crate::cli::{History, SmoothArgs};
-use crate::engine;
+use crate::cli::{History, OutputArgs, SmoothArgs};
+use crate::engine::{self, Taken};
 use crate::explain;
+use crate::interrupt;
 use crate::progress::Bar;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds};
 use crate::tell;
@@ -19,29 +22,33 @@ pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
     MeshFile::read(path).map_err(|error| error.to_string())
 }
 
-pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
+pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     let (Some(input), Some(output)) = (&args.input, &args.output) else {
         return Err("IN and OUT are needed".into());
     };
     let start = Instant::now();
-    // The driver takes as long to start as a mesh to read: both at once.
+    interrupt::watch(show.quiet);
+    // The driver starts meanwhile: as the mesh is read, or prepared if its size decides on the engine.
     std::thread::scope(|scope| {
-        let backend = scope.spawn(|| engine::open(args));
+        let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let file = read(input)?;
         let read_done = Instant::now();
         check_destinations(args, &file, output)?;
         for remark in file.notes() {
-            tell::note(args.quiet, remark);
+            tell::note(show.quiet, remark);
         }
         let mesh = file.mesh();
+        let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+        let opening =
+            opening.unwrap_or_else(|| scope.spawn(move || Ok(engine::choose(args, size))));
         let smoother = Smoother::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
-        let (backend, remark) =
-            backend.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
-        remark.iter().for_each(|remark| tell::note(args.quiet, remark));
+        let taken =
+            opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
         let before = smoother.quality(&mesh.points);
         let prepared = Instant::now();
 
-        let (outcome, backend) = smooth(args, &smoother, backend)?;
+        let (outcome, taken) = smooth(args, show, &smoother, taken)?;
+        interrupt::has_result();
         let mut points = outcome.points.clone();
         points.iter_mut().flatten().for_each(|x| *x = file.stored(*x));
         let returned = outcome.returned + smoother.certify(&mut points);
@@ -59,7 +66,7 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             total: (written - start).as_secs_f64(),
         };
         let report = Report {
-            engine: engine_report(&backend),
+            engine: engine_report(&taken),
             mesh: mesh_report(&file, mesh, &smoother),
             scheme: args.scheme.to_string(),
             sweeps: outcome.sweeps,
@@ -76,13 +83,13 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
             seconds,
         };
         write_report(args, &report)?;
-        if args.verbose {
+        if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
                 tell::say(&format!("sweep {:<5} {metric:<5} f {:.10}", sweep.sweep, sweep.f));
             }
         }
-        if !args.quiet {
+        if !show.quiet {
             tell::say(&report.summary());
         }
         Ok(())
@@ -92,23 +99,36 @@ pub(crate) fn run(args: &SmoothArgs) -> Result<(), String> {
 /// Smooths, on the CPU if the GPU cannot hold the mesh and the user left the choice.
 fn smooth(
     args: &SmoothArgs,
+    show: &OutputArgs,
     smoother: &Smoother<'_>,
-    backend: Backend,
-) -> Result<(Outcome, Backend), String> {
+    mut taken: Taken,
+) -> Result<(Outcome, Taken), String> {
     let options = args.options();
-    let mut bar = Bar::new(args.quiet, args.max_sweeps);
-    let mut observe = |progress: &gpu_smooth::Progress| {
-        bar.update(progress);
-        ControlFlow::Continue(())
-    };
-    let outcome = match smoother.run(&options, &backend, &mut observe) {
-        Err(error) if engine::may_fall_back(args, &error) => {
-            let outcome = smoother.run(&options, &Backend::Cpu, &mut observe);
-            outcome.map(|outcome| (outcome, Backend::Cpu))
+    let mut bar = Bar::new(show, args.max_sweeps);
+    let mut observe = |progress: &Progress| {
+        if progress.phase == Phase::Smoothing {
+            interrupt::has_result();
         }
-        done => done.map(|outcome| (outcome, backend)),
+        bar.update(progress);
+        match interrupt::is_requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     };
+    let mut outcome = smoother.run(&options, &taken.backend, &mut observe);
+    if let Err(error) = &outcome
+        && engine::is_open(args)
+        && engine::is_too_large(error)
+    {
+        taken = Taken { backend: Backend::Cpu, reason: Some(error.to_string()) };
+        outcome = smoother.run(&options, &taken.backend, &mut observe);
+    }
     bar.clear();
+    if interrupt::is_requested() {
+        let text = "interrupted: writing the best mesh so far (once more to end without it)";
+        tell::note(show.quiet, text);
+    }
+    let outcome = outcome.map(|outcome| (outcome, taken));
     outcome.map_err(|error: SmoothError| match engine::is_too_large(&error) {
         true => format!("{error}. Smooth on the CPU: --engine cpu"),
         false => error.to_string(),
@@ -143,19 +163,23 @@ fn write_report(args: &SmoothArgs, report: &Report) -> Result<(), String> {
     let Some(path) = &args.report else { return Ok(()) };
     let mut text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
     text.push('\n');
+    // Writing to a pipe may take for ever.
+    let _whole = (!path.exists() || path.is_file()).then(interrupt::uninterrupted);
     fs::write(path, text).map_err(|error| {
         format!("{}: the report was not written: {error}. The mesh was", path.display())
     })
 }
 
-fn engine_report(backend: &Backend) -> EngineReport {
-    match backend {
-        Backend::Cpu => EngineReport { kind: "cpu", adapter: None, driver: None },
-        Backend::Gpu(gpu) => EngineReport {
-            kind: "gpu",
-            adapter: Some(gpu.adapter().name.clone()),
-            driver: Some(gpu.adapter().driver.clone()),
-        },
+fn engine_report(taken: &Taken) -> EngineReport {
+    let adapter = match &taken.backend {
+        Backend::Cpu => None,
+        Backend::Gpu(gpu) => Some(gpu.adapter()),
+    };
+    EngineReport {
+        kind: if adapter.is_some() { "gpu" } else { "cpu" },
+        adapter: adapter.map(|adapter| adapter.name.clone()),
+        driver: adapter.map(|adapter| adapter.driver.clone()),
+        reason: taken.reason.clone(),
     }
 }
 

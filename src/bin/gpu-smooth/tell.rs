@@ -82,17 +82,26 @@ pub(crate) fn adapters() -> Result<(), String> {
     if adapters.is_empty() {
         say(&format!("no GPU adapter was found. {INSTALL}"));
     }
-    for (AdapterSummary { name, driver, backend, kind }, usable) in adapters {
+    for (adapter, usable) in adapters {
         let state = match usable {
+            Ok(()) if adapter.is_software() => {
+                "arithmetic checked, used only where asked for (--engine gpu, --adapter)".to_owned()
+            }
             Ok(()) => "arithmetic checked".to_owned(),
             Err(GpuError::Arithmetic { operation, .. }) => {
                 format!("wrong arithmetic, not used: {operation}")
             }
             Err(error) => format!("not used: {error}"),
         };
-        say(&format!("{name} ({kind}, {backend}; {driver}): {state}"));
+        say(&format!("{} {}; {state}", adapter.name, self::adapter(&adapter)));
     }
     Ok(())
+}
+
+/// What an adapter is and what drives it.
+pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
+    let software = if adapter.is_software() { ": software" } else { "" };
+    format!("({}, {}; {}){software}", adapter.kind, adapter.backend, adapter.driver)
 }
 
 /// `gpu-smooth metrics`.

@@ -27,9 +27,9 @@ struct Place {
 /// Tells an error in the user's terms.
 type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
-pub(crate) fn run(args: &BenchArgs) -> Result<(), String> {
+pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
     let file = args.mesh.as_deref().map(read).transpose()?;
-    let places = places(args)?;
+    let places = places(args, quiet)?;
     let mut rows = Vec::new();
     if !args.json {
         tell::say(&report::head(args, &places));
@@ -121,6 +121,7 @@ fn measure(
     };
     Ok(Row {
         engine: place.name.clone(),
+        software: place.gpu.as_ref().is_some_and(|gpu| gpu.adapter().is_software()),
         scheme: args.scheme.to_string(),
         vertices: mesh.points.len(),
         triangles: mesh.triangles.len(),
@@ -135,7 +136,7 @@ fn measure(
 }
 
 /// The engines to measure: those asked for, or all there are.
-fn places(args: &BenchArgs) -> Result<Vec<Place>, String> {
+fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, String> {
     let mut places = Vec::new();
     if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
         let threads = rayon::current_num_threads();
@@ -150,7 +151,7 @@ fn places(args: &BenchArgs) -> Result<Vec<Place>, String> {
                 gpu: Some(gpu),
             }),
             Err(error) if places.is_empty() => return Err(error),
-            Err(error) => tell::note(args.json, &error),
+            Err(error) => tell::note(args.json || quiet, &error),
         }
     }
     Ok(places)

@@ -5,11 +5,14 @@ use serde::Serialize;
 use super::Place;
 use super::kernels::KernelTime;
 use crate::cli::BenchArgs;
+use crate::tell;
 
 /// What was measured of one mesh on one engine.
 #[derive(Serialize)]
 pub(super) struct Row {
     pub(super) engine: String,
+    /// Whether it is an adapter whose driver computes on the CPU.
+    pub(super) software: bool,
     pub(super) scheme: String,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
@@ -55,7 +58,7 @@ pub(super) fn head(args: &BenchArgs, places: &[Place]) -> String {
     for place in places {
         let driver = place.gpu.as_ref().map(|gpu| {
             let adapter = gpu.adapter();
-            format!(" ({}, {}; {})", adapter.kind, adapter.backend, adapter.driver)
+            format!(" {}", tell::adapter(adapter))
         });
         text += &format!(
             "{}{}: copies {:.1} GB/s, read and written\n",

@@ -1,0 +1,96 @@
+//! Ctrl-C, and what else asks a run to end: SIGINT and SIGTERM.
+//!
+//! Until there is a smoothed state, and at the second signal, the process ends at once and leaves no half-written file. In
+//! between, a signal ends the run at the next sweep, and the best mesh so far is written.
+
+use std::io::IsTerminal;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::{flag, low_level};
+
+use crate::tell;
+
+/// How often signals are looked for. A thread that waits for them would need different code on each system.
+const INTERVAL: Duration = Duration::from_millis(20);
+
+/// Whether there is a smoothed state to write.
+static HAS_RESULT: AtomicBool = AtomicBool::new(false);
+/// The signal that asked the run to end, or 0.
+static REQUESTED: AtomicI32 = AtomicI32::new(0);
+/// Held while a file other than the mesh is written.
+static WRITING: Mutex<()> = Mutex::new(());
+
+/// Handles the signals from now on. Where the system does not let it, they end the process as usual.
+pub(crate) fn watch(quiet: bool) {
+    let register = |signal| {
+        let arrived = Arc::new(AtomicBool::new(false));
+        flag::register(signal, Arc::clone(&arrived)).ok().map(|_| (signal, arrived))
+    };
+    let wait = move || {
+        let signals: Vec<_> = [SIGINT, SIGTERM].into_iter().filter_map(register).collect();
+        loop {
+            std::thread::sleep(INTERVAL);
+            for (signal, arrived) in &signals {
+                if arrived.swap(false, Ordering::SeqCst) {
+                    received(*signal, quiet);
+                }
+            }
+        }
+    };
+    let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
+}
+
+/// Leaves it to the run to end, or ends the process.
+fn received(signal: i32, quiet: bool) {
+    let has_result = HAS_RESULT.load(Ordering::SeqCst);
+    let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);
+    if has_result && set(0).is_ok() {
+        return;
+    }
+    let _mesh = gpu_smooth::abandon_writes();
+    let _other = uninterrupted();
+    if std::io::stderr().is_terminal() {
+        // Below the bar.
+        eprintln!();
+    }
+    let text = if has_result {
+        "interrupted again: ended at once"
+    } else {
+        "interrupted: nothing was written"
+    };
+    tell::note(quiet, text);
+    // Not `std::process::exit`: a driver would clean up while its threads still run.
+    low_level::exit(exit_status(signal).into());
+}
+
+/// From now on the first signal is left to the run.
+pub(crate) fn has_result() {
+    HAS_RESULT.store(true, Ordering::SeqCst);
+}
+
+/// Whether the run is to end.
+pub(crate) fn is_requested() -> bool {
+    REQUESTED.load(Ordering::SeqCst) != 0
+}
+
+/// No signal ends the process as long as the returned value lives.
+pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
+    WRITING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The exit code of a command that did what it could: 0 unless it was interrupted.
+pub(crate) fn exit_code() -> ExitCode {
+    match REQUESTED.load(Ordering::SeqCst) {
+        0 => ExitCode::SUCCESS,
+        signal => exit_status(signal).into(),
+    }
+}
+
+/// 130 or 143, as shells tell the end by a signal.
+fn exit_status(signal: i32) -> u8 {
+    128 + signal as u8
+}

@@ -1,0 +1,192 @@
+//! What signals do to a run, at every stage of it.
+#![cfg(unix)]
+
+use super::{Folder, assert_holds, assert_smoothed, plate_path, small, support};
+use gpu_smooth::MeshFile;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
+
+/// Longer than anything here takes: what is still running then is killed, and the test fails.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A command that a test sends signals to.
+struct Started {
+    child: Child,
+    err: BufReader<ChildStderr>,
+    /// Dropped when the child has ended.
+    _running: Sender<()>,
+}
+
+impl Started {
+    fn new(folder: &Folder, args: &[&str]) -> Self {
+        let mut command = folder.command();
+        command.args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let err = BufReader::new(child.stderr.take().unwrap());
+        let (running, ended) = mpsc::channel();
+        let id = child.id().to_string();
+        std::thread::spawn(move || {
+            if ended.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                let _ = Command::new("kill").args(["-KILL", &id]).status();
+            }
+        });
+        Self { child, err, _running: running }
+    }
+
+    /// A run on the plate that lasts, after its first sweeps.
+    fn sweeping(folder: &Folder, args: &[&str]) -> Self {
+        let plate = plate_path().to_str().unwrap();
+        let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
+        let mut started = Self::new(folder, &[&[plate], args, &lasting].concat());
+        let line = started.line();
+        assert_holds(&line, &["gpu-smooth: sweep ", "/100000000  f 1."]);
+        started
+    }
+
+    /// The next line on standard error.
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.err.read_line(&mut line).unwrap();
+        line
+    }
+
+    /// The next line on standard error that tells no progress.
+    fn remark(&mut self) -> String {
+        loop {
+            let line = self.line();
+            if !line.starts_with("gpu-smooth: sweep ") {
+                return line;
+            }
+        }
+    }
+
+    fn signal(&self, name: &str) {
+        let id = self.child.id().to_string();
+        assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
+    }
+
+    /// Exit code, standard output, and the rest of standard error.
+    fn end(mut self) -> (Option<i32>, String, String) {
+        let (mut out, mut err) = (String::new(), String::new());
+        self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
+        self.err.read_to_string(&mut err).unwrap();
+        (self.child.wait().unwrap().code(), out, err)
+    }
+}
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn make_pipe(folder: &Folder, name: &str) {
+    assert!(Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
+}
+
+fn names(folder: &Folder) -> Vec<String> {
+    let entries = fs::read_dir(&folder.0).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn an_interrupted_run_leaves_the_best_mesh_so_far() {
+    for (engine, signal, code) in
+        [("cpu", "-INT", 130), ("cpu", "-TERM", 143), ("gpu", "-INT", 130)]
+    {
+        let folder = Folder::new(&[]);
+        let mut run =
+            Started::sweeping(&folder, &["out", "--engine", engine, "--report", "r.json"]);
+        run.signal(signal);
+        let remark = run.remark();
+        assert!(remark.starts_with("gpu-smooth: interrupted: writing the best mesh"), "{remark}");
+        let (found, out, err) = run.end();
+        assert_eq!((found, err.as_str()), (Some(code), ""), "{out}");
+        assert_holds(&out, &["\ninterrupted after ", " sweeps", "\nworst imr"]);
+        let plate = MeshFile::read(plate_path()).unwrap();
+        assert_smoothed(plate.mesh(), &folder.mesh("out"));
+        assert!(support::worst_imr(&folder.mesh("out")) < 2.0);
+        assert_eq!(folder.json("r.json")["stop"], "cancelled");
+        assert_eq!(names(&folder), ["out.ele", "out.node", "r.json"]);
+    }
+}
+
+#[test]
+fn a_goal_not_reached_is_told_when_interrupted() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    let args = [plate, "out", "-v", "--engine", "cpu", "--method", "paper", "--desired", "1"];
+    let args = [&args[..], &["--fraction", "1", "--scheme", "edge+imr"]].concat();
+    let mut run = Started::new(&folder, &[&args[..], &["--max-sweeps", "100000000"]].concat());
+    run.line();
+    run.signal("-INT");
+    let (code, out, _) = run.end();
+    assert_eq!(code, Some(130));
+    assert_holds(&out, &["\ninterrupted after ", " % of the way to f = 1.000000"]);
+}
+
+#[test]
+fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
+    let folder = Folder::new(&[]);
+    make_pipe(&folder, "in.msh");
+    let run = Started::new(&folder, &["in.msh", "out.msh", "--report", "r.json"]);
+    // Opens once the command reads.
+    let pipe = fs::OpenOptions::new().write(true).open(folder.path("in.msh")).unwrap();
+    run.signal("-INT");
+    let (code, out, err) = run.end();
+    drop(pipe);
+    assert_eq!((code, out.as_str()), (Some(130), ""), "{err}");
+    assert_eq!(err, "gpu-smooth: interrupted: nothing was written\n");
+    fs::remove_file(folder.path("in.msh")).unwrap();
+    assert!(names(&folder).is_empty());
+}
+
+#[test]
+fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    // By edge, which takes thousands of sweeps to find.
+    let goal = ["--scheme", "edge", "--desired", "auto"];
+    let args = [&[plate, "out", "-v", "--engine", "cpu"][..], &goal].concat();
+    let mut run = Started::new(&folder, &args);
+    assert_holds(&run.line(), &["finding the optimum: sweep "]);
+    run.signal("-TERM");
+    let (code, out, err) = run.end();
+    assert_eq!((code, out.as_str()), (Some(143), ""), "{err}");
+    assert_holds(&err, &["gpu-smooth: interrupted: nothing was written\n"]);
+    assert!(names(&folder).is_empty());
+}
+
+/// The second part of OUT is a pipe that nobody reads, so that writing lasts.
+#[test]
+fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
+    let folder = small();
+    fs::write(folder.path("out.node"), "old\n").unwrap();
+    make_pipe(&folder, "out.ele");
+    let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
+    let args =
+        [&["in", "out.node", "--engine", "cpu", "--report", "r.json"][..], &lasting].concat();
+    let mut run = Started::new(&folder, &args);
+    run.line();
+    run.signal("-INT");
+    assert_holds(&run.remark(), &["interrupted: writing"]);
+    let start = Instant::now();
+    while !names(&folder).iter().any(|name| name.ends_with(".tmp")) {
+        assert!(start.elapsed() < PATIENCE, "no temporary file appears: {:?}", names(&folder));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.signal("-INT");
+    let (code, out, err) = run.end();
+    assert_eq!((code, out.as_str()), (Some(130), ""), "{err}");
+    assert_holds(&err, &["gpu-smooth: interrupted again: ended at once\n"]);
+    fs::remove_file(folder.path("out.ele")).unwrap();
+    assert_eq!(names(&folder), ["in.ele", "in.node", "out.node"]);
+    assert_eq!(folder.text("out.node"), "old\n");
+}
