@@ -11,7 +11,7 @@ adapter=(${2:+--adapter "$2"})
 cargo build --release
 smooth=target/release/gpu-smooth
 "$smooth" adapters | tee "$folder/adapters.txt"
-if [ -z "${2:-}" ] && head -1 "$folder/adapters.txt" | grep -q '(CPU,'; then
+if [ -z "${2:-}" ] && head -1 "$folder/adapters.txt" | grep -q '(CPU: software,'; then
     echo "no GPU among these adapters: install its Vulkan driver, or name one" >&2
     exit 1
 fi

@@ -12,7 +12,7 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
     let [name, driver] = ["adapter", "driver"].map(|key| report["engine"][key].as_str().unwrap());
     assert!(list.starts_with(name) && list.contains(driver), "{name}, {driver} not in:\n{list}");
     let first = list.lines().next().unwrap();
-    assert!(first.ends_with(": arithmetic checked"), "{first}");
+    assert!(first.contains("; arithmetic checked"), "{first}");
 
     let part: String = name.chars().take(4).collect();
     for part in [part.to_uppercase(), part.to_lowercase()] {
@@ -104,8 +104,7 @@ fn large() -> (Folder, [&'static str; 6]) {
 fn a_software_adapter_is_not_taken_unless_asked_for() {
     let (folder, args) = large();
     let adapters = folder.line("adapters").clean().out;
-    let is_software =
-        adapters.lines().next().unwrap().contains("): software, used only where asked");
+    let is_software = adapters.lines().next().unwrap().contains("(CPU: software, ");
     let run = finish(folder.command().args(args).env("RAYON_NUM_THREADS", "1"));
     let out = run.clean().out;
     // The test machine may have a real GPU.

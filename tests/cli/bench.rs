@@ -29,7 +29,7 @@ fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
     assert!(rows[0]["engine"].as_str().unwrap().starts_with("cpu, "), "{}", rows[0]);
     assert!(rows[0]["kernels"].is_null());
     let adapters = folder.line("adapters").clean().out;
-    let is_software = adapters.lines().next().unwrap().contains("): software");
+    let is_software = adapters.lines().next().unwrap().contains("(CPU: software, ");
     assert_eq!([&rows[0]["software"], &rows[1]["software"]], [false, is_software]);
     let kernels: Vec<_> = rows[1]["kernels"].as_array().unwrap().iter().collect();
     let names: Vec<_> = kernels.iter().map(|kernel| kernel["kernel"].as_str().unwrap()).collect();

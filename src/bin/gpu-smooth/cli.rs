@@ -16,7 +16,8 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness}
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines stay where they are. Formats: \
-                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary).\n\n\
+                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary). Ctrl-C ends a run at \
+                  the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
@@ -35,10 +36,10 @@ pub(crate) struct Cli {
 /// How much is printed, whatever the command.
 #[derive(Args)]
 pub(crate) struct OutputArgs {
-    /// Print errors only, and what a command is there to print
+    /// Print errors only; commands still print their answer
     #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Output")]
     pub(crate) quiet: bool,
-    /// Print every sweep
+    /// Print every sweep of a run
     #[arg(short, long, global = true, help_heading = "Output")]
     pub(crate) verbose: bool,
 }
@@ -111,7 +112,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) scheme: Scheme,
 
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
-    /// done first, and a software adapter never
+    /// done first, but no software adapter
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) engine: EngineChoice,
     /// Take the first GPU adapter with NAME in its name (see `gpu-smooth adapters`)

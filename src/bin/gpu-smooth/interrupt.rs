@@ -3,7 +3,6 @@
 //! Until there is a smoothed state, and at the second signal, the process ends at once and leaves no half-written file. In
 //! between, a signal ends the run at the next sweep, and the best mesh so far is written.
 
-use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -53,10 +52,7 @@ fn received(signal: i32, quiet: bool) {
     }
     let _mesh = gpu_smooth::abandon_writes();
     let _other = uninterrupted();
-    if std::io::stderr().is_terminal() {
-        // Below the bar.
-        eprintln!();
-    }
+    tell::leave_bar();
     let text = if has_result {
         "interrupted again: ended at once"
     } else {

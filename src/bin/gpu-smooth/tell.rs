@@ -1,7 +1,7 @@
 //! Everything that is printed, and the commands that only print.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 
 use gpu_smooth::gpu::AdapterSummary;
 use gpu_smooth::{GpuError, Metric, Quality, Topology};
@@ -28,6 +28,13 @@ pub(crate) fn say(text: &str) {
 pub(crate) fn note(quiet: bool, text: &str) {
     if !quiet {
         eprintln!("gpu-smooth: {text}");
+    }
+}
+
+/// Goes to a line of its own where a bar may stand on the last one.
+pub(crate) fn leave_bar() {
+    if std::io::stderr().is_terminal() {
+        eprintln!();
     }
 }
 
@@ -101,7 +108,7 @@ pub(crate) fn adapters() -> Result<(), String> {
 /// What an adapter is and what drives it.
 pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
     let software = if adapter.is_software() { ": software" } else { "" };
-    format!("({}, {}; {}){software}", adapter.kind, adapter.backend, adapter.driver)
+    format!("({}{software}, {}; {})", adapter.kind, adapter.backend, adapter.driver)
 }
 
 /// `gpu-smooth metrics`.
