@@ -20,6 +20,8 @@ pub(crate) struct Report {
     pub(crate) levels_left_out: bool,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
+    /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
+    pub(crate) remaining: Option<f64>,
     /// reached, converged, stalled, max-sweeps or cancelled.
     pub(crate) stop: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -189,6 +191,14 @@ impl Report {
         Some(format!("worst imr rose from {before} to {after}: {remedy}"))
     }
 
+    /// How far the run is from the limit of f, as far as that can be told.
+    fn left(&self) -> String {
+        match self.remaining {
+            Some(left) => format!("; f is estimated to be {left:.1e} of itself above its limit"),
+            None => "; more sweeps may gain more".into(),
+        }
+    }
+
     /// Why the run ended, in a sentence.
     fn ending(&self) -> String {
         let sweeps = match self.sweeps {
@@ -219,13 +229,15 @@ impl Report {
                 }
             }
             ("converged", None) => format!("converged after {sweeps}"),
-            ("stalled", None) => format!("no more progress after {sweeps}"),
+            ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
             ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
-            (_, None) => format!(
-                "stopped after {sweeps}, the most allowed; more may gain more (--max-sweeps)"
-            ),
+            (_, None) => {
+                format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
+            }
         };
-        if self.best_sweep != self.sweeps {
+        if self.sweeps > 0 && self.best_sweep == 0 {
+            text.push_str("; nothing was gained, so the mesh is written as it was");
+        } else if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
         }
         if self.opening_sweeps > 0 {

@@ -74,6 +74,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             opening_sweeps: outcome.opening_sweeps,
             levels_left_out: outcome.levels_left_out,
             best_sweep: outcome.best_sweep,
+            remaining: outcome.remaining,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),
             returned,
