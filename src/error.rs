@@ -58,7 +58,7 @@ pub enum ReadError {
     },
 }
 
-/// A mesh file could not be written. Whatever stood at its place before still stands there.
+/// A file could not be written. Whatever stood at its place before still stands there.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The operating system refused.

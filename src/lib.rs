@@ -97,6 +97,11 @@ pub mod validity {
     pub use crate::topology::{certify, infeasible};
 }
 
+/// Writing files as [`MeshFile`] does, for what an application writes beside a mesh.
+pub mod output {
+    pub use crate::file::{check, replace, same_file};
+}
+
 /// What benchmarks, experiments and this library's own tests drive by hand. It changes without notice.
 #[doc(hidden)]
 pub mod internal;

@@ -192,6 +192,11 @@ impl MeshFile {
         &self.sources[0].path
     }
 
+    /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.sources.iter().map(|source| source.path.as_path())
+    }
+
     /// The mesh, vertices and triangles in the order of the file.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -285,7 +290,7 @@ impl MeshFile {
                 (destination, Box::new(content))
             })
             .collect();
-        replace::replace(&jobs)
+        replace::replace_all(&jobs)
     }
 
     /// Finds out, as far as can be told without writing, whether [`write`](Self::write) to `path`
@@ -298,8 +303,11 @@ impl MeshFile {
         self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
     }
 
-    /// Where each of the sources goes.
-    fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+    /// The files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
+    ///
+    /// # Errors
+    /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
+    pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let usual = self.format.endings()[0];
         let refused = |problem: String, remedy: String| {
             Err(WriteError::Format { path: path.to_owned(), problem, remedy })

@@ -14,4 +14,4 @@ mod text;
 mod triangle;
 
 pub use mesh_file::{Format, MeshFile, Place};
-pub use replace::{AbandonedWrites, abandon_writes};
+pub use replace::{AbandonedWrites, abandon_writes, check, replace, same_file};

@@ -1,4 +1,5 @@
-//! Replaces files all at once or not at all.
+//! Replaces files as a whole: whatever happens, the old content is there or the new one, and several files are
+//! replaced together or not at all.
 
 use crate::error::WriteError;
 use std::fs::{self, File, OpenOptions};
@@ -10,10 +11,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// A file to be written: its path, and what writes its content.
 pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
 
-/// Writes all of the files, or leaves all that stood there as they were.
+/// Writes a file so that it has either its old content or all of the new one, whatever happens meanwhile.
 ///
-/// Each is first written beside its destination. Symbolic links are followed, permissions kept.
-pub(crate) fn replace(jobs: &[Job<'_>]) -> Result<(), WriteError> {
+/// The content is first written beside the file, to the same disk, then takes its place. Symbolic links are followed
+/// and permissions kept. What is no regular file, a device or a pipe, is written to directly.
+///
+/// # Errors
+/// [`WriteError::Io`] if the system refuses; what stood at `path` then still stands there.
+pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    replace_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
+}
+
+/// Writes all of the files, or leaves all that stood there as they were. Each as [`replace`] does.
+pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
     let staged = jobs.iter().map(|(path, content)| stage(path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;
     // Declared before what it protects, so that it is dropped after it.
@@ -55,8 +65,12 @@ pub fn abandon_writes() -> AbandonedWrites {
     AbandonedWrites { _committing: committing, _temporaries: temporaries }
 }
 
-/// Finds out, as far as can be told, whether a file can be written there.
-pub(crate) fn check(path: &Path) -> Result<(), WriteError> {
+/// Finds out, as far as can be told without writing, whether [`replace`] can work: that the directory is there and takes
+/// new files, and that no directory or read-only file is in the way.
+///
+/// # Errors
+/// [`WriteError::Io`] that says what is wrong.
+pub fn check(path: &Path) -> Result<(), WriteError> {
     let (target, existing) = resolve(path).map_err(|source| refused(path, source))?;
     match existing {
         Some(existing) if existing.is_dir() => {
@@ -82,6 +96,38 @@ pub(crate) fn check(path: &Path) -> Result<(), WriteError> {
         });
     }
     Temporary::create(directory).map(drop).map_err(|source| refused(directory, source))
+}
+
+/// Whether two paths lead to one file, be it by another spelling, a symbolic link or a hard link. The file need not exist
+/// yet. Hard links are told on Unix only.
+pub fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
+}
+
+/// What tells a file from all others.
+#[derive(PartialEq)]
+enum Identity {
+    #[cfg(unix)]
+    Inode {
+        device: u64,
+        number: u64,
+    },
+    Path(PathBuf),
+}
+
+/// None where nothing could be written anyway, for want of a directory, say.
+fn identity(path: &Path) -> Option<Identity> {
+    let (target, existing) = resolve(path).ok()?;
+    #[cfg(unix)]
+    if let Some(existing) = &existing {
+        use std::os::unix::fs::MetadataExt;
+        return Some(Identity::Inode { device: existing.dev(), number: existing.ino() });
+    }
+    if existing.is_some() {
+        return fs::canonicalize(target).ok().map(Identity::Path);
+    }
+    let directory = fs::canonicalize(directory_of(&target)).ok()?;
+    Some(Identity::Path(directory.join(target.file_name()?)))
 }
 
 fn refused(path: &Path, source: io::Error) -> WriteError {
@@ -140,13 +186,13 @@ impl Staged {
         let directory = directory_of(&self.target);
         if revertible && self.existed {
             let previous = Temporary::unused_name(directory);
-            // Without hard links there is no way back, yet nothing is known to fail either.
+            // Where there are no hard links the file cannot be brought back, yet nothing has failed so far.
             if fs::hard_link(&self.target, &previous).is_ok() {
                 self.previous = Some(Temporary(previous));
             }
         }
         fs::rename(&content.0, &self.target)?;
-        // Makes the new name last; not every system lets a directory be opened for it.
+        // So that the new name outlasts a crash too. Not every system lets a directory be opened for that.
         if let Ok(directory) = File::open(directory) {
             let _ = directory.sync_all();
         }
@@ -163,7 +209,7 @@ impl Staged {
     }
 }
 
-/// A file of our own, removed when dropped unless it was renamed.
+/// A name for a file that is removed when dropped, unless it was renamed.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -182,7 +228,7 @@ impl Temporary {
         }
     }
 
-    /// A short name, as the destination's own may be as long as names can be.
+    /// Short, whatever the destination's own name is: that may be as long as names can be.
     fn unused_name(directory: &Path) -> PathBuf {
         static COUNTER: AtomicU64 = AtomicU64::new(0);
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
@@ -197,10 +243,11 @@ impl Drop for Temporary {
     }
 }
 
-/// The path behind all symbolic links, whose last one may point to nothing yet, and what is there.
+/// Where the path leads through all symbolic links, and what is there, if anything: the last link may point to
+/// nothing yet.
 fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
     match fs::metadata(path) {
-        // The links of devices and pipes need not be paths.
+        // A device or pipe may be reached by a link, as /proc has them, that is not a path.
         Ok(existing) if !existing.is_file() => Ok((path.to_owned(), Some(existing))),
         Ok(existing) => Ok((fs::canonicalize(path)?, Some(existing))),
         Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -246,7 +293,7 @@ mod tests {
                 Err(ErrorKind::StorageFull.into())
             }),
         );
-        let error = replace(&[job(a.clone(), "new"), failing]).unwrap_err().to_string();
+        let error = replace_all(&[job(a.clone(), "new"), failing]).unwrap_err().to_string();
         assert!(error.contains("Make room"), "{error}");
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert_eq!(entries(directory.path()), 1);
@@ -260,7 +307,7 @@ mod tests {
         // No file can take the place of a directory.
         fs::create_dir(&c).unwrap();
         let jobs = [job(a.clone(), "new"), job(b.clone(), "new"), job(c, "new")];
-        assert!(replace(&jobs).is_err());
+        assert!(replace_all(&jobs).is_err());
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert!(!b.exists());
         assert_eq!(entries(directory.path()), 2);
@@ -272,9 +319,39 @@ mod tests {
         let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
         fs::write(&a, "old").unwrap();
         check(&a).unwrap();
-        replace(&[job(a.clone(), "1"), job(b.clone(), "2")]).unwrap();
+        replace_all(&[job(a.clone(), "1"), job(b.clone(), "2")]).unwrap();
         assert_eq!(fs::read_to_string(&a).unwrap(), "1");
         assert_eq!(fs::read_to_string(&b).unwrap(), "2");
         assert_eq!(entries(directory.path()), 2);
+    }
+
+    #[test]
+    fn a_file_is_known_by_any_of_its_names() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("sub")).unwrap();
+        fs::write(at("a"), "").unwrap();
+        fs::write(at("b"), "").unwrap();
+        let same = |a: &str, b: &str| same_file(&at(a), &at(b));
+        for (there, not_yet) in [("a", "new"), ("sub", "sub/new")] {
+            for name in [there, not_yet] {
+                assert!(same(name, name) && same(name, &format!("sub/../{name}")), "{name}");
+                assert!(same(name, &format!("./{name}")), "{name}");
+            }
+            assert!(!same(there, not_yet) && !same(not_yet, "b"));
+        }
+        assert!(!same("a", "b") && !same("a", "sub/a") && !same("new", "sub/new"));
+        assert!(!same("none/a", "none/a"));
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::symlink;
+            for (target, link) in [("a", "to-a"), ("new", "to-new"), ("sub", "to-sub")] {
+                symlink(target, at(link)).unwrap();
+                assert!(same(target, link));
+            }
+            fs::hard_link(at("a"), at("also-a")).unwrap();
+            assert!(same("a", "also-a") && same("to-a", "also-a") && !same("b", "also-a"));
+            assert!(same("to-sub/new", "sub/new"));
+        }
     }
 }

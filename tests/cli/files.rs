@@ -1,6 +1,6 @@
 //! What of a file comes back as it was, in each format, and where it may be written.
 
-use super::{Folder, assert_holds, assert_smoothed, disturbed, small, support};
+use super::{Folder, assert_holds, assert_smoothed, disturbed, number, small, support};
 use gpu_smooth::Mesh;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -358,19 +358,24 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     fs::write(folder.path("old.node"), "old").unwrap();
     fs::write(folder.path("locked.ele"), "old").unwrap();
     fs::create_dir(folder.path("dir")).unwrap();
-    let mut permissions = fs::metadata(folder.path("locked.ele")).unwrap().permissions();
-    permissions.set_readonly(true);
-    fs::set_permissions(folder.path("locked.ele"), permissions).unwrap();
+    fs::write(folder.path("locked.json"), "old").unwrap();
+    for name in ["locked.ele", "locked.json"] {
+        let mut permissions = fs::metadata(folder.path(name)).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(folder.path(name), permissions).unwrap();
+    }
     let before = folder.content();
-    let cases: [(&str, &[&str]); 11] = [
+    let cases: [(&str, &[&str]); 13] = [
         ("in.node none/out.node", &["none: no such directory", "Create the directory first"]),
         ("in.node out.msh", &["out.msh: its ending is that of gmsh", "end the name in .node"]),
         ("in.msh out.node", &["out.node: its ending is that of Triangle", "end the name in .msh"]),
         ("in.msh out.vtk", &["out.vtk: its ending is that of legacy VTK", "not converted"]),
         ("in.node locked", &["locked.ele: the file is read-only", "Make it writable"]),
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
-        ("in.node out --report none/r.json", &["none/r.json: ", "a directory that exists"]),
-        ("in.node out --report dir", &["dir: the report cannot be written there"]),
+        ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),
+        ("in.node out --report dir", &["the report cannot be written: dir: ", "name of a file"]),
+        ("in.node out --report locked.ele", &["locked.ele: the report is JSON, not a mesh"]),
+        ("in.node out --report locked.json", &["the report", "locked.json: the file is read-only"]),
         ("in.node old --report old.node", &["old.node: the report is JSON", "End its name in"]),
         ("in.msh out --report out", &["out: the report is JSON, not a mesh"]),
         ("in.msh out.msh --report in.msh", &["in.msh: the report is JSON, not a mesh"]),
@@ -379,4 +384,65 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         folder.line(&format!("{line} --engine cpu")).refused(parts);
         assert!(folder.content() == before, "{line} has changed files");
     }
+}
+
+/// A mesh, its `.poly` included, under names that do not end as those of meshes do, and links to them.
+#[cfg(unix)]
+fn linked() -> Folder {
+    use std::os::unix::fs::symlink;
+    let folder = small();
+    fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 50 51\n0\n").unwrap();
+    fs::write(folder.path("mesh"), support::write_msh22(&disturbed())).unwrap();
+    fs::create_dir(folder.path("sub")).unwrap();
+    for name in ["in.node", "in.ele", "in.poly", "out.ele", "later"] {
+        symlink(name, folder.path(&format!("to-{name}.json"))).unwrap();
+    }
+    symlink("to-later.json", folder.path("to-to-later.json")).unwrap();
+    symlink(".", folder.path("here")).unwrap();
+    fs::hard_link(folder.path("mesh"), folder.path("mesh.json")).unwrap();
+    fs::hard_link(folder.path("in.poly"), folder.path("poly.json")).unwrap();
+    folder
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link() {
+    let folder = linked();
+    let before = folder.content();
+    for line in [
+        "mesh out --report ./mesh",
+        "mesh out --report sub/../mesh",
+        "mesh out --report here/mesh",
+        "./mesh out --report mesh",
+        "mesh out --report mesh.json",
+        "in out --report to-in.node.json",
+        "in out --report here/to-in.ele.json",
+        "in out --report to-in.poly.json",
+        "in out --report poly.json",
+        // What is written, there or not.
+        "mesh out --report ./out",
+        "mesh later --report to-later.json",
+        "mesh here/later --report to-to-later.json",
+        "mesh to-later.json --report later",
+        "in out --report to-out.ele.json",
+    ] {
+        folder.line(&format!("{line} --engine cpu")).refused(&["the report is JSON, not a mesh"]);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+    let run = folder.line("mesh out --engine cpu --report sub/out");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert!(number(&folder.json("sub/out")["sweeps"]) > 0.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
+    let folder = small();
+    fs::write(folder.path("r.json"), "old").unwrap();
+    // Writing into the old file instead of replacing it would show here.
+    fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
+    folder.line("in out --engine cpu --report r.json").clean();
+    assert_eq!(folder.text("kept"), "old");
+    assert!(number(&folder.json("r.json")["sweeps"]) > 0.0);
+    assert_eq!(folder.content().len(), 6);
 }

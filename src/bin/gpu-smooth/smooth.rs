@@ -1,12 +1,11 @@
 //! `gpu-smooth IN OUT`.
 
-use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop,
+    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop, output,
 };
 
 use crate::cli::{History, OutputArgs, SmoothArgs};
@@ -23,7 +22,7 @@ pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
 }
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
-    let (Some(input), Some(output)) = (&args.input, &args.output) else {
+    let (Some(input), Some(out)) = (&args.input, &args.output) else {
         return Err("IN and OUT are needed".into());
     };
     let start = Instant::now();
@@ -33,7 +32,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let file = read(input)?;
         let read_done = Instant::now();
-        check_destinations(args, &file, output)?;
+        check_destinations(args, &file, out)?;
         for remark in file.notes() {
             tell::note(show.quiet, remark);
         }
@@ -55,7 +54,9 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let after = smoother.quality(&points);
         let smoothed = Instant::now();
 
-        file.write(output, &points).map_err(|error| error.to_string())?;
+        // Much may have changed during a long run.
+        check_report(args)?;
+        file.write(out, &points).map_err(|error| error.to_string())?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -137,38 +138,32 @@ fn smooth(
 }
 
 /// Refuses before the work what would fail after it.
-fn check_destinations(args: &SmoothArgs, file: &MeshFile, output: &Path) -> Result<(), String> {
-    file.check_destination(output).map_err(|error| error.to_string())?;
+fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
+    file.check_destination(out).map_err(|error| error.to_string())?;
     let Some(report) = &args.report else { return Ok(()) };
+    let written = file.destinations(out).map_err(|error| error.to_string())?;
+    let mut of_meshes = file.paths().chain(written.iter().map(PathBuf::as_path));
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
         .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
-    if is_mesh || report == output || report == file.path() {
+    if is_mesh || of_meshes.any(|path| output::same_file(path, report)) {
         let name = report.display();
         return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
     }
-    let directory = match report.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if report.is_dir() || !directory.is_dir() {
-        let name = report.display();
-        return Err(format!(
-            "{name}: the report cannot be written there. Name a file in a directory that exists"
-        ));
-    }
-    Ok(())
+    check_report(args)
+}
+
+fn check_report(args: &SmoothArgs) -> Result<(), String> {
+    let Some(report) = &args.report else { return Ok(()) };
+    output::check(report).map_err(|error| format!("the report cannot be written: {error}"))
 }
 
 fn write_report(args: &SmoothArgs, report: &Report) -> Result<(), String> {
     let Some(path) = &args.report else { return Ok(()) };
     let mut text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
     text.push('\n');
-    // Writing to a pipe may take for ever.
-    let _whole = (!path.exists() || path.is_file()).then(interrupt::uninterrupted);
-    fs::write(path, text).map_err(|error| {
-        format!("{}: the report was not written: {error}. The mesh was", path.display())
-    })
+    output::replace(path, text.as_bytes())
+        .map_err(|error| format!("the report was not written, but the mesh was: {error}"))
 }
 
 fn engine_report(taken: &Taken) -> EngineReport {
