@@ -10,8 +10,8 @@ pub struct Mesh {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based, in either winding.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices that stay where they are though no boundary holds them: those on constraint lines
-    /// and of elements that are not triangles. In any order, repeats allowed. Boundary vertices
-    /// need not be listed.
+    /// Vertices that stay where they are though no boundary holds them: those on constraint lines,
+    /// of elements that are not triangles, and between regions. In any order, repeats allowed.
+    /// Boundary vertices need not be listed.
     pub fixed: Vec<u32>,
 }

@@ -1,11 +1,11 @@
-//! Numbers of binary files.
+//! Numbers in binary files, in either byte order.
 
-/// Which byte of a number comes first.
+/// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// The lowest.
+    /// The lowest byte comes first.
     Little,
-    /// The highest.
+    /// The highest byte comes first.
     Big,
 }
 

@@ -1,13 +1,13 @@
 //! Which format a file is in, by its content first and its ending second.
 
 use crate::error::ReadError;
-use crate::file::mesh_file::Format;
+use crate::file::format::{Format, has_ending};
 use crate::file::source::{Source, file_name};
 use crate::file::text::{Cursor, integer};
 use crate::file::triangle::{Names, appended};
 use std::path::{Path, PathBuf};
 
-/// A format with a reader.
+/// What a file holds, of the formats with a reader.
 pub(crate) enum Content {
     Gmsh,
     Triangle(Names),
@@ -17,7 +17,7 @@ pub(crate) enum Content {
 struct Foreign {
     name: &'static str,
     endings: &'static [&'static str],
-    /// What a file opens with, blanks and `%` comment lines aside.
+    /// What a file of the format may start with, after blanks and `%` comment lines.
     opens: &'static [&'static [u8]],
 }
 
@@ -44,11 +44,11 @@ const FOREIGN: [Foreign; 15] = [
     foreign("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"]),
     foreign("netCDF or HDF5", &[".exo", ".med", ".cgns"], &[b"CDF", b"\x89HDF"]),
     foreign("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"]),
-    // Known by its rows only.
+    // Files of it start with a free title: `by_rows` tells it.
     foreign("ADCIRC or SCHISM grid", &["fort.14", ".gr3", ".grd"], &[]),
 ];
 
-/// Finds the format, or says what is there instead.
+/// Finds the format of a file. The error names what else it holds, if that is known.
 pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     let head = head(&source.bytes);
     if head.is_empty() {
@@ -67,7 +67,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     by_rows(source)
 }
 
-/// Tells formats of bare numbers apart by how many stand in the first rows.
+/// Tells apart formats that are but rows of numbers, by how many numbers the first rows have.
 fn by_rows(source: &Source) -> Result<Content, ReadError> {
     let [first, second, third] = first_rows(source);
     let numbers =
@@ -107,18 +107,13 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
     Err(source.error("the format is not recognized", formats_read()))
 }
 
-/// The name of the format that this path's ending belongs to.
+/// The name of the format, with a reader or without, whose files end as this path does.
 pub(crate) fn owner_of_ending(path: &Path) -> Option<String> {
     let format = Format::ALL.iter().find(|format| format.has_ending_of(path));
     format.map(ToString::to_string).or_else(|| {
         let foreign = FOREIGN.iter().find(|foreign| has_ending(path, foreign.endings));
         foreign.map(|foreign| foreign.name.to_owned())
     })
-}
-
-pub(crate) fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let name = file_name(path).to_ascii_lowercase();
-    endings.iter().any(|ending| name.ends_with(ending))
 }
 
 fn not_read(source: &Source, name: &str) -> ReadError {
@@ -130,7 +125,7 @@ fn formats_read() -> String {
     format!("Formats read: {}", names.join(", "))
 }
 
-/// The content without what may stand before its first words.
+/// The content without what may stand before its first words: a byte order mark, blanks and `%` comment lines.
 fn head(bytes: &[u8]) -> &[u8] {
     let mut head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     while head.starts_with(b"%") {
@@ -150,7 +145,7 @@ fn first_rows(source: &Source) -> [Vec<&[u8]>; 3] {
     })
 }
 
-/// The other file of a Triangle mesh with an unusual name, and its `.poly`.
+/// For a `.node` or `.ele` under another ending: the other file of the mesh if it is there, and where its `.poly` would be.
 fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
     [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
         let other = appended(stem, &format!(".{ending}"));

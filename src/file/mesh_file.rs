@@ -1,79 +1,19 @@
-//! A mesh file: read once, written with moved vertices and otherwise as it was.
+//! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
 use crate::error::{Location, ReadError, WriteError};
 use crate::file::binary::Order;
 use crate::file::detect::{self, Content};
-use crate::file::elided_rows::Implied;
+use crate::file::format::Format;
 use crate::file::gmsh;
+use crate::file::parsed::Parsed;
+use crate::file::regions::interface_vertices;
 use crate::file::replace::{self, Job};
-use crate::file::rewrite::Patch;
-use crate::file::source::{Parsed, Source};
-use crate::file::text;
+use crate::file::rewrite::Rewrite;
+use crate::file::source::Source;
 use crate::file::triangle::{self, Names};
 use crate::mesh::Mesh;
 use std::fmt;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// A file format that is read and written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Format {
-    /// The `.node` and `.ele` of the mesh generator Triangle, with the segments of a `.poly`
-    /// beside them.
-    Triangle,
-    /// gmsh's `.msh`, versions 2.0 to 2.2, as text.
-    Gmsh22,
-    /// gmsh's `.msh`, versions 2.0 to 2.2, in binary.
-    Gmsh22Binary,
-    /// gmsh's `.msh`, version 4.1, as text.
-    Gmsh41,
-    /// gmsh's `.msh`, version 4.1, in binary.
-    Gmsh41Binary,
-}
-
-impl Format {
-    /// Every format.
-    pub const ALL: [Format; 5] = [
-        Format::Triangle,
-        Format::Gmsh22,
-        Format::Gmsh22Binary,
-        Format::Gmsh41,
-        Format::Gmsh41Binary,
-    ];
-
-    /// Endings that promise this format, the usual one first.
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            Format::Triangle => &[".node", ".ele"],
-            _ => &[".msh"],
-        }
-    }
-
-    /// Which of the sources lists the triangles.
-    fn part_with_triangles(self) -> usize {
-        match self {
-            Format::Triangle => 1,
-            _ => 0,
-        }
-    }
-
-    pub(crate) fn has_ending_of(self, path: &Path) -> bool {
-        detect::has_ending(path, self.endings())
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Format::Triangle => "Triangle .node/.ele",
-            Format::Gmsh22 => "gmsh 2.2 ASCII",
-            Format::Gmsh22Binary => "gmsh 2.2 binary",
-            Format::Gmsh41 => "gmsh 4.1 ASCII",
-            Format::Gmsh41Binary => "gmsh 4.1 binary",
-        })
-    }
-}
 
 /// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -97,19 +37,33 @@ impl fmt::Display for Place {
 /// Its content is kept, so that [`write`](Self::write) replaces the coordinates of moved vertices and
 /// nothing else: numbering, comments, attributes, physical groups, third coordinates, node and
 /// element data, line ends come back byte for byte.
+///
+/// # Regions
+/// Triangles are of one region if the file says the same of them:
+///
+/// | format | a region has the same |
+/// |---|---|
+/// | Triangle | attributes in the `.ele`, all that its first line announces, compared as numbers |
+/// | gmsh 2.2 | first and second tag: physical group and geometrical entity |
+/// | gmsh 4.1 | entity of the model, and so the physical groups of that entity |
+///
+/// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
+/// [`Mesh::fixed`], so that the shapes of regions stay. That holds too between surfaces of a model that belong to one
+/// physical group. [`free_interfaces`](Self::free_interfaces) takes them out of the list.
 pub struct MeshFile {
     mesh: Mesh,
     format: Format,
     notes: Vec<String>,
     /// Where the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
-    /// Of the bytes of its numbers, if they are not text.
+    /// The byte order of the file's numbers, if they are not text.
     order: Option<Order>,
+    regions: Option<Vec<u32>>,
+    /// The end of the mesh's list of fixed vertices.
+    interfaces: Vec<u32>,
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
     /// `.ele` and, if there is one, `.poly`.
     sources: Vec<Source>,
-    /// What was left out of the source with the triangles.
-    implied: Implied,
 }
 
 impl MeshFile {
@@ -133,16 +87,7 @@ impl MeshFile {
             given => given?,
         };
         let file = match detect::content(&given)? {
-            Content::Gmsh => {
-                let (version, parsed) = gmsh::parse(&given)?;
-                let format = match (version, parsed.order) {
-                    (gmsh::Version::V2, None) => Format::Gmsh22,
-                    (gmsh::Version::V2, Some(_)) => Format::Gmsh22Binary,
-                    (gmsh::Version::V4, None) => Format::Gmsh41,
-                    (gmsh::Version::V4, Some(_)) => Format::Gmsh41Binary,
-                };
-                Self::new(format, parsed, vec![given])
-            }
+            Content::Gmsh => Self::new(gmsh::parse(&given)?, vec![given]),
             Content::Triangle(names) => Self::read_triangle(given, &names)?,
         };
         if file.mesh.triangles.is_empty() {
@@ -166,25 +111,18 @@ impl MeshFile {
         let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
         let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
         let sources = [node, ele].into_iter().chain(poly).collect();
-        Ok(Self::new(Format::Triangle, parsed, sources))
+        Ok(Self::new(parsed, sources))
     }
 
-    fn new(format: Format, parsed: Parsed, mut sources: Vec<Source>) -> MeshFile {
-        let Parsed { mesh, x_at, order, labels, rows, notes } = parsed;
-        let part = format.part_with_triangles();
-        let bytes = &mut sources[part].bytes;
-        let implied = match (labels, order) {
-            (None, _) => Implied::default(),
-            (Some(labels), None) => {
-                let lists_vertices = x_at.last().filter(|_| part == 0);
-                let from = lists_vertices.map_or(0, |&last| text::line_end(bytes, last));
-                Implied::take_lines_out(bytes, from, labels, &mesh.triangles)
-            }
-            (Some(labels), Some(order)) => {
-                Implied::take_rows_out(bytes, &rows, order, labels, &mesh.triangles)
-            }
-        };
-        MeshFile { mesh, format, notes, x_at, order, sources, implied }
+    fn new(parsed: Parsed, sources: Vec<Source>) -> MeshFile {
+        let Parsed { format, mut mesh, x_at, order, regions, notes } = parsed;
+        let Mesh { points, triangles, fixed } = &mut mesh;
+        let interfaces = regions
+            .as_ref()
+            .map(|regions| interface_vertices(regions, triangles, points.len(), fixed))
+            .unwrap_or_default();
+        fixed.extend_from_slice(&interfaces);
+        MeshFile { mesh, format, notes, x_at, order, regions, interfaces, sources }
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -202,6 +140,29 @@ impl MeshFile {
         &self.mesh
     }
 
+    /// The [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]: numbers from 0, as the file
+    /// first names them. `None` if all triangles are of one region.
+    pub fn regions(&self) -> Option<&[u32]> {
+        self.regions.as_deref()
+    }
+
+    /// The vertices that are fixed only because triangles of different [regions](Self#regions) meet there, ascending.
+    /// Those on the boundary, on line elements and the like are not among them.
+    ///
+    /// Empty after [`free_interfaces`](Self::free_interfaces).
+    pub fn interface_vertices(&self) -> &[u32] {
+        &self.interfaces
+    }
+
+    /// Takes the [`interface_vertices`](Self::interface_vertices) out of [`Mesh::fixed`], so that they move like any
+    /// other vertex and regions change their shapes. Vertices that the file fixes by other means, such as those on curves
+    /// of a gmsh 4.1 model, stay fixed where regions meet too.
+    pub fn free_interfaces(&mut self) {
+        let held = std::mem::take(&mut self.interfaces);
+        let fixed = &mut self.mesh.fixed;
+        fixed.truncate(fixed.len() - held.len());
+    }
+
     /// The format it was read in, and will be written in.
     pub fn format(&self) -> Format {
         self.format
@@ -210,13 +171,6 @@ impl MeshFile {
     /// Remarks for the user on what the file holds besides triangles, one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
-    }
-
-    /// The value that a coordinate will have once written and read back.
-    ///
-    /// Text keeps all bits of a finite number, as do the binary formats read so far.
-    pub fn stored(&self, x: f64) -> f64 {
-        x
     }
 
     /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.
@@ -243,16 +197,12 @@ impl MeshFile {
     /// If there is no such triangle.
     pub fn triangle_place(&self, index: usize) -> Place {
         assert!(index < self.mesh.triangles.len(), "there is no triangle {index}");
-        let kept = &self.sources[self.format.part_with_triangles()];
-        let path = kept.path.clone();
-        let whole = self.implied.whole(&kept.bytes, &self.mesh.triangles);
-        let whole = whole.map(|bytes| Source { path: path.clone(), bytes });
-        let source = whole.as_ref().unwrap_or(kept);
+        let source = &self.sources[self.format.file_with_triangles()];
         let (location, label) = match self.format {
             Format::Triangle => triangle::triangle_place(source, index),
             _ => gmsh::triangle_place(source, index),
         };
-        Place { path, location, label }
+        Place { path: source.path.clone(), location, label }
     }
 
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -269,27 +219,15 @@ impl MeshFile {
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
         self.check_points(path, points)?;
         self.check_destination(path)?;
-        let jobs: Vec<Job<'_>> = self
-            .destinations(path)?
-            .into_iter()
-            .zip(&self.sources)
-            .enumerate()
-            .map(|(part, (destination, source))| -> Job<'_> {
-                let (bytes, old) = (&source.bytes, &self.mesh.points);
-                // Only the first part holds vertices.
-                let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-                let patch = Patch { bytes, x_at, order: self.order, old, new: points };
-                let has_triangles = part == self.format.part_with_triangles();
-                let content = move |out: &mut (dyn Write + Send)| {
-                    let patched = patch.write(out)?;
-                    match has_triangles {
-                        true => self.implied.write(out, bytes, patched, &self.mesh.triangles),
-                        false => out.write_all(&bytes[patched..]),
-                    }
-                };
-                (destination, Box::new(content))
-            })
-            .collect();
+        let mut jobs: Vec<Job<'_>> = Vec::new();
+        let destinations = self.destinations(path)?.into_iter();
+        for (part, (destination, source)) in destinations.zip(&self.sources).enumerate() {
+            // Only the first file holds vertices.
+            let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
+            let (bytes, old) = (&source.bytes, &self.mesh.points);
+            let rewrite = Rewrite { bytes, x_at, order: self.order, old, new: points };
+            jobs.push((destination, Box::new(move |out| rewrite.write(out))));
+        }
         replace::replace_all(&jobs)
     }
 
@@ -308,13 +246,13 @@ impl MeshFile {
     /// # Errors
     /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let usual = self.format.endings()[0];
+        let usual = self.format.usual_ending();
         let refused = |problem: String, remedy: String| {
             Err(WriteError::Format { path: path.to_owned(), problem, remedy })
         };
         let ends_in_separator =
             path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
-        // A device can take one file, but not the several of a Triangle mesh.
+        // A device takes a single file, not the two or three of a Triangle mesh.
         let is_device = path.exists() && !path.is_file() && self.sources.len() > 1;
         if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
@@ -362,7 +300,7 @@ impl fmt::Debug for MeshFile {
     }
 }
 
-/// The error for a Triangle mesh of which `missing` is not there, though its other file is.
+/// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.
 fn half_missing(missing: &Path, names: &Names) -> Result<Source, ReadError> {
     let there = if missing == names.node { &names.ele } else { &names.node };
     let remedy = format!(

@@ -2,16 +2,18 @@
 
 mod binary;
 mod detect;
-mod elided_rows;
+mod format;
 mod gmsh;
 mod mesh_file;
 mod parallel_rows;
+mod parsed;
+mod regions;
 mod replace;
 mod rewrite;
-mod row_form;
 mod source;
 mod text;
 mod triangle;
 
-pub use mesh_file::{Format, MeshFile, Place};
+pub use format::Format;
+pub use mesh_file::{MeshFile, Place};
 pub use replace::{AbandonedWrites, abandon_writes, check, replace, same_file};

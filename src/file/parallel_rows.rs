@@ -1,15 +1,15 @@
-//! Reads the plain part of a long list on all threads, ahead of a reader that takes row after row.
+//! Reads a long list on all threads, as far as its rows are plain.
 //!
-//! Whatever is out of the ordinary is left to that reader, which goes on at the first row not taken: damage,
-//! numbers it does not expect, the end of the list. So nothing is decided or told in two places.
+//! It stops before the first row that is not: one that is damaged or has a number that is not expected. A reader that
+//! takes row after row goes on from there, and is the only one that returns errors.
 
 use crate::error::ReadError;
 use crate::file::text::Cursor;
 use rayon::prelude::*;
 
-/// How much text one thread reads at a time.
+/// How many bytes of text one thread reads at a time.
 const CHUNK: usize = 1 << 17;
-/// Shorter lists are read as fast row after row.
+/// Lists with fewer rows are read as fast on one thread.
 const LONG: u64 = 1 << 14;
 
 /// Reads rows by `read`, each on a cursor that stands at its first token, and hands them to `take` in their order,
@@ -84,13 +84,13 @@ mod tests {
     use crate::error::Location;
     use crate::file::source::Source;
 
-    /// Rows taken; the line the cursor then stands on, if that is said; line and tokens of the rows that follow.
+    /// Rows taken; the line that the cursor then stands on, if all were taken; line and tokens of the rows that follow.
     type Seen = (Vec<(u64, u64)>, Option<Location>, Vec<(Location, Vec<u8>)>);
 
     fn seen(source: &Source, count: u64, size: Option<usize>) -> Seen {
         let read = |cursor: &mut Cursor<'_>| Ok((cursor.integer("a")?, cursor.integer("b")?));
         let mut rows = Vec::new();
-        // Out of the ordinary, like numbers that are not consecutive.
+        // As a reader refuses a number that is not consecutive.
         let mut take = |row: (u64, u64)| {
             let takes = row.0 != 13;
             if takes {
@@ -105,7 +105,7 @@ mod tests {
                 let done = take_chunks(cursor, count, size, read, &mut take);
                 assert_eq!(done, rows.len() as u64);
             }
-            // Row after row, and back to the last one taken.
+            // Row after row, another cursor one row ahead, so that this one stands on the last row taken.
             None => {
                 let mut ahead = Cursor::new(source);
                 ahead.next_row();

@@ -1,4 +1,4 @@
-//! Writes a file again with single coordinates replaced.
+//! Writes a file again with the coordinates of moved vertices replaced.
 
 use crate::file::binary::Order;
 use crate::file::text::{skip_blanks, token_end};
@@ -6,16 +6,17 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 use std::ops::Range;
 
-/// How many vertices one thread makes the new text of at a time.
+/// How many vertices one thread rewrites at a time.
 const BLOCK: usize = 2048;
 
 /// A file's content, and which of its coordinates are to be replaced.
-pub(crate) struct Patch<'a> {
+pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
-    /// Where each vertex's x starts, ascending; its y is the token or number after it.
+    /// Where each vertex's x starts, ascending; its y is the token or number after it. Empty for a file without
+    /// vertices.
     pub(crate) x_at: &'a [usize],
-    /// Of the bytes of the numbers, if they are not text.
+    /// The byte order of the file's numbers, if they are not text.
     pub(crate) order: Option<Order>,
     /// The coordinates as they were read.
     pub(crate) old: &'a [[f64; 2]],
@@ -23,18 +24,17 @@ pub(crate) struct Patch<'a> {
     pub(crate) new: &'a [[f64; 2]],
 }
 
-impl Patch<'_> {
-    /// Copies the content to `out` up to the last coordinate, with those replaced whose bits differ between `old` and
-    /// `new`. Returns where it stopped.
-    pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<usize> {
+impl Rewrite<'_> {
+    /// Writes the content to `out`, with those coordinates replaced whose bits differ between `old` and `new`.
+    pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         let vertices = self.x_at.len();
         write_blocks(out, vertices.div_ceil(BLOCK), |block| {
             self.block(block * BLOCK..vertices.min((block + 1) * BLOCK))
         })?;
-        Ok(self.start_of(vertices))
+        out.write_all(&self.bytes[self.start_of(vertices)..])
     }
 
-    /// The new content of some vertices, up to the first one after them.
+    /// The new content of some vertices, up to the first vertex after them.
     fn block(&self, vertices: Range<usize>) -> Vec<u8> {
         match self.order {
             None => self.block_of_text(vertices),
@@ -57,7 +57,7 @@ impl Patch<'_> {
     }
 
     fn block_of_text(&self, vertices: Range<usize>) -> Vec<u8> {
-        let Patch { bytes, x_at, old, new, .. } = self;
+        let Rewrite { bytes, x_at, old, new, .. } = self;
         let mut copied = self.start_of(vertices.start);
         let end_of_block = self.start_of(vertices.end);
         let mut out = Vec::with_capacity((end_of_block - copied) * 5 / 4);
@@ -79,8 +79,8 @@ impl Patch<'_> {
         out
     }
 
-    /// Where the content of a vertex starts, if the first one's reaches back to the start of the file. One after the
-    /// last vertex it is where the last one's ends.
+    /// Where the content of a vertex starts: the first vertex's at the start of the file, any other's at its x. For the
+    /// number of vertices, where the last vertex's coordinates end.
     fn start_of(&self, vertex: usize) -> usize {
         match vertex.checked_sub(1) {
             None => 0,
@@ -96,8 +96,8 @@ impl Patch<'_> {
     }
 }
 
-/// Writes blocks of a file in their order. All threads make some while the system takes those made before.
-pub(crate) fn write_blocks(
+/// Writes blocks of a file in their order. While the system takes some, all threads make the next.
+fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,
     make: impl Fn(usize) -> Vec<u8> + Sync,
@@ -120,10 +120,9 @@ pub(crate) fn write_blocks(
 mod tests {
     use super::*;
 
-    fn patched(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
+    fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let mut out = Vec::new();
-        let end = Patch { bytes, x_at, order: None, old, new }.write(&mut out).unwrap();
-        out.extend_from_slice(&bytes[end..]);
+        Rewrite { bytes, x_at, order: None, old, new }.write(&mut out).unwrap();
         out
     }
 
@@ -143,7 +142,7 @@ mod tests {
             0.1 + 0.2,
         ];
         for value in values {
-            let out = patched(b"1 7 8 9", &[2], &[[7.0, 8.0]], &[[value, 8.0]]);
+            let out = rewritten(b"1 7 8 9", &[2], &[[7.0, 8.0]], &[[value, 8.0]]);
             let token = out[2..].split(|&b| b == b' ').next().unwrap();
             let token = str::from_utf8(token).unwrap().parse();
             assert_eq!(token.map(f64::to_bits), Ok(value.to_bits()));
@@ -170,8 +169,8 @@ mod tests {
             }
             bytes.extend_from_slice(b"tail 1 2 3");
             expected.extend_from_slice(b"tail 1 2 3");
-            assert!(patched(&bytes, &x_at, &old, &new) == expected, "{vertices} vertices");
-            assert!(patched(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
+            assert!(rewritten(&bytes, &x_at, &old, &new) == expected, "{vertices} vertices");
+            assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
         }
     }
 }

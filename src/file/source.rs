@@ -1,9 +1,6 @@
-//! The bytes of one file, and what a format's reader makes of them.
+//! The bytes of one file.
 
 use crate::error::{Location, ReadError};
-use crate::file::binary::Order;
-use crate::file::row_form::{Labels, Rows};
-use crate::mesh::Mesh;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -12,21 +9,6 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
-}
-
-/// What a reader returns.
-pub(crate) struct Parsed {
-    pub(crate) mesh: Mesh,
-    /// Offset of each vertex's x in the file that holds the vertices, ascending.
-    pub(crate) x_at: Vec<usize>,
-    /// Of the bytes of its numbers, if they are not text.
-    pub(crate) order: Option<Order>,
-    /// How triangles and vertices are numbered, if the latter are consecutively.
-    pub(crate) labels: Option<Labels>,
-    /// Of a binary file, the rows of the triangles, in its order.
-    pub(crate) rows: Vec<Rows>,
-    /// One-line remarks for the user.
-    pub(crate) notes: Vec<String>,
 }
 
 impl Source {
@@ -77,10 +59,4 @@ impl Source {
 /// The last part of a path, for messages.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-/// The remark that elements other than triangles hold their vertices.
-pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
-    let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
-    format!("{count} {what}{s}{of}: {their} vertices stay fixed")
 }

@@ -9,14 +9,17 @@ pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
 /// What to do about a file that stops too early.
 pub(crate) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
 const WHOLE: &str = "a whole number from 0 to 2^64-1";
+const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
 
-/// Walks over the rows of a file: the lines that hold more than blanks and a `#` comment.
+/// Walks over the rows of a file, which are the lines that hold more than blanks and a `#` comment. In a binary file it
+/// takes bytes between the lines.
 pub(crate) struct Cursor<'a> {
     pub(crate) source: &'a Source,
     /// The source's bytes up to where this cursor ends.
     bytes: &'a [u8],
     at: usize,
-    /// How many lines were begun. Before the first one and after bytes were taken, a line starts at `at`.
+    /// How many lines were begun. Zero before the first one and after bytes were taken: then the next line starts at
+    /// `at`.
     line: usize,
     /// In a binary file, where the bytes last taken start.
     taken: Option<usize>,
@@ -29,8 +32,8 @@ impl<'a> Cursor<'a> {
         Cursor { source, bytes: &source.bytes, at, line: 0, taken: None }
     }
 
-    /// Up to `count` cursors, one after the other, over some `size` bytes each of the lines that follow. They count
-    /// lines from their own first.
+    /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
+    /// from its own first.
     pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
         let mut at = self.next_line();
         let mut parts = Vec::with_capacity(count);
@@ -43,24 +46,25 @@ impl<'a> Cursor<'a> {
         parts
     }
 
-    /// Moves to the last line of a part that is used up. It has to be the first one of [`parts`](Self::parts).
+    /// Moves to the last line of a part, all rows of which were read. It has to be the first one of
+    /// [`parts`](Self::parts).
     pub(crate) fn skip(&mut self, part: &Cursor<'_>) {
         self.line += part.line;
         self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
-    /// The line it stands on, which is the last one once the rows are used up; or where in a binary file it stands,
-    /// which is at the start of the bytes last taken.
+    /// Where it stands: on a line, the last one if there are no more rows, or in a binary file at the start of the bytes
+    /// last taken.
     pub(crate) fn location(&self) -> Location {
         match self.taken {
-            // Nothing was read of a file without lines, yet editors count from one.
+            // Zero if nothing was read so far, but editors count from one.
             None => Location::Line(self.line.max(1)),
             Some(start) if self.line == 0 => Location::Byte(start),
             Some(_) => Location::Byte(self.at),
         }
     }
 
-    /// Where something stands whose first byte is the one at `at`.
+    /// The location of what starts at the byte `at`.
     pub(crate) fn location_of(&self, at: usize) -> Location {
         match self.taken {
             None => Location::Line(self.source.line_of(at)),
@@ -68,8 +72,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes so many bytes that start on the next line, or where those last taken end. From then on the file counts
-    /// as binary. None if there are fewer.
+    /// Takes so many bytes from the start of the next line, or from where those last taken end. From then on the file
+    /// counts as binary. None if there are fewer.
     #[inline]
     pub(crate) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let start = self.next_line();
@@ -115,6 +119,20 @@ impl<'a> Cursor<'a> {
         (self.at > start).then(|| &bytes[start..self.at])
     }
 
+    /// The next tokens of the row, as many as there are up to `count`, with what stands between them.
+    pub(crate) fn tokens(&mut self, count: u64) -> &'a [u8] {
+        let bytes = self.bytes;
+        let start = skip_blanks(bytes, self.at);
+        let mut end = start;
+        for _ in 0..count {
+            if self.token().is_none() {
+                break;
+            }
+            end = self.at;
+        }
+        &bytes[start..end]
+    }
+
     /// Whether the next token starts with this byte.
     pub(crate) fn is_at(&self, byte: u8) -> bool {
         self.bytes.get(skip_blanks(self.bytes, self.at)) == Some(&byte)
@@ -138,6 +156,14 @@ impl<'a> Cursor<'a> {
         }
         let token = self.token();
         token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
+    }
+
+    /// Reads a number that may be negative, called `what` in messages.
+    #[inline]
+    pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
+        let token = self.token();
+        let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
+        number.ok_or_else(|| self.unusable(token, what, SIGNED))
     }
 
     /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
@@ -184,7 +210,7 @@ impl<'a> Cursor<'a> {
         Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
     }
 
-    /// How many of `count` rows to reserve space for: no more than can follow, a count proves nothing.
+    /// How many of `count` rows to reserve space for: not more than what follows can hold, as the count may be wrong.
     pub(crate) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
         let possible = (self.bytes.len() - self.at) / bytes_per_row;
         usize::try_from(count).map_or(possible, |count| count.min(possible))
@@ -199,7 +225,7 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
         match token {
-            // Nothing follows, not even the end of the line.
+            // Not even the end of the line follows.
             None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
                 self.error(format!("{what} is missing"), CUT_OFF)
             }
@@ -216,7 +242,7 @@ pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
 }
 
-/// A token as it can stand in a one-line message.
+/// A token made fit for a message of one line: shortened, with control characters escaped.
 pub(crate) fn quoted(token: &[u8]) -> String {
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(&token[..token.len().min(4 * SHOWN)]);
@@ -227,6 +253,7 @@ pub(crate) fn quoted(token: &[u8]) -> String {
     quoted
 }
 
+/// The first byte from `at` on that is no blank. A line feed does not count as one.
 #[inline]
 pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
@@ -235,6 +262,7 @@ pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
+/// Where the token ends that starts at `at`: at a blank, at a comment or at the end of the line.
 #[inline]
 pub(crate) fn token_end(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
@@ -259,12 +287,12 @@ pub(crate) fn integer(token: &[u8]) -> Option<u64> {
 }
 
 #[inline]
-fn float(token: &[u8]) -> Option<f64> {
+pub(crate) fn float(token: &[u8]) -> Option<f64> {
     let text = str::from_utf8(token).ok()?;
     text.parse().ok().or_else(|| fortran_float(text))
 }
 
-/// Fortran marks a double's exponent with D.
+/// The number if its exponent is marked with D, as Fortran does for double precision.
 #[cold]
 fn fortran_float(text: &str) -> Option<f64> {
     let (mantissa, exponent) = text.split_once(['d', 'D'])?;
@@ -279,6 +307,12 @@ mod tests {
         Source { path: "m.txt".into(), bytes: text.to_vec() }
     }
 
+    fn row_of(source: &Source) -> Cursor<'_> {
+        let mut cursor = Cursor::new(source);
+        cursor.next_row();
+        cursor
+    }
+
     #[test]
     fn integers() {
         assert_eq!(integer(b"0"), Some(0));
@@ -287,6 +321,25 @@ mod tests {
         for wrong in ["", "+", "-1", "1.0", "1e3", "18446744073709551616", "7a", ":"] {
             assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
         }
+    }
+
+    #[test]
+    fn signed_integers() {
+        let numbers = source(b"0 +17 -3 9223372036854775807 -9223372036854775808");
+        let mut cursor = row_of(&numbers);
+        for expected in [0, 17, -3, i64::MAX, i64::MIN] {
+            assert_eq!(cursor.signed("a tag").unwrap(), expected);
+        }
+        for wrong in ["-", "--1", "1.0", "9223372036854775808", "7a", ""] {
+            assert!(row_of(&source(wrong.as_bytes())).signed("a tag").is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn tokens_are_taken_up_to_a_comment() {
+        let row = source(b" 1 2\t 3 # 4\n5");
+        let tokens = |count| row_of(&row).tokens(count);
+        assert_eq!([0, 2, 9].map(tokens), [&b""[..], b"1 2", b"1 2\t 3"]);
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! Triangle's `.node` and `.ele`, with the segments of a `.poly` beside them.
 //!
 //! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this ignores
-//! what follows the announced rows, and extra columns.
+//! what follows the announced rows and columns.
 
 use crate::error::{Location, ReadError};
+use crate::file::format::Format;
 use crate::file::parallel_rows::take_rows;
-use crate::file::row_form::Labels;
-use crate::file::source::{Parsed, Source, fixed_note};
-use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::parsed::{Parsed, fixed_note};
+use crate::file::regions::{Numbering, Regions};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, CUT_OFF, Cursor, float, integer};
 use crate::mesh::Mesh;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +21,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Of the mesh that `path` names, with the ending of its `.node` or `.ele`, or without either.
+    /// The files of the mesh that `path` names by its `.node`, by its `.ele`, or without either ending.
     pub(crate) fn of(path: &Path) -> Names {
         let ending = path.extension().unwrap_or_default();
         let upper = ending == "NODE" || ending == "ELE";
@@ -47,30 +49,23 @@ pub(crate) fn parse(
     poly: Option<&Source>,
 ) -> Result<Parsed, ReadError> {
     let (numbers, points, x_at) = vertices(node)?;
-    let triangles = triangles(ele, node, &numbers)?;
+    let (triangles, regions) = triangles(ele, node, &numbers)?;
     let mut fixed = Vec::new();
     let mut notes = Vec::new();
     if let Some(poly) = poly {
         let segments = segments(poly, node, &numbers, &mut fixed)?;
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
-    let labels = Some(Labels { triangle: triangle_place(ele, 0).1, vertex: numbers.first });
-    Ok(Parsed {
-        mesh: Mesh { points, triangles, fixed },
-        x_at,
-        order: None,
-        labels,
-        rows: Vec::new(),
-        notes,
-    })
+    let mesh = Mesh { points, triangles, fixed };
+    Ok(Parsed { format: Format::Triangle, mesh, x_at, order: None, regions, notes })
 }
 
-/// Line and number of a vertex whose x stands at `x_at`.
+/// Line and number of the vertex whose x stands at `x_at`.
 pub(crate) fn vertex_place(node: &Source, x_at: usize) -> (Location, u64) {
     let start = memchr::memrchr(b'\n', &node.bytes[..x_at]).map_or(0, |end| end + 1);
     let number = std::str::from_utf8(&node.bytes[start..x_at]).unwrap_or_default().trim();
     let line = Location::Line(node.line_of(x_at));
-    (line, crate::file::text::integer(number.as_bytes()).unwrap_or_default())
+    (line, integer(number.as_bytes()).unwrap_or_default())
 }
 
 /// Line and number of the triangle with this index, in a file that was read before.
@@ -184,7 +179,10 @@ fn vertex_number(
     Ok(number)
 }
 
-fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Vec<[u32; 3]>, ReadError> {
+type Triangles = (Vec<[u32; 3]>, Option<Vec<u32>>);
+
+/// Reads the triangles, and which regions they belong to.
+fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles, ReadError> {
     let cursor = &mut Cursor::new(ele);
     header(cursor, "triangles")?;
     let count = cursor.integer("the number of triangles")?;
@@ -203,25 +201,62 @@ fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Vec<[u32;
             return Err(cursor.error(problem, "Make the mesh with 3-node triangles"));
         }
     }
+    let columns = cursor.integer_or(0, "the number of attributes per triangle")?;
     let mut triangles = Vec::with_capacity(cursor.capacity(count, "1 1 2 3\n".len()));
-    let read = |cursor: &mut Cursor<'_>| triangle(cursor, node, numbers);
-    let plain = take_rows(cursor, count, read, |corners| {
+    let (mut attributes, mut regions) = (Attributes::default(), Regions::default());
+    let mut take = |(corners, text)| {
         triangles.push(corners);
+        regions.push(attributes.region(text));
         true
-    });
+    };
+    let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
+    let plain = take_rows(cursor, count, read, &mut take);
     for row in plain..count {
         next_of(cursor, row, count, "triangles")?;
-        triangles.push(read(cursor)?);
+        take(triangle(cursor, node, numbers, columns)?);
     }
-    Ok(triangles)
+    Ok((triangles, regions.finish()))
 }
 
+/// Makes a region of the triangles that have the same attributes.
+#[derive(Default)]
+struct Attributes<'a> {
+    texts: Numbering<&'a [u8]>,
+    /// The region of each text.
+    regions: Vec<u32>,
+    names: Numbering<String>,
+}
+
+impl<'a> Attributes<'a> {
+    #[inline]
+    fn region(&mut self, text: &'a [u8]) -> u32 {
+        let number = self.texts.number(text) as usize;
+        if number == self.regions.len() {
+            self.regions.push(self.names.number(normalized(text)));
+        }
+        self.regions[number]
+    }
+}
+
+/// The same for all ways to write the same numbers.
+fn normalized(attributes: &[u8]) -> String {
+    let tokens = attributes.split(|&byte| byte <= b' ').filter(|token| !token.is_empty());
+    let normalized = tokens.map(|token| match float(token) {
+        // Adding zero takes the sign off a negative zero.
+        Some(number) => format!("{:?} ", number + 0.0),
+        None => format!("{} ", String::from_utf8_lossy(token)),
+    });
+    normalized.collect()
+}
+
+/// Reads a triangle's row: its corners, and the text of its attributes, of which there are so many columns.
 #[inline]
-fn triangle(
-    cursor: &mut Cursor<'_>,
+fn triangle<'a>(
+    cursor: &mut Cursor<'a>,
     node: &Source,
     numbers: &Numbers,
-) -> Result<[u32; 3], ReadError> {
+    columns: u64,
+) -> Result<([u32; 3], &'a [u8]), ReadError> {
     let number = cursor.integer("the number of a triangle")?;
     let mut corners = [0; 3];
     for corner in &mut corners {
@@ -233,11 +268,11 @@ fn triangle(
         let problem = format!("triangle {number} lists vertex {twice} twice");
         return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
     }
-    Ok(corners)
+    Ok((corners, cursor.tokens(columns)))
 }
 
-/// Adds the vertices a `.poly` lists, and those of its segments, to `fixed`. Returns the number of
-/// segments. Its holes and regions concern mesh generators only.
+/// Adds the vertices that a `.poly` lists, and those of its segments, to `fixed`. Returns the number of
+/// segments. Its holes and regions are of use to mesh generators only.
 fn segments(
     poly: &Source,
     node: &Source,
@@ -288,6 +323,14 @@ fn next_of(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn attributes_are_numbers_however_they_are_written() {
+        let mut attributes = Attributes::default();
+        let texts = ["1 2", "1.0\t 2e0", "2 1", "1", "0", "-0.0", "land", "sea", "+1 2", "land"];
+        let regions = texts.map(|text| attributes.region(text.as_bytes()));
+        assert_eq!(regions, [0, 0, 1, 2, 3, 3, 4, 5, 0, 4]);
+    }
 
     #[test]
     fn names_keep_the_iteration_number_and_the_case() {

@@ -117,7 +117,7 @@ fn triangle_files(mesh: &Mesh, first: usize) -> [String; 2] {
     let mut ele = format!("{} 3 1\n", mesh.triangles.len());
     for (i, t) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = t.map(|v| v as usize + first);
-        writeln!(ele, " {}  {a} {b} {c} {}.5", first + i, i % 3).unwrap();
+        writeln!(ele, " {}  {a} {b} {c} {}", first + i, ["7.5", "7.50", "+75e-1"][i % 3]).unwrap();
     }
     // The last row of both without a line end.
     node.push_str("# end");
@@ -236,14 +236,14 @@ fn binary_files_are_smoothed_like_text() {
 }
 
 /// Every edge between two vertices of the middle row of the small mesh.
-fn middle_row() -> Vec<[u32; 2]> {
+pub(crate) fn middle_row() -> Vec<[u32; 2]> {
     let first = 4 * 11;
     (first..first + 10).map(|v| [v, v + 1]).collect()
 }
 
 /// Whether the middle row stayed, and the rows beside it did not.
 #[track_caller]
-fn assert_middle_row_held(before: &Mesh, after: &Mesh) {
+pub(crate) fn assert_middle_row_held(before: &Mesh, after: &Mesh) {
     let row: BTreeSet<_> = middle_row().into_iter().flatten().collect();
     let moved = |v: &u32| before.points[*v as usize] != after.points[*v as usize];
     assert!(!row.iter().any(moved));

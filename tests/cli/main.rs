@@ -13,6 +13,7 @@ mod options;
 mod output;
 mod plate;
 mod refusals;
+mod regions;
 mod report;
 mod schemes;
 

@@ -116,6 +116,7 @@ fn gmsh_errors_name_line_and_remedy() {
     v2("5 2 2", "5 9 2", &["a.msh:23: element type 9 is of higher order", "Mesh.ElementOrder=1"]);
     v2("5 2 2", "5 4 2", &["a.msh:23: element type 4 makes this a volume mesh", "gmsh -2"]);
     v2("5 2 2", "5 99 2", &["a.msh:23: element type 99 is not known"]);
+    v2("5 2 2 0 1", "5 2 2 0 sea", &["a.msh:23: a tag of element 5 is `sea`, not a whole number"]);
     v2("5 2 2", "5 2 999999999999", &["a.msh:23: element 5 announces 999999999999 tags"]);
     v2("$Elements\n7", "$Elements\n8", &["a.msh:26: the section ends after 7 of 8 elements"]);
     v2("$Elements\n7", "$Elements\nseven", &["a.msh:18: the number of elements is `seven`"]);
@@ -143,6 +144,7 @@ fn gmsh_errors_name_line_and_remedy() {
     v4("9\n8\n", "9\n9\n", &["a.msh:20: these are the second coordinates of node 9"]);
     v4("2 1 2 4\n", "2 1 3 4\n", &["a.msh:29: a node of element 2 is missing"]);
     v4("2 1 2 4\n", "2 1 20 4\n", &["a.msh:28: element type 20 is of higher order"]);
+    v4("2 1 2 4\n", "2 a 2 4\n", &["a.msh:28: the entity of an element block is `a`, not a whole"]);
     v4("$EndEntities", "", &["a.msh:4: $Entities has no $EndEntities", "cut off"]);
     v4("4 8 7 6", "4 8 8 6", &["a.msh:31: triangle 4 lists node 8 twice"]);
 }

@@ -15,7 +15,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness}
     version,
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth <COMMAND>",
-    after_help = "Boundary vertices and those on constraint lines stay where they are. Formats: \
+    after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
                   Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary). Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
@@ -110,6 +110,11 @@ pub(crate) struct SmoothArgs {
     /// convergence. Metrics: edge, area, rms, imr, ar (see `gpu-smooth metrics`)
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
+
+    /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele. Without it they
+    /// stay where they are
+    #[arg(long)]
+    pub(crate) free_interfaces: bool,
 
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
     /// done first, but no software adapter

@@ -41,9 +41,13 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             format!("{}: {error}. Correct the line", file.vertex_place(vertex))
         }
         MeshError::NothingFree { .. } => format!(
-            "{}: {error}: all are on the boundary, on constraint lines or of other elements. There is \
-             nothing to smooth",
-            file.path().display()
+            "{}: {error}: all are on the boundary, on constraint lines, between regions or of other \
+             elements. {}",
+            file.path().display(),
+            match file.interface_vertices() {
+                [] => "There is nothing to smooth",
+                _ => "Let those between regions move: --free-interfaces",
+            }
         ),
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop, output,
+    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop,
+    output,
 };
 
 use crate::cli::{History, OutputArgs, SmoothArgs};
@@ -30,11 +31,15 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     // The driver starts meanwhile: as the mesh is read, or prepared if its size decides on the engine.
     std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
-        let file = read(input)?;
+        let mut file = read(input)?;
+        if args.free_interfaces {
+            file.free_interfaces();
+        }
+        let file = file;
         let read_done = Instant::now();
         check_destinations(args, &file, out)?;
-        for remark in file.notes() {
-            tell::note(show.quiet, remark);
+        for remark in tell::remarks(&file) {
+            tell::note(show.quiet, &remark);
         }
         let mesh = file.mesh();
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -48,15 +53,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
 
         let (outcome, taken) = smooth(args, show, &smoother, taken)?;
         interrupt::has_result();
-        let mut points = outcome.points.clone();
-        points.iter_mut().flatten().for_each(|x| *x = file.stored(*x));
-        let returned = outcome.returned + smoother.certify(&mut points);
-        let after = smoother.quality(&points);
+        let after = smoother.quality(&outcome.points);
         let smoothed = Instant::now();
 
         // Much may have changed during a long run.
         check_report(args)?;
-        file.write(out, &points).map_err(|error| error.to_string())?;
+        file.write(out, &outcome.points).map_err(|error| error.to_string())?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -78,7 +80,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             remaining: outcome.remaining,
             stop: outcome.stop.name(),
             goal: goal_report(&outcome),
-            returned,
+            returned: outcome.returned,
             before: (&before).into(),
             after: (&after).into(),
             history: report::history(&outcome, &args.scheme, args.history == History::All),

@@ -4,7 +4,7 @@
 use std::io::{ErrorKind, IsTerminal, Write};
 
 use gpu_smooth::gpu::AdapterSummary;
-use gpu_smooth::{GpuError, Metric, Quality, Topology};
+use gpu_smooth::{GpuError, MeshFile, Metric, Quality, Topology};
 
 use crate::cli::QualityArgs;
 use crate::engine::INSTALL;
@@ -42,6 +42,21 @@ pub(crate) fn error(text: &str) {
     eprintln!("gpu-smooth: error: {text}");
 }
 
+/// What to tell of a mesh besides its size, one line each.
+pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
+    let mut remarks = file.notes().to_vec();
+    match file.interface_vertices().len() {
+        0 => {}
+        1 => remarks.push(
+            "1 vertex between regions stays fixed (--free-interfaces lets it move)".to_owned(),
+        ),
+        n => remarks.push(format!(
+            "{n} vertices between regions stay fixed (--free-interfaces lets them move)"
+        )),
+    }
+    remarks
+}
+
 /// `gpu-smooth quality MESH`.
 pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
     let file = read(&args.mesh)?;
@@ -60,9 +75,7 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
         return Ok(());
     }
     say(&format!("{}: {}", args.mesh.display(), file.format()));
-    for remark in file.notes() {
-        say(remark);
-    }
+    remarks(&file).iter().for_each(|remark| say(remark));
     say(&format!("{vertices} vertices ({free} free), {triangles} triangles\n"));
     for &metric in Metric::ALL {
         say(&format!("{:<22}{:>12}", format!("f {metric}"), six(quality.f(metric))));

@@ -1,8 +1,9 @@
-//! The sections of version 2.2 in binary: counts as text, then nodes one by one, then elements in runs of one kind.
+//! The sections of version 2.2 in binary: after its count, which is text, one node after the other, and elements in runs
+//! of one kind.
 
 use super::kind::Kind;
 use super::words::Words;
-use super::{Sink, block_fits, row};
+use super::{Element, Sink, block_fits, row};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::text::Cursor;
@@ -58,22 +59,18 @@ pub(super) fn elements(
         block_fits(cursor, size, count - done, "elements")?;
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
-        let start = cursor.taken();
         for at in 0..size {
             let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;
             let tag = words.natural(cursor, "an element tag")?;
-            words.skip(4 * groups);
+            let mut region = [0; 2];
+            region[..groups.min(2)].fill_with(|| i64::from(words.int()));
+            // Tags of mesh partitions.
+            words.skip(4 * groups.saturating_sub(2));
             let mut nodes = [0; 4];
             for node in &mut nodes[..kind.nodes()] {
                 *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
             }
-            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
-        }
-        let elements = start + HEADER..start + HEADER + size as usize * bytes;
-        match size {
-            // As gmsh writes it: each element has a header of its own.
-            1 => sink.rows(kind, start..elements.end, HEADER + bytes, HEADER, 4),
-            _ => sink.rows(kind, elements, bytes, 0, 4),
+            sink.element(cursor, &Element { tag, kind, region, nodes })?;
         }
         done += size;
     }

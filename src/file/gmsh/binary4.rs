@@ -2,12 +2,12 @@
 
 use super::kind::Kind;
 use super::words::Words;
-use super::{Sink, all_in_blocks, block_fits};
+use super::{Element, Sink, all_in_blocks, block_fits};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::text::Cursor;
 
-/// Three `int` and a `size_t`.
+/// The bytes of a block's header: three `int` and a `size_t`.
 const BLOCK_HEADER: usize = 20;
 
 /// Reads `$Nodes` after its first line. Returns their number.
@@ -58,29 +58,27 @@ pub(super) fn elements(
     for block in 0..blocks {
         let words =
             &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
-        words.int(); // The entity's dimension, and its tag.
-        words.int();
+        words.int(); // The entity's dimension.
+        let region = [i64::from(words.int()), 0];
         let kind = words.natural(cursor, "the type of an element block")?;
         let kind = Kind::new(cursor, kind)?;
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
         let row = 8 * (1 + kind.nodes());
-        let start = cursor.taken() + BLOCK_HEADER;
         for at in 0..size {
             let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
             let tag = words.size();
             let mut nodes = [0; 4];
             nodes[..kind.nodes()].fill_with(|| words.size());
-            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
+            sink.element(cursor, &Element { tag, kind, region, nodes })?;
         }
-        sink.rows(kind, start..start + size as usize * row, row, 0, 8);
         done += size;
     }
     all_in_blocks(cursor, done, count, "elements")?;
     Ok(count)
 }
 
-/// How many blocks a section has, and how much they hold together.
+/// How many blocks a section has, and how many nodes or elements are in all of them.
 fn counts(cursor: &mut Cursor<'_>, order: Order) -> Result<[u64; 2], ReadError> {
     // The lowest and the highest tag follow.
     let words = &mut Words::take(cursor, order, 32, (0, 1, "counts"))?;

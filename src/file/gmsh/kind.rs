@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::file::text::Cursor;
 
-/// An element type the smoother can work with or around.
+/// The element types that are read: triangles to smooth, and others whose vertices stay fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Point,
@@ -13,7 +13,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Of gmsh's number for the type, or an error on the current line.
+    /// The kind that has this number in gmsh, or an error on the current line.
     pub(super) fn new(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
         match number {
             15 => Ok(Kind::Point),
@@ -61,7 +61,7 @@ impl Kind {
     }
 }
 
-/// Reads the node tags that end an element's row: as many as the kind has, then zeros.
+/// Reads the node tags at the end of an element's row, as many as the kind has. The rest are zeros.
 #[inline]
 pub(super) fn node_tags(
     cursor: &mut Cursor<'_>,

@@ -1,7 +1,8 @@
 //! gmsh's `.msh`, versions 2.2 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
-//! `$MeshFormat`, `$Nodes` and `$Elements` are looked at.
+//! `$MeshFormat`, `$Nodes` and `$Elements` are read. An entity belongs to the same physical groups as a whole, so that
+//! `$Entities`, which lists these groups in version 4.1, need not be read to tell regions apart.
 
 mod binary2;
 mod binary4;
@@ -20,59 +21,53 @@ use crate::file::parallel_rows::take_rows;
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use kind::Kind;
-use std::ops::Range;
 
 /// How the sections are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Version {
+enum Version {
     V2,
     V4,
 }
 
-/// How a file's numbers are to be read.
+/// What `$MeshFormat` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Layout {
     version: Version,
-    /// Of the bytes of its numbers, if they are not text.
+    /// The byte order of the numbers, if they are not text.
     order: Option<Order>,
+}
+
+/// One element, as the file has it.
+struct Element {
+    tag: u64,
+    kind: Kind,
+    /// What names its region: its physical group and its geometrical entity in version 2.2, zero where it has none, and
+    /// in version 4.1 the entity of its block, which has its physical groups, and zero.
+    region: [i64; 2],
+    /// As many node tags as the kind has.
+    nodes: [u64; 4],
 }
 
 /// Takes what the sections hold, in the order of the file.
 trait Sink {
-    /// Whether it looks at the cursor only to fail. Then what is read ahead may be handed to it as well; where it
-    /// fails it has to be as before.
+    /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
+    /// another cursor. Where it returns an error it must not have changed.
     const TAKES_AHEAD: bool = false;
-    /// About this many nodes follow.
+    /// About so many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
     /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
     /// where the file says so.
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
-    /// Nodes on surfaces of the model have parameters there.
+    /// The file has parameters of nodes on surfaces of the model.
     fn parametric(&mut self) {}
     /// No more nodes follow.
     fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
         Ok(())
     }
-    /// About this many elements follow.
+    /// About so many elements follow.
     fn expect_elements(&mut self, _count: usize) {}
-    /// An element with its node tags.
-    fn element(
-        &mut self,
-        cursor: &Cursor<'_>,
-        tag: u64,
-        kind: Kind,
-        nodes: &[u64],
-    ) -> Result<(), ReadError>;
-    /// Where the last elements of a binary file, all of this kind, stand: what [`Rows`](crate::file::row_form::Rows) tells of triangles.
-    fn rows(
-        &mut self,
-        _kind: Kind,
-        _bytes: Range<usize>,
-        _size: usize,
-        _tag_at: usize,
-        _width: usize,
-    ) {
-    }
+    /// An element, just read.
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
 }
 
 /// Feeds a file's nodes and elements to the sink.
@@ -195,7 +190,8 @@ fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(),
     Ok(())
 }
 
-/// Reads ahead of the rows that are taken one by one, if the sink can bear it. Returns how many of `count` it took.
+/// Reads the plain rows of a list in parallel, if the sink allows that. Returns how many of `count` it took; the rest is
+/// to be read one by one.
 fn ahead<'a, S: Sink, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -206,12 +202,12 @@ fn ahead<'a, S: Sink, T: Send>(
     if !S::TAKES_AHEAD {
         return 0;
     }
-    // Errors are told by who takes the rows one by one.
+    // For errors, which are dropped: the row is read again one by one, and fails again.
     let nowhere = &Cursor::new(cursor.source);
     take_rows(cursor, count, read, |row| take(nowhere, sink, row))
 }
 
-/// Whether a block of so many fits into what the section's count leaves.
+/// Checks that a block of `size` is not larger than what the section's count leaves for it.
 fn block_fits(cursor: &Cursor<'_>, size: u64, left: u64, what: &str) -> Result<(), ReadError> {
     if size <= left {
         return Ok(());
@@ -228,7 +224,7 @@ fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Resu
     Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
 }
 
-/// Moves past the line that ends a section of which all that was announced is read.
+/// Moves past the line that ends a section, all announced rows of which were read.
 fn end_of_section(
     cursor: &mut Cursor<'_>,
     name: &str,

@@ -1,24 +1,27 @@
-//! What becomes of the nodes and elements: a mesh, or the place of one of them.
+//! Makes a mesh of a file's nodes and elements, or finds where one of them stands.
 
 use super::kind::Kind;
 use super::tags::TagMap;
-use super::{Sink, Version, walk};
+use super::{Element, Layout, Sink, Version, walk};
 use crate::error::{Location, ReadError};
-use crate::file::row_form::{Labels, Rows};
-use crate::file::source::{Parsed, Source, fixed_note};
+use crate::file::format::Format;
+use crate::file::parsed::{Parsed, fixed_note};
+use crate::file::regions::{Numbering, Regions};
+use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
-use std::ops::Range;
 
 /// Reads a mesh.
-pub(in crate::file) fn parse(source: &Source) -> Result<(Version, Parsed), ReadError> {
+pub(in crate::file) fn parse(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader::default();
-    let layout = walk(source, &mut reader)?;
-    let Reader {
-        mesh, x_at, map, first_triangle, rows, quadrilaterals, parametric, on_lower, ..
-    } = reader;
-    let vertex = map.and_then(|map| map.first_of_run());
-    let labels = vertex.map(|vertex| Labels { triangle: first_triangle, vertex });
+    let Layout { version, order } = walk(source, &mut reader)?;
+    let format = match (version, order) {
+        (Version::V2, None) => Format::Gmsh22,
+        (Version::V2, Some(_)) => Format::Gmsh22Binary,
+        (Version::V4, None) => Format::Gmsh41,
+        (Version::V4, Some(_)) => Format::Gmsh41Binary,
+    };
+    let Reader { mesh, x_at, regions, quadrilaterals, parametric, on_lower, .. } = reader;
     let mut notes = Vec::new();
     if quadrilaterals > 0 {
         notes.push(fixed_note(quadrilaterals, "quadrilateral", ""));
@@ -31,7 +34,7 @@ pub(in crate::file) fn parse(source: &Source) -> Result<(Version, Parsed), ReadE
         let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
         notes.push(note.into());
     }
-    Ok((layout.version, Parsed { mesh, x_at, order: layout.order, labels, rows, notes }))
+    Ok(Parsed { format, mesh, x_at, order, regions: regions.finish(), notes })
 }
 
 /// Location and tag of a vertex, in a file that was read before.
@@ -51,9 +54,8 @@ struct Reader {
     /// The tag of each node, until the map is made.
     tags: Vec<u64>,
     map: Option<TagMap>,
-    /// The tag of the first triangle.
-    first_triangle: u64,
-    rows: Vec<Rows>,
+    region_names: Numbering<[i64; 2]>,
+    regions: Regions,
     quadrilaterals: u64,
     parametric: bool,
     /// How many nodes lie on points and curves of the model.
@@ -107,13 +109,9 @@ impl Sink for Reader {
     }
 
     #[inline]
-    fn element(
-        &mut self,
-        cursor: &Cursor<'_>,
-        tag: u64,
-        kind: Kind,
-        nodes: &[u64],
-    ) -> Result<(), ReadError> {
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        let &Element { tag, kind, region, nodes } = element;
+        let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
             let index = self.map.as_ref().and_then(|map| map.index(node));
@@ -131,10 +129,8 @@ impl Sink for Reader {
                 Err(cursor.error(problem, "Remove the triangle, or correct its nodes"))
             }
             Kind::Triangle => {
-                if self.mesh.triangles.is_empty() {
-                    self.first_triangle = tag;
-                }
                 self.mesh.triangles.push([a, b, c]);
+                self.regions.push(self.region_names.number(region));
                 Ok(())
             }
             Kind::Point | Kind::Line | Kind::Quadrilateral => {
@@ -144,26 +140,9 @@ impl Sink for Reader {
             }
         }
     }
-
-    fn rows(&mut self, kind: Kind, bytes: Range<usize>, size: usize, tag_at: usize, width: usize) {
-        if kind != Kind::Triangle {
-            return;
-        }
-        match self.rows.last_mut() {
-            Some(last)
-                if (last.bytes.end, last.size, last.number_at) == (bytes.start, size, tag_at) =>
-            {
-                last.bytes.end = bytes.end;
-            }
-            _ => {
-                let first = self.mesh.triangles.len() - bytes.len() / size;
-                self.rows.push(Rows { bytes, first, size, number_at: tag_at, width });
-            }
-        }
-    }
 }
 
-/// Finds one node or triangle again. Places are for errors only, so none is kept for each.
+/// Finds the place of one node or triangle. Places are for messages only, so they are not kept but found again.
 struct Locator {
     nodes_before: usize,
     triangles_before: usize,
@@ -171,7 +150,7 @@ struct Locator {
 }
 
 fn find(source: &Source, mut locator: Locator) -> (Location, u64) {
-    // It was read before without error.
+    // It was read before without an error, so there is none now.
     let _ = walk(source, &mut locator);
     locator.place.unwrap_or((Location::Line(1), 0))
 }
@@ -195,15 +174,9 @@ impl Sink for Locator {
         Self::count_down(&mut self.nodes_before, &mut self.place, cursor, tag);
     }
 
-    fn element(
-        &mut self,
-        cursor: &Cursor<'_>,
-        tag: u64,
-        kind: Kind,
-        _: &[u64],
-    ) -> Result<(), ReadError> {
-        if kind == Kind::Triangle {
-            Self::count_down(&mut self.triangles_before, &mut self.place, cursor, tag);
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        if element.kind == Kind::Triangle {
+            Self::count_down(&mut self.triangles_before, &mut self.place, cursor, element.tag);
         }
         Ok(())
     }

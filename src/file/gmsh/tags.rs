@@ -1,4 +1,4 @@
-//! From gmsh's node tags, which are arbitrary, to vertex indices.
+//! Finds the vertex index of a gmsh node tag; tags are arbitrary numbers.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ pub(super) enum TagMap {
     Sparse(HashMap<u64, u32>),
 }
 
-/// No index: there are at most `u32::MAX` vertices.
+/// Stands where there is no index: the highest one in use is less, as there are at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
 impl TagMap {
@@ -44,14 +44,6 @@ impl TagMap {
             }
         }
         Ok(TagMap::Sparse(map))
-    }
-
-    /// The first tag, if they are consecutive.
-    pub(super) fn first_of_run(&self) -> Option<u64> {
-        match self {
-            TagMap::Run { first, .. } => Some(*first),
-            TagMap::Dense { .. } | TagMap::Sparse(_) => None,
-        }
     }
 
     #[inline]

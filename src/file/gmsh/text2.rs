@@ -1,9 +1,9 @@
 //! The sections of version 2.2: one line per node and per element.
 
 use super::kind::{Kind, node_tags};
-use super::{Sink, ahead, row};
+use super::{Element, Sink, ahead, row};
 use crate::error::ReadError;
-use crate::file::text::Cursor;
+use crate::file::text::{CORRECT, Cursor};
 
 /// Reads `$Nodes` after its first line. Returns their number.
 pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
@@ -27,13 +27,13 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of elements")?;
     sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
-    let plain = ahead(cursor, count, sink, element, |cursor, sink, (tag, kind, tags)| {
-        sink.element(cursor, tag, kind, &tags[..kind.nodes()]).is_ok()
+    let plain = ahead(cursor, count, sink, element, |cursor, sink, element| {
+        sink.element(cursor, &element).is_ok()
     });
     for done in plain..count {
         row(cursor, done, count, "elements")?;
-        let (tag, kind, tags) = element(cursor)?;
-        sink.element(cursor, tag, kind, &tags[..kind.nodes()])?;
+        let element = element(cursor)?;
+        sink.element(cursor, &element)?;
     }
     Ok(count)
 }
@@ -43,22 +43,27 @@ fn node(cursor: &mut Cursor<'_>) -> Result<(u64, (usize, [f64; 2])), ReadError> 
     let tag = cursor.integer("a node tag")?;
     let owner = format_args!("node {tag}");
     let point = cursor.point(owner)?;
-    // z is kept, but that the row holds it shows that it is whole.
+    // z is not used, but a row without it is cut off.
     cursor.coordinate('z', owner)?;
     Ok((tag, point))
 }
 
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<(u64, Kind, [u64; 4]), ReadError> {
+fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     let tag = cursor.integer("an element tag")?;
     let kind = cursor.integer(format_args!("the type of element {tag}"))?;
     let kind = Kind::new(cursor, kind)?;
     let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
-    for _ in 0..groups {
+    let mut region = [0; 2];
+    for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {
+        *number = cursor.signed(format_args!("a tag of element {tag}"))?;
+    }
+    // Tags of mesh partitions.
+    for _ in 2..groups {
         if cursor.token().is_none() {
             let problem = format!("element {tag} announces {groups} tags, and its line is shorter");
-            return Err(cursor.error(problem, crate::file::text::CORRECT));
+            return Err(cursor.error(problem, CORRECT));
         }
     }
-    Ok((tag, kind, node_tags(cursor, kind, tag)?))
+    Ok(Element { tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
 }

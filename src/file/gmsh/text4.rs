@@ -1,7 +1,7 @@
 //! The sections of version 4.1: blocks, one per entity of the model.
 
 use super::kind::{Kind, node_tags};
-use super::{Sink, ahead, all_in_blocks, block_fits, row};
+use super::{Element, Sink, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
 use crate::file::text::Cursor;
 use std::fmt::Display;
@@ -60,20 +60,23 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
     let mut done = 0;
     for block in 0..blocks {
         row(cursor, block, blocks, "element blocks")?;
-        cursor.token(); // The entity's dimension, and its tag, which may be negative.
-        cursor.token();
+        cursor.token(); // The entity's dimension.
+        let entity = cursor.signed("the entity of an element block")?;
         let kind = cursor.integer("the type of an element block")?;
         let kind = Kind::new(cursor, kind)?;
         let size = cursor.integer("the number of elements of a block")?;
         block_fits(cursor, size, count - done, "elements")?;
-        let read = |cursor: &mut Cursor<'_>| element(cursor, kind);
-        let plain = ahead(cursor, size, sink, read, |cursor, sink, (tag, nodes)| {
-            sink.element(cursor, tag, kind, &nodes[..kind.nodes()]).is_ok()
+        let read = |cursor: &mut Cursor<'_>| {
+            let tag = cursor.integer("an element tag")?;
+            Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
+        };
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, element| {
+            sink.element(cursor, &element).is_ok()
         });
         for at in plain..size {
             row(cursor, done + at, count, "elements")?;
-            let (tag, nodes) = element(cursor, kind)?;
-            sink.element(cursor, tag, kind, &nodes[..kind.nodes()])?;
+            let element = read(cursor)?;
+            sink.element(cursor, &element)?;
         }
         done += size;
     }
@@ -86,20 +89,14 @@ fn node_tag(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     cursor.integer("a node tag")
 }
 
-/// Reads where a node's x stands, and x and y.
+/// Reads a node's coordinates. Returns where x stands, and x and y.
 #[inline]
 fn point(
     cursor: &mut Cursor<'_>,
     owner: impl Display + Copy,
 ) -> Result<(usize, [f64; 2]), ReadError> {
     let point = cursor.point(owner)?;
-    // z is kept, but that the row holds it shows that it is whole.
+    // z is not used, but a row without it is cut off.
     cursor.coordinate('z', owner)?;
     Ok(point)
-}
-
-#[inline]
-fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<(u64, [u64; 4]), ReadError> {
-    let tag = cursor.integer("an element tag")?;
-    Ok((tag, node_tags(cursor, kind, tag)?))
 }

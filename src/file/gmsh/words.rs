@@ -1,21 +1,22 @@
-//! The numbers between the lines of a binary file.
+//! The numbers of a binary file, which stand between its lines.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::text::{CUT_OFF, Cursor};
 use std::fmt::Display;
 
-/// What to do about numbers that cannot be.
+/// What to do about a number that makes no sense.
 const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
 
-/// A few numbers of a binary file, taken at once, to be read one after the other.
+/// Bytes of a binary file that hold some numbers, to be read one after the other.
 pub(super) struct Words<'a> {
     order: Order,
     bytes: &'a [u8],
 }
 
 impl<'a> Words<'a> {
-    /// Takes the next bytes, which hold one more of `count` such as `what`, `done` of which were read.
+    /// Takes the next `size` bytes of the file. They hold one more of the `count` things called `what`, `done` of which
+    /// were read.
     #[inline]
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
@@ -32,7 +33,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next bytes. Panics if there are not so many left: their number is known before they are taken.
+    /// The next bytes. There have to be so many left: how many are read in all is known when they are taken.
     #[inline]
     fn next<const N: usize>(&mut self) -> [u8; N] {
         let (next, rest) = self.bytes.split_first_chunk().expect("as many words as were taken");
@@ -69,7 +70,7 @@ impl<'a> Words<'a> {
         self.order.u64(self.next())
     }
 
-    /// x, y and z of a node. Returns x and y; z is kept as it is.
+    /// Reads x, y and z of a node and returns x and y. Writing leaves z alone.
     #[inline]
     pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 2], ReadError> {
         let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));

@@ -1,0 +1,26 @@
+//! What a format's reader makes of a mesh's files.
+
+use crate::file::binary::Order;
+use crate::file::format::Format;
+use crate::mesh::Mesh;
+
+/// What a reader returns.
+pub(crate) struct Parsed {
+    pub(crate) format: Format,
+    /// Its fixed vertices are those that the file holds by lines and other elements, not those between regions.
+    pub(crate) mesh: Mesh,
+    /// Offset of each vertex's x in the file that holds the vertices, ascending.
+    pub(crate) x_at: Vec<usize>,
+    /// The byte order of the file's numbers, if they are not text.
+    pub(crate) order: Option<Order>,
+    /// The region of each triangle, or none if all are of one.
+    pub(crate) regions: Option<Vec<u32>>,
+    /// One-line remarks for the user.
+    pub(crate) notes: Vec<String>,
+}
+
+/// The remark that elements other than triangles hold their vertices.
+pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
+    let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
+    format!("{count} {what}{s}{of}: {their} vertices stay fixed")
+}

@@ -1,0 +1,73 @@
+//! Vertices between regions of a mesh: what stays in place, what is told, and how to let them move.
+
+use super::files::{assert_middle_row_held, middle_row};
+use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
+use gpu_smooth::Mesh;
+use std::fs;
+
+const NOTE: &str = "9 vertices between regions stay fixed (--free-interfaces lets them move)";
+
+fn folder(files: &support::regions::Files) -> Folder {
+    let folder = Folder::new(&[]);
+    for (name, bytes) in files {
+        fs::write(folder.path(name), bytes).unwrap();
+    }
+    folder
+}
+
+/// The regions of the small mesh, below and above its middle row.
+fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
+    let half = mesh.triangles.len() / 2;
+    (0..mesh.triangles.len()).map(|t| if t < half { below } else { above }).collect()
+}
+
+#[test]
+fn interfaces_between_regions_moved_silently() {
+    let mesh = disturbed();
+    // Physical groups, or entities of one physical group.
+    for regions in [[[1, 7], [2, 7]], [[-1, 7], [-1, 8]]] {
+        for files in support::write_regions(&mesh, &halves(&mesh, regions)) {
+            let (folder, input) = (folder(&files), files[0].0);
+            let output = input.replace("in", "out");
+            let run = folder.run([input, &output, "--engine", "cpu"]);
+            assert_eq!((run.code, run.err), (Some(0), format!("gpu-smooth: {NOTE}\n")));
+            let (before, after) = (folder.mesh(input), folder.mesh(&output));
+            assert_smoothed(&before, &after);
+            assert_middle_row_held(&before, &after);
+
+            let told = folder.line(&format!("quality {input}")).clean().out;
+            assert_holds(&told, &[NOTE, "\n99 vertices (54 free), 160 triangles\n"]);
+        }
+    }
+}
+
+#[test]
+fn free_interfaces_move_as_if_all_were_one_region() {
+    let mesh = disturbed();
+    let of_one = support::write_regions(&mesh, &halves(&mesh, [[1, 7], [1, 7]]));
+    let of_two = support::write_regions(&mesh, &halves(&mesh, [[1, 7], [2, 7]]));
+    for (of_one, of_two) in of_one.iter().zip(&of_two) {
+        let input = of_one[0].0;
+        let output = input.replace("in", "out");
+        let [one, two] = [of_one, of_two].map(folder);
+        one.run([input, &output, "--engine", "cpu"]).clean();
+        two.run([input, &output, "--engine", "cpu", "--free-interfaces"]).clean();
+        assert_eq!(one.mesh(&output).points, two.mesh(&output).points);
+        let moved = |v: &u32| two.mesh(&output).points[*v as usize] != mesh.points[*v as usize];
+        assert_eq!(middle_row().into_iter().flatten().filter(moved).count(), 18);
+    }
+}
+
+/// Attributes of an `.ele` may be anything, a value for each triangle too.
+#[test]
+fn a_mesh_of_which_every_triangle_is_a_region_says_how_to_smooth_it() {
+    let mesh = disturbed();
+    let regions: Vec<_> = (0..mesh.triangles.len() as i32).map(|t| [t, 0]).collect();
+    for files in support::write_regions(&mesh, &regions) {
+        let (folder, input) = (folder(&files), files[0].0);
+        let output = input.replace("in", "out");
+        let parts = ["none of the 99 vertices is free to move", "--free-interfaces"];
+        folder.run([input, &output, "--engine", "cpu"]).refused(&parts);
+        folder.run([input, &output, "--engine", "cpu", "--free-interfaces"]).clean();
+    }
+}
