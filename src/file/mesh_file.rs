@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 pub struct Place {
     /// The file.
     pub path: PathBuf,
-    /// Where in it.
+    /// The line or byte.
     pub location: Location,
     /// The file's own number or tag for it.
     pub label: u64,
@@ -48,8 +48,8 @@ impl fmt::Display for Place {
 /// | gmsh 4.1 | entity of the model, and so the physical groups of that entity |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
-/// [`Mesh::fixed`], so that the shapes of regions stay. That holds too between surfaces of a model that belong to one
-/// physical group. [`free_interfaces`](Self::free_interfaces) takes them out of the list.
+/// [`Mesh::fixed`], so that regions keep their shapes. Two surfaces of a model are two regions even where they belong to
+/// one physical group. [`free_interfaces`](Self::free_interfaces) takes these vertices out of the list.
 pub struct MeshFile {
     mesh: Mesh,
     format: Format,
@@ -59,7 +59,7 @@ pub struct MeshFile {
     /// The byte order of the file's numbers, if they are not text.
     order: Option<Order>,
     regions: Option<Vec<u32>>,
-    /// The end of the mesh's list of fixed vertices.
+    /// Vertices fixed only for lying between regions. The mesh's list of fixed vertices ends with them.
     interfaces: Vec<u32>,
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
     /// `.ele` and, if there is one, `.poly`.

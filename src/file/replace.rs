@@ -22,7 +22,7 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     replace_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
 }
 
-/// Writes all of the files, or leaves all that stood there as they were. Each as [`replace`] does.
+/// Writes all of the files, each as [`replace`] does, or leaves what stood there as it was.
 pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
     let staged = jobs.iter().map(|(path, content)| stage(path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;

@@ -181,7 +181,7 @@ fn vertex_number(
 
 type Triangles = (Vec<[u32; 3]>, Option<Vec<u32>>);
 
-/// Reads the triangles, and which regions they belong to.
+/// Reads the triangles, and the region of each if there are several.
 fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles, ReadError> {
     let cursor = &mut Cursor::new(ele);
     header(cursor, "triangles")?;
@@ -238,7 +238,7 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// The same for all ways to write the same numbers.
+/// A text that is the same for all ways to write the same numbers.
 fn normalized(attributes: &[u8]) -> String {
     let tokens = attributes.split(|&byte| byte <= b' ').filter(|token| !token.is_empty());
     let normalized = tokens.map(|token| match float(token) {
@@ -281,7 +281,7 @@ fn segments(
 ) -> Result<u64, ReadError> {
     let cursor = &mut Cursor::new(poly);
     let listed = vertex_header(cursor)?;
-    // Vertices of its own are the first ones of the mesh, under numbers of their own.
+    // The vertices it lists are the first ones of the mesh, but it may number them from another number on.
     let mut own = Numbers { first: numbers.first, count: listed };
     for row in 0..listed {
         vertex_number(cursor, row, &mut own)?;

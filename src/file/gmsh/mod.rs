@@ -1,8 +1,8 @@
 //! gmsh's `.msh`, versions 2.2 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
-//! `$MeshFormat`, `$Nodes` and `$Elements` are read. An entity belongs to the same physical groups as a whole, so that
-//! `$Entities`, which lists these groups in version 4.1, need not be read to tell regions apart.
+//! `$MeshFormat`, `$Nodes` and `$Elements` are read. `$Entities`, which in version 4.1 lists the physical groups of each
+//! entity, is not needed to tell regions apart: triangles of one entity are all of the same groups.
 
 mod binary2;
 mod binary4;
@@ -41,8 +41,8 @@ struct Layout {
 struct Element {
     tag: u64,
     kind: Kind,
-    /// What names its region: its physical group and its geometrical entity in version 2.2, zero where it has none, and
-    /// in version 4.1 the entity of its block, which has its physical groups, and zero.
+    /// What names its region. In version 2.2: its physical group and its geometrical entity, zero for one that it has
+    /// not. In version 4.1: the entity of its block, and zero.
     region: [i64; 2],
     /// As many node tags as the kind has.
     nodes: [u64; 4],
