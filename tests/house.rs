@@ -48,13 +48,14 @@ fn imports(text: &str) -> Vec<String> {
     for used in code.split("crate::").skip(1) {
         let end = used.find(|c: char| !(c.is_alphanumeric() || "_:".contains(c)));
         let path = &used[..end.unwrap_or(used.len())];
-        match (path.strip_suffix("::"), used[path.len()..].strip_prefix('{')) {
-            (Some(path), Some(names)) => {
+        match used[path.len()..].strip_prefix('{') {
+            // `path` is empty, or ends in two colons.
+            Some(names) => {
                 let names = &names[..names.find('}').unwrap()];
                 let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
-                found.extend(names.map(|name| format!("{path}::{name}")));
+                found.extend(names.map(|name| format!("{path}{name}")));
             }
-            _ => found.push(path.to_owned()),
+            None => found.push(path.to_owned()),
         }
     }
     found
@@ -174,8 +175,8 @@ fn a_circle_is_found() {
     assert_eq!(circle(&files), None);
     assert!(circle(&by_folder(&files, 1)).is_some());
     let found =
-        imports("use crate::{a::B, c};\nuse crate::d::E; // crate::f\nlet x = crate::g::h(1);");
-    assert_eq!(found, ["::a::B", "::c", "d::E", "g::h"].map(|path| path.trim_start_matches("::")));
+        imports("use crate::{a::B, c};\nuse crate::d::E;\n// crate::f\nlet x = crate::g::h(1);");
+    assert_eq!(found, ["a::B", "c", "d::E", "g::h"]);
 }
 
 /// Rooms that stand on no other, and what no room but these may name.

@@ -7,9 +7,9 @@ use glam::DVec2;
 
 use crate::error::{GpuError, SmoothError};
 use crate::layout::Problem;
+use crate::run::corrections::Corrections;
 use crate::run::engine::Engine;
 use crate::run::history::History;
-use crate::run::multilevel::Corrections;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
 use crate::run::stop::Stop;

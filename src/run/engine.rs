@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::future::Future;
 
 use crate::error::GpuError;
-use crate::metric::Metric;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
+use crate::run::objectives::Objectives;
 use crate::run::step::Step;
 
 /// A mesh whose free vertices are swept, judged, and moved along corrections, somewhere. Positions are normalized
@@ -73,24 +73,4 @@ pub(crate) struct Proposal {
     pub(crate) slope: f64,
     /// The objective at the length asked for; `None` as in [`Engine::excess_along`].
     pub(crate) there: Option<f64>,
-}
-
-/// The objective f = (1/n) Σ q² (Park & Shontz, equation 1) of the metrics that were evaluated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Objectives([f64; Metric::ALL.len()]);
-
-impl Objectives {
-    /// None evaluated yet.
-    pub(crate) fn untracked() -> Self {
-        Self([f64::NAN; Metric::ALL.len()])
-    }
-
-    pub(crate) fn set(&mut self, metric: Metric, value: f64) {
-        self.0[metric as usize] = value;
-    }
-
-    /// The objective by `metric`, if it was evaluated.
-    pub fn of(&self, metric: Metric) -> Option<f64> {
-        Some(self.0[metric as usize]).filter(|f| !f.is_nan())
-    }
 }

@@ -1,7 +1,7 @@
 //! The objectives of a run, and what they say on whether it is over.
 
 use crate::metric::Metric;
-use crate::run::engine::Objectives;
+use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::{Stop, StopRule};
 

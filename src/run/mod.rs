@@ -1,11 +1,13 @@
 //! All that decides: what a caller asks for, the steps of a plan, when a run ends, and the loop over sweeps. It knows
 //! the place where a run computes as an [`Engine`] alone.
 
+mod corrections;
 mod drive;
 mod engine;
 mod history;
 pub(crate) mod line_search;
 pub(crate) mod multilevel;
+mod objectives;
 pub(crate) mod opening;
 mod options;
 mod plan;
@@ -17,9 +19,9 @@ mod yielding;
 
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use drive::{Strategy, drive};
-pub use engine::Objectives;
 pub(crate) use engine::{Engine, Proposal};
 pub(crate) use history::History;
+pub use objectives::Objectives;
 pub use options::{Desired, Goal, Method, Options};
 pub use plan::Plan;
 pub(crate) use shape_guard::shape_guard;

@@ -3,8 +3,9 @@
 use glam::DVec2;
 
 use crate::error::GpuError;
-use crate::run::engine::{Engine, Objectives};
+use crate::run::engine::Engine;
 use crate::run::history::History;
+use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::Stop;
 

@@ -1,4 +1,4 @@
-//! Corrections from coarser levels: what makes a run converge in a number of sweeps that does not grow
+//! Coarser levels of a mesh, and corrections from them: what makes a run converge in a number of sweeps that does not grow
 //! with the mesh.
 //!
 //! Sweeps even out neighbors at once and the whole mesh never. So after each sweep the gradient of the
@@ -10,13 +10,12 @@
 //! bad the mesh. No Hessian is ever assembled.
 
 mod aggregate;
-mod corrections;
 mod dense;
 mod hierarchy;
 mod search;
 mod sparse;
 
 pub(crate) use aggregate::NONE;
-pub(crate) use corrections::Corrections;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
+pub(crate) use search::Search;
 pub(crate) use sparse::Sparse;

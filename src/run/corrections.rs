@@ -3,10 +3,10 @@
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::{Metric, Stiffness};
-use crate::run::engine::{Engine, Objectives, Proposal};
+use crate::run::engine::{Engine, Proposal};
 use crate::run::history::History;
-use crate::run::multilevel::hierarchy::Hierarchy;
-use crate::run::multilevel::search::Search;
+use crate::run::multilevel::{Hierarchy, Search};
+use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
 use crate::run::stop::StopRule;

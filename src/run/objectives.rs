@@ -1,0 +1,23 @@
+//! The objective by each metric.
+
+use crate::metric::Metric;
+
+/// The objective f = (1/n) Σ q² (Park & Shontz, equation 1) of the metrics that were evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Objectives([f64; Metric::ALL.len()]);
+
+impl Objectives {
+    /// None evaluated yet.
+    pub(crate) fn untracked() -> Self {
+        Self([f64::NAN; Metric::ALL.len()])
+    }
+
+    pub(crate) fn set(&mut self, metric: Metric, value: f64) {
+        self.0[metric as usize] = value;
+    }
+
+    /// The objective by `metric`, if it was evaluated.
+    pub fn of(&self, metric: Metric) -> Option<f64> {
+        Some(self.0[metric as usize]).filter(|f| !f.is_nan())
+    }
+}
