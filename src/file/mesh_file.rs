@@ -12,6 +12,7 @@ use crate::file::rewrite::Rewrite;
 use crate::file::source::Source;
 use crate::file::triangle::{self, Names};
 use crate::mesh::Mesh;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -180,13 +181,24 @@ impl MeshFile {
     /// # Panics
     /// If there is no such vertex.
     pub fn vertex_place(&self, index: u32) -> Place {
-        let x_at = self.x_at[index as usize];
+        let found = self.vertex_places([index]).remove(&index);
+        found.unwrap_or_else(|| panic!("there is no vertex {index}"))
+    }
+
+    /// Where vertices have their coordinates, by their zero-based indices. The file is gone through once for all of
+    /// them. Indices of no vertex are left out.
+    pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
+        let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
+        keep_ascending(&mut wanted, self.x_at.len());
         let source = &self.sources[0];
-        let (location, label) = match self.format {
-            Format::Triangle => triangle::vertex_place(source, x_at),
-            _ => gmsh::vertex_place(source, index as usize),
+        let found = match self.format {
+            Format::Triangle => {
+                triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v]))
+            }
+            _ => gmsh::vertex_places(source, &wanted),
         };
-        Place { path: source.path.clone(), location, label }
+        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
     }
 
     /// Where triangle `index` (zero-based, as in [`Mesh::triangles`]) lists its vertices.
@@ -196,13 +208,25 @@ impl MeshFile {
     /// # Panics
     /// If there is no such triangle.
     pub fn triangle_place(&self, index: usize) -> Place {
-        assert!(index < self.mesh.triangles.len(), "there is no triangle {index}");
+        let found = self.triangle_places([index]).remove(&index);
+        found.unwrap_or_else(|| panic!("there is no triangle {index}"))
+    }
+
+    /// Where triangles list their vertices, by their zero-based indices. The file is gone through once for all of
+    /// them. Indices of no triangle are left out.
+    pub fn triangle_places(
+        &self,
+        indices: impl IntoIterator<Item = usize>,
+    ) -> BTreeMap<usize, Place> {
+        let mut wanted: Vec<usize> = indices.into_iter().collect();
+        keep_ascending(&mut wanted, self.mesh.triangles.len());
         let source = &self.sources[self.format.file_with_triangles()];
-        let (location, label) = match self.format {
-            Format::Triangle => triangle::triangle_place(source, index),
-            _ => gmsh::triangle_place(source, index),
+        let found = match self.format {
+            Format::Triangle => triangle::triangle_places(source, &wanted),
+            _ => gmsh::triangle_places(source, &wanted),
         };
-        Place { path: source.path.clone(), location, label }
+        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        wanted.iter().copied().zip(found.into_iter().map(place)).collect()
     }
 
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -298,6 +322,13 @@ impl fmt::Debug for MeshFile {
             .field("triangles", &self.mesh.triangles.len())
             .finish_non_exhaustive()
     }
+}
+
+/// Sorts indices, each once, and drops those that are not below `count`.
+fn keep_ascending(indices: &mut Vec<usize>, count: usize) {
+    indices.retain(|&index| index < count);
+    indices.sort_unstable();
+    indices.dedup();
 }
 
 /// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.

@@ -60,21 +60,37 @@ pub(crate) fn parse(
     Ok(Parsed { format: Format::Triangle, mesh, x_at, order: None, regions, notes })
 }
 
-/// Line and number of the vertex whose x stands at `x_at`.
-pub(crate) fn vertex_place(node: &Source, x_at: usize) -> (Location, u64) {
-    let start = memchr::memrchr(b'\n', &node.bytes[..x_at]).map_or(0, |end| end + 1);
-    let number = std::str::from_utf8(&node.bytes[start..x_at]).unwrap_or_default().trim();
-    let line = Location::Line(node.line_of(x_at));
-    (line, integer(number.as_bytes()).unwrap_or_default())
+/// Line and number of the vertices whose x stand at some offsets, ascending.
+pub(crate) fn vertex_places(
+    node: &Source,
+    x_at: impl Iterator<Item = usize>,
+) -> Vec<(Location, u64)> {
+    let (mut line, mut counted) = (1, 0);
+    let place = |at: usize| {
+        line += memchr::memchr_iter(b'\n', &node.bytes[counted..at]).count();
+        counted = at;
+        let start = memchr::memrchr(b'\n', &node.bytes[..at]).map_or(0, |end| end + 1);
+        let number = std::str::from_utf8(&node.bytes[start..at]).unwrap_or_default().trim();
+        let number = integer(number.as_bytes()).unwrap_or_default();
+        (Location::Line(line), number)
+    };
+    x_at.map(place).collect()
 }
 
-/// Line and number of the triangle with this index, in a file that was read before.
-pub(crate) fn triangle_place(ele: &Source, index: usize) -> (Location, u64) {
+/// Line and number of the triangles with these indices, ascending, in a file that was read before.
+pub(crate) fn triangle_places(ele: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
     let mut cursor = Cursor::new(ele);
-    for _ in 0..index + 2 {
-        cursor.next_row();
-    }
-    (cursor.location(), cursor.integer("its number").unwrap_or_default())
+    // The header comes before the triangles.
+    cursor.next_row();
+    let mut rows = 0;
+    let place = |&index: &usize| {
+        while rows <= index {
+            cursor.next_row();
+            rows += 1;
+        }
+        (cursor.location(), cursor.integer("its number").unwrap_or_default())
+    };
+    indices.iter().map(place).collect()
 }
 
 /// How the vertices of a file are numbered: `count` of them from `first` on.

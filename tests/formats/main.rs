@@ -153,6 +153,23 @@ fn places_name_file_line_and_label() {
 }
 
 #[test]
+fn places_of_many_are_those_of_each() {
+    let folder = triangle();
+    let gmsh = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
+    for file in [folder.read("la.1"), gmsh.read("a.msh"), gmsh.read("b.msh")] {
+        let (vertices, triangles) = (file.mesh().points.len(), file.mesh().triangles.len());
+        // In any order, repeated, and some that there are not.
+        let places = file.triangle_places([triangles, triangles - 1, 1, 0, 1, usize::MAX]);
+        assert!(places.keys().copied().eq([0, 1, triangles - 1]));
+        assert!(places.iter().all(|(&t, place)| *place == file.triangle_place(t)));
+        let places = file.vertex_places([u32::MAX, 3, vertices as u32 - 1, 0, 3]);
+        assert!(places.keys().copied().eq([0, 3, vertices as u32 - 1]));
+        assert!(places.iter().all(|(&v, place)| *place == file.vertex_place(v)));
+        assert!(file.triangle_places([]).is_empty() && file.vertex_places([]).is_empty());
+    }
+}
+
+#[test]
 fn unmoved_points_give_the_same_bytes() {
     for crlf in [false, true] {
         let ends = |text: &str| if crlf { text.replace('\n', "\r\n") } else { text.to_owned() };

@@ -13,7 +13,7 @@ mod text2;
 mod text4;
 mod words;
 
-pub(super) use reader::{parse, triangle_place, vertex_place};
+pub(super) use reader::{parse, triangle_places, vertex_places};
 
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;

@@ -37,14 +37,14 @@ pub(in crate::file) fn parse(source: &Source) -> Result<Parsed, ReadError> {
     Ok(Parsed { format, mesh, x_at, order, regions: regions.finish(), notes })
 }
 
-/// Location and tag of a vertex, in a file that was read before.
-pub(in crate::file) fn vertex_place(source: &Source, index: usize) -> (Location, u64) {
-    find(source, Locator { nodes_before: index, triangles_before: usize::MAX, place: None })
+/// Location and tag of the vertices with these indices, ascending, in a file that was read before.
+pub(in crate::file) fn vertex_places(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
+    find(source, indices, &[])
 }
 
-/// Location and tag of a triangle, in a file that was read before.
-pub(in crate::file) fn triangle_place(source: &Source, index: usize) -> (Location, u64) {
-    find(source, Locator { nodes_before: usize::MAX, triangles_before: index, place: None })
+/// Location and tag of the triangles with these indices, ascending, in a file that was read before.
+pub(in crate::file) fn triangle_places(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
+    find(source, &[], indices)
 }
 
 #[derive(Default)]
@@ -142,41 +142,49 @@ impl Sink for Reader {
     }
 }
 
-/// Finds the place of one node or triangle. Places are for messages only, so they are not kept but found again.
-struct Locator {
-    nodes_before: usize,
-    triangles_before: usize,
-    place: Option<(Location, u64)>,
+/// Finds nodes and triangles again. Places are for errors only, so none is kept for each.
+struct Locator<'a> {
+    nodes: Wanted<'a>,
+    triangles: Wanted<'a>,
+    places: Vec<(Location, u64)>,
 }
 
-fn find(source: &Source, mut locator: Locator) -> (Location, u64) {
-    // It was read before without an error, so there is none now.
+/// What of a list is looked for.
+struct Wanted<'a> {
+    /// The indices not found yet, ascending.
+    left: &'a [usize],
+    /// The index of what comes next in the file.
+    next: usize,
+}
+
+fn find(source: &Source, nodes: &[usize], triangles: &[usize]) -> Vec<(Location, u64)> {
+    let wanted = |left| Wanted { left, next: 0 };
+    let places = Vec::with_capacity(nodes.len() + triangles.len());
+    let mut locator = Locator { nodes: wanted(nodes), triangles: wanted(triangles), places };
+    // It was read before without error.
     let _ = walk(source, &mut locator);
-    locator.place.unwrap_or((Location::Line(1), 0))
+    locator.places
 }
 
-impl Locator {
-    fn count_down(
-        before: &mut usize,
-        place: &mut Option<(Location, u64)>,
-        cursor: &Cursor<'_>,
-        tag: u64,
-    ) {
-        if *before == 0 && place.is_none() {
-            *place = Some((cursor.location(), tag));
+impl Wanted<'_> {
+    /// Notes where the next of the list stands, if it is looked for.
+    fn pass(&mut self, places: &mut Vec<(Location, u64)>, cursor: &Cursor<'_>, tag: u64) {
+        if self.left.first() == Some(&self.next) {
+            places.push((cursor.location(), tag));
+            self.left = &self.left[1..];
         }
-        *before = before.saturating_sub(1);
+        self.next += 1;
     }
 }
 
-impl Sink for Locator {
+impl Sink for Locator<'_> {
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        Self::count_down(&mut self.nodes_before, &mut self.place, cursor, tag);
+        self.nodes.pass(&mut self.places, cursor, tag);
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == Kind::Triangle {
-            Self::count_down(&mut self.triangles_before, &mut self.place, cursor, element.tag);
+            self.triangles.pass(&mut self.places, cursor, element.tag);
         }
         Ok(())
     }
