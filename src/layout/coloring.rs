@@ -336,11 +336,18 @@ impl<I: Copy + Into<u32>> Graph<I> {
         let color = colors[v as usize];
         for &u in self.row(v) {
             let u = u.into();
+        // The colors that neighbors have, and those that several have.
+        let (mut taken, mut shared) = (0u64, 0u64);
+        for c in self.colors_around(v, colors).filter(|&c| c < 64) {
+            shared |= taken & 1 << c;
+            taken |= 1 << c;
+        }
             let wanted = colors[u as usize];
-            // Of neighbors that lie between the blocks not all neighbors are known.
-            if wanted < color
-                && !self.row(u).is_empty()
-                && self.colors_around(v, colors).filter(|&c| c == wanted).count() == 1
+            // Of neighbors that lie between the blocks not all neighbors are known. One with many neighbors would be
+            // asked by each of them, and looks at all of them each time.
+            if wanted < color.min(64)
+                && shared & 1 << wanted == 0
+                && (1..=MANY).contains(&self.row(u).len())
             {
                 let other = self.least_color(u, wanted, colors);
                 if other < color {
@@ -358,6 +365,9 @@ const FOUR: u32 = 4;
 
 /// The degree of a vertex that is not to be removed, or was.
 const STAYS: u32 = u32::MAX;
+/// A vertex with more neighbors keeps its color when others do without theirs.
+const MANY: usize = 64;
+
 
 /// Vertices by the number of their neighbors that are left.
 #[derive(Default)]

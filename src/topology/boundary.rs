@@ -1,17 +1,37 @@
 //! The boundary of a mesh: its edges, and the loops they make.
 
 use crate::topology::Topology;
+use crate::topology::stars::others_at_edge;
+
+/// An edge of a triangle: from the vertex at this corner of it to the next one.
+#[derive(Clone, Copy)]
+struct Side {
+    triangle: u32,
+    corner: usize,
+}
 
 impl Topology<'_> {
     /// The edges of one triangle only, each from and to a vertex, with the mesh on its left. In no particular
     /// order.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
-        let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
-        let single = |&[a, b]: &[u32; 2]| {
-            let at_edge = |&&t: &&u32| self.triangles()[t as usize].contains(&b);
-            self.star(a).iter().filter(at_edge).count() == 1
-        };
-        self.triangles().iter().flat_map(sides).filter(single).collect()
+        self.boundary_sides().map(|side| self.ends(side)).collect()
+    }
+
+    fn boundary_sides(&self) -> impl Iterator<Item = Side> + '_ {
+        let sides = |triangle| (0..3).map(move |corner| Side { triangle, corner });
+        let all = (0..self.triangles().len() as u32).flat_map(sides);
+        all.filter(|&side| self.across(side).is_none())
+    }
+
+    /// Where an edge starts and where it ends, with its triangle on the left.
+    fn ends(&self, Side { triangle, corner }: Side) -> [u32; 2] {
+        let corners = self.triangles()[triangle as usize];
+        [corners[corner], corners[(corner + 1) % 3]]
+    }
+
+    /// The triangle across an edge.
+    fn across(&self, side: Side) -> Option<u32> {
+        others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
     }
 
     /// The boundary as closed loops of vertices, the last joined to the first, with the mesh on the left:
@@ -19,8 +39,9 @@ impl Topology<'_> {
     /// area, [`signed_area`], tells them apart. No loop passes a vertex twice; where parts or holes touch in a vertex, each has its
     /// own loop. A loop starts at its least vertex, and loops are in the order of these.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
-        let mut edges = self.boundary_edges();
-        edges.sort_unstable();
+        let mut edges: Vec<([u32; 2], Side)> =
+            self.boundary_sides().map(|side| (self.ends(side), side)).collect();
+        edges.sort_unstable_by_key(|&(ends, _)| ends);
         let mut loops = Vec::new();
         let mut left = vec![true; edges.len()];
         // Where each vertex stands in the path, if it does.
@@ -30,7 +51,7 @@ impl Topology<'_> {
             let mut path: Vec<u32> = Vec::new();
             while let Some(edge) = at {
                 left[edge] = false;
-                let [from, to] = edges[edge];
+                let ([from, to], side) = edges[edge];
                 place[from as usize] = Some(path.len());
                 path.push(from);
                 // What has come back to itself is a loop, whatever path led to it.
@@ -39,8 +60,9 @@ impl Topology<'_> {
                     closed.iter().for_each(|&v| place[v as usize] = None);
                     loops.push(closed);
                 }
-                at = self.next_boundary_vertex(from, to).and_then(|next| {
-                    edges.binary_search(&[to, next]).ok().filter(|&edge| left[edge])
+                at = self.next_on_boundary(side).and_then(|next| {
+                    let next = edges.binary_search_by_key(&self.ends(next), |&(ends, _)| ends);
+                    next.ok().filter(|&edge| left[edge])
                 });
             }
         }
@@ -52,23 +74,24 @@ impl Topology<'_> {
         loops
     }
 
-    /// Where the boundary goes on after its edge between two vertices: around the second, from triangle to
-    /// triangle, to the other end of the fan.
-    fn next_boundary_vertex(&self, from: u32, to: u32) -> Option<u32> {
-        let star = self.star(to);
-        let mut before = from;
-        for _ in star {
-            let after = star.iter().find_map(|&t| {
-                let corners = self.triangles()[t as usize];
-                let i = corners.iter().position(|&v| v == to)?;
-                (corners[(i + 2) % 3] == before).then_some(corners[(i + 1) % 3])
-            });
-            match after {
-                Some(after) => before = after,
-                None => break,
+    /// The boundary edge after another: around the vertex where that one ends, from triangle to triangle, to the other
+    /// end of the fan. All fans of a vertex together have each of its triangles once.
+    fn next_on_boundary(&self, side: Side) -> Option<Side> {
+        let [mut before, pivot] = self.ends(side);
+        let mut triangle = side.triangle;
+        loop {
+            let corners = self.triangles()[triangle as usize];
+            let corner = corners.iter().position(|&v| v == pivot)?;
+            // Where windings cannot be made consistent, as on a Möbius strip, the fan may run backward.
+            if corners[(corner + 2) % 3] != before {
+                return None;
+            }
+            let side = Side { triangle, corner };
+            match self.across(side) {
+                Some(next) => (triangle, before) = (next, corners[(corner + 1) % 3]),
+                None => return Some(side),
             }
         }
-        Some(before).filter(|&next| next != from)
     }
 }
 

@@ -86,9 +86,18 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// The triangles at a vertex: counter-clockwise around a free one, starting with the least.
+    /// The triangles at a vertex: counter-clockwise around a free one, starting with the least. None at a vertex that
+    /// the mesh does not have.
     pub fn star(&self, vertex: u32) -> &[u32] {
-        self.stars.get_or_init(|| self.find_stars()).of(vertex as usize)
+        match self.free.get(vertex as usize) {
+            Some(_) => self.stars().of(vertex as usize),
+            None => &[],
+        }
+    }
+
+    /// The triangles at each vertex.
+    pub(crate) fn stars(&self) -> &Groups {
+        self.stars.get_or_init(|| self.find_stars())
     }
 
     /// Gives up the memory of the stars. They are found again when one is asked for.
@@ -105,15 +114,19 @@ impl<'m> Topology<'m> {
 
     /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the
     /// second corner of its first triangle. Each neighbor makes a
-    /// triangle of the patch with the vertex and the neighbor after it.
+    /// triangle of the patch with the vertex and the neighbor after it. Of a vertex that is not free, or that the mesh
+    /// does not have, there are none.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }
 
-    /// The same, without memory of its own.
+    /// As [`ring`](Self::ring), without memory of its own.
     #[inline]
     pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
-        let star = if self.free[free_vertex as usize] { self.star(free_vertex) } else { &[] };
+        let star = match self.free.get(free_vertex as usize) {
+            Some(true) => self.stars().of(free_vertex as usize),
+            _ => &[],
+        };
         star.iter().map(move |&t| outer_edge(&self.triangles[t as usize], free_vertex).0)
     }
 }

@@ -9,6 +9,22 @@ pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
     Groups::new(triangles.len(), vertices, |t| triangles[t])
 }
 
+/// The triangles other than `triangle` at the edge between two vertices.
+///
+/// They are looked for around the vertex that has fewer triangles: on all edges of a planar mesh together that takes
+/// linear time, however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
+pub(crate) fn others_at_edge<'a>(
+    triangles: &'a [[u32; 3]],
+    stars: &'a Groups,
+    triangle: u32,
+    [a, b]: [u32; 2],
+) -> impl Iterator<Item = u32> + 'a {
+    let (at_a, at_b) = (stars.of(a as usize), stars.of(b as usize));
+    let (star, end) = if at_a.len() <= at_b.len() { (at_a, b) } else { (at_b, a) };
+    let is_other = move |&t: &u32| t != triangle && triangles[t as usize].contains(&end);
+    star.iter().copied().filter(is_other)
+}
+
 /// Notes in `closed` around which vertices the triangles close one cycle, and sorts those of each by it. False, with
 /// notes of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
 /// two triangles meet.
@@ -115,25 +131,40 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
 }
 
 fn chain_many(edges: &mut [OuterEdge]) -> bool {
+    let mut by_start = edges.to_vec();
+    by_start.sort_unstable_by_key(|edge| edge.from);
+    if by_start.windows(2).any(|pair| pair[0].from == pair[1].from) {
+        return false;
+    }
     let first = edges[0].from;
-    for next in 1..edges.len() {
-        let at = edges[next - 1].to;
-        let Some(found) = edges[next..].iter().position(|e| e.from == at) else {
-            return false;
-        };
-        edges.swap(next, next + found);
-        let again = edges[next + 1..].iter().any(|e| e.from == at);
-        if again || at == first {
-            return false;
+    let mut chained = Vec::with_capacity(edges.len());
+    let mut at = first;
+    while let Ok(i) = by_start.binary_search_by_key(&at, |edge| edge.from) {
+        chained.push(by_start[i]);
+        at = by_start[i].to;
+        // Back at the first, or in a circle that does not pass it.
+        if at == first || chained.len() == edges.len() {
+            break;
         }
     }
-    edges[edges.len() - 1].to == first
+    if at != first || chained.len() < edges.len() {
+        return false;
+    }
+    edges.copy_from_slice(&chained);
+    true
 }
 
 /// Whether no two edges start at one vertex, nor end at one.
 fn are_different(edges: &[OuterEdge]) -> bool {
-    let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
-    edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)))
+    if edges.len() <= FEW {
+        let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
+        return edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)));
+    }
+    [|edge: &OuterEdge| edge.from, |edge: &OuterEdge| edge.to].into_iter().all(|end| {
+        let mut ends: Vec<u32> = edges.iter().map(end).collect();
+        ends.sort_unstable();
+        ends.windows(2).all(|pair| pair[0] != pair[1])
+    })
 }
 
 #[cfg(test)]
@@ -152,5 +183,33 @@ mod tests {
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
         assert_eq!(ring_of(&triangles), None);
         assert_eq!(ring_of(&triangles[..3]), Some(vec![1, 2, 3]));
+    }
+
+    #[test]
+    fn many_edges_are_chained_as_few_are() {
+        let edge = |(triangle, (from, to))| OuterEdge { from, to, triangle };
+        let edges = |pairs: &[(u32, u32)]| (0..).zip(pairs.iter().copied()).map(edge).collect();
+        let cycle: Vec<(u32, u32)> = (0..20).map(|i| (i * 7 % 20, (i * 7 + 1) % 20)).collect();
+        let mut chained: Vec<OuterEdge> = edges(&cycle);
+        assert!(chain(&mut chained));
+        assert!(chained.iter().map(|e| (e.from, e.to)).eq((0..20).map(|i| (i, (i + 1) % 20))));
+        assert!(chained.iter().all(|e| cycle[e.triangle as usize] == (e.from, e.to)));
+
+        // What is no cycle keeps its edges, whatever their order.
+        let mut open = cycle.clone();
+        open.retain(|edge| edge.0 != 7);
+        let mut two = cycle.clone();
+        two.iter_mut().for_each(|(_, to)| *to = if *to % 10 == 0 { (*to + 10) % 20 } else { *to });
+        let mut tail = cycle.clone();
+        tail.iter_mut().filter(|edge| edge.0 == 19).for_each(|edge| edge.1 = 5);
+        let mut twice = cycle.clone();
+        twice.push((3, 4));
+        for (pairs, different) in [(open, true), (two, true), (tail, false), (twice, false)] {
+            let mut kept: Vec<OuterEdge> = edges(&pairs);
+            assert!(!chain(&mut kept), "{pairs:?}");
+            kept.sort_unstable_by_key(|e| e.triangle);
+            assert!(kept.iter().map(|e| (e.from, e.to)).eq(pairs.iter().copied()), "{pairs:?}");
+            assert_eq!(are_different(&kept), different, "{pairs:?}");
+        }
     }
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::error::MeshError;
 use crate::parallel::counting_sort::Groups;
 use crate::topology::predicates;
+use crate::topology::stars::others_at_edge;
 
 /// No triangle lies across this edge.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -18,14 +19,12 @@ pub(crate) fn neighbors(
         let mut found = [NONE; 3];
         for i in 0..3 {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
-            let at_edge = |&&o: &&u32| o as usize != t && triangles[o as usize].contains(&b);
-            let mut others = stars.of(a as usize).iter().filter(at_edge);
-            if let Some(&other) = others.next() {
+            let mut others = others_at_edge(triangles, stars, t as u32, [a, b]);
+            if let Some(other) = others.next() {
                 found[i] = other;
-                if others.next().is_some() {
-                    let all = stars.of(a as usize).iter().map(|&o| o as usize);
-                    let mut triangles: Vec<_> =
-                        all.filter(|&o| triangles[o].contains(&b)).collect();
+                if let Some(third) = others.next() {
+                    let all = [t as u32, other, third].into_iter().chain(others);
+                    let mut triangles: Vec<_> = all.map(|o| o as usize).collect();
                     triangles.sort_unstable();
                     return Err(MeshError::EdgeOfThree { edge: [a, b], triangles });
                 }

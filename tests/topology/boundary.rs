@@ -1,9 +1,7 @@
 //! The boundary as loops, and moves that stop before a triangle gives way.
 
-mod support;
-
+use crate::support::{self, Outline, SplitMix64, check};
 use gpu_smooth::{Mesh, MeshError, Topology, signed_area};
-use support::{Outline, SplitMix64, check};
 
 /// Two round holes in a plate.
 fn plate(vertices: usize) -> Mesh {
@@ -12,7 +10,7 @@ fn plate(vertices: usize) -> Mesh {
 }
 
 /// The edges of loops, against the edges that one triangle has, in the direction it has them.
-fn assert_loops_are_the_boundary(mesh: &Mesh) {
+pub(crate) fn assert_loops_are_the_boundary(mesh: &Mesh) {
     let topology = Topology::new(mesh).unwrap();
     let loops = topology.boundary_loops();
     let mut found: Vec<[u32; 2]> = Vec::new();
