@@ -88,7 +88,7 @@ fn problem(bencher: Bencher, case: Case) {
 #[divan::bench(args = cases(), max_time = 2, sample_size = 1, sample_count = 10)]
 fn quality(bencher: Bencher, case: Case) {
     let topology = Topology::new(case.mesh()).unwrap();
-    case.bench(bencher, || Quality::of(&case.mesh().points, &topology));
+    case.bench(bencher, || Quality::of(&case.mesh().points, &topology).unwrap());
 }
 
 #[divan::bench(args = cases(), max_time = 2, sample_size = 1, sample_count = 10)]
@@ -98,7 +98,7 @@ fn certificate(bencher: Bencher, case: Case) {
     let before = points.clone();
     bencher
         .counter(ItemsCount::new(points.len()))
-        .bench_local(|| certify(&topology, &before, &mut points));
+        .bench_local(|| certify(&topology, &before, &mut points).unwrap());
 }
 
 /// All of it that comes before the first sweep.

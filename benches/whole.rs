@@ -92,7 +92,7 @@ fn resident(process: u32) -> Option<f64> {
 }
 
 fn tell(what: &str, run: &Measured, mesh: &Mesh) {
-    let quality = Quality::of(&mesh.points, &Topology::new(mesh).unwrap());
+    let quality = Quality::of(&mesh.points, &Topology::new(mesh).unwrap()).unwrap();
     println!(
         "  {what:<32} {:>7.3} s {:>6.0} MB   f {:.6}, worst {:.2}, {} inverted",
         run.seconds,

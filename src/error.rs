@@ -147,23 +147,61 @@ pub enum MeshError {
         triangles: Vec<usize>,
     },
     /// Some triangles are inverted against their neighbors, or flat.
-    #[error("{count} triangles are inverted or flat, the first is triangle {first}")]
+    #[error("{}", listed(triangles))]
     Infeasible {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        first: usize,
-        /// Its vertices.
-        vertices: [u32; 3],
-        /// Whether the first is flat rather than inverted.
-        flat: bool,
+        /// All of them, ascending.
+        triangles: Vec<BadTriangle>,
     },
+    /// A list of positions has not one for each vertex of the mesh.
+    #[error("{given} points are given for the {expected} vertices of the mesh")]
+    PointCount {
+        /// How many vertices the mesh has.
+        expected: usize,
+        /// How many points were given.
+        given: usize,
+    },
+    /// The bound on the inverse mean ratio that [`Topology::move_clamped`](crate::Topology::move_clamped) was given
+    /// is NaN.
+    #[error(
+        "the bound on the inverse mean ratio is NaN: it must be a number, or infinite for no bound"
+    )]
+    BoundNotANumber,
     /// Every vertex is on the boundary, on a constraint line or unused.
     #[error("none of the {vertices} vertices is free to move")]
     NothingFree {
         /// Number of vertices.
         vertices: usize,
     },
+}
+
+/// A triangle that is inverted or flat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BadTriangle {
+    /// Its index in [`Mesh::triangles`](crate::Mesh::triangles).
+    pub triangle: usize,
+    /// Its vertices, in the order in which a sound triangle goes around counter-clockwise.
+    pub vertices: [u32; 3],
+    /// Whether its area is zero; otherwise it is inverted.
+    pub flat: bool,
+}
+
+impl BadTriangle {
+    /// What is wrong with it: `"inverted"` or `"flat"`.
+    pub fn problem(&self) -> &'static str {
+        if self.flat { "flat" } else { "inverted" }
+    }
+}
+
+/// How many triangles are bad, and the first ten of them.
+fn listed(triangles: &[BadTriangle]) -> String {
+    let one = |bad: &BadTriangle| format!("{} ({})", bad.triangle, bad.problem());
+    let first: Vec<String> = triangles.iter().take(10).map(one).collect();
+    let more = match triangles.len().saturating_sub(10) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let (s, are) = if triangles.len() == 1 { ("", "is") } else { ("s", "are") };
+    format!("{} triangle{s} {are} inverted or flat: {}{more}", triangles.len(), first.join(", "))
 }
 
 /// A run could not be done.

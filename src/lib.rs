@@ -22,7 +22,7 @@
 //! let outcome = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()))?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
-//! assert!(smoother.quality(&outcome.points).f(Metric::Imr) < 1.3334);
+//! assert!(smoother.quality(&outcome.points)?.f(Metric::Imr) < 1.3334);
 //! # Ok::<(), gpu_smooth::SmoothError>(())
 //! ```
 //!
@@ -107,7 +107,7 @@ pub mod output {
 pub mod internal;
 
 pub use choice::Reason;
-pub use error::{GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
+pub use error::{BadTriangle, GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
 pub use file::{AbandonedWrites, Format, MeshFile, Place, abandon_writes};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,

@@ -1,11 +1,14 @@
 //! How good a mesh is, in numbers.
 
+use crate::error::MeshError;
 use crate::metric::{Corner, Metric};
 use crate::parallel::map_parts;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
 /// Statistics of a mesh in double precision, inversions counted by exact predicates.
+///
+/// A triangle with a coordinate that is not a finite number counts as inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     f: [f64; Metric::ALL.len()],
@@ -31,6 +34,7 @@ struct Tally {
     cotangents: [f64; 2],
     worst: (f64, usize),
     worst_movable: f64,
+    inverted: usize,
 }
 
 impl Tally {
@@ -39,6 +43,7 @@ impl Tally {
         cotangents: [f64::INFINITY, f64::NEG_INFINITY],
         worst: (0.0, 0),
         worst_movable: 0.0,
+        inverted: 0,
     };
 
     fn and(mut self, other: &Self) -> Self {
@@ -51,19 +56,24 @@ impl Tally {
             self.worst = other.worst;
         }
         self.worst_movable = self.worst_movable.max(other.worst_movable);
+        self.inverted += other.inverted;
         self
     }
 }
 
 impl Quality {
     /// Measures `points` with the triangles of `topology`.
-    pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Self {
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Result<Self, MeshError> {
+        topology.check_count(points)?;
         let triangles = topology.triangles();
-        let areas = map_parts(triangles.chunks(1024), |_, chunk| {
-            chunk.iter().map(|t| predicates::doubled_area(points, t)).sum::<f64>()
-        });
-        let mean_area = 0.5 * areas.iter().sum::<f64>() / triangles.len() as f64;
-        let inverted = predicates::infeasible(points, triangles);
+        // Each taken positive: where large triangles are inverted, the signed areas may cancel.
+        let area = |t: &[u32; 3]| 0.5 * predicates::orientation(points, t).abs();
+        let areas =
+            map_parts(triangles.chunks(1024), |_, chunk| chunk.iter().map(area).sum::<f64>());
+        let mean_area = areas.iter().sum::<f64>() / triangles.len() as f64;
 
         let tallies = map_parts(triangles.chunks(1024), |chunk, part| {
             let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
@@ -75,24 +85,17 @@ impl Quality {
         let total = tallies.iter().fold(Tally::EMPTY, Tally::and);
 
         let angle = |cotangent: f64| 1f64.atan2(cotangent).to_degrees();
-        let mut quality = Self {
-            f: std::array::from_fn(|i| total.sums[i] / triangles.len() as f64),
+        let mean =
+            |sum: f64| if sum.is_nan() { f64::INFINITY } else { sum / triangles.len() as f64 };
+        Ok(Self {
+            f: total.sums.map(mean),
             min_angle: angle(total.cotangents[1]),
             max_angle: angle(total.cotangents[0]),
             worst_imr: total.worst.0,
             worst_triangle: total.worst.1,
             worst_movable_imr: total.worst_movable,
-            inverted: inverted.len(),
-        };
-        // The exact predicate has the last word over the rounded areas.
-        if let Some(&first) = inverted.first() {
-            quality.worst_imr = f64::INFINITY;
-            quality.worst_triangle = first as usize;
-            for metric in Metric::ALL.iter().filter(|m| m.properties().barrier) {
-                quality.f[*metric as usize] = f64::INFINITY;
-            }
-        }
-        quality
+            inverted: total.inverted,
+        })
     }
 
     /// The objective f = (1/n) Σ q² of a metric (Park & Shontz, equation 1).
@@ -108,21 +111,23 @@ fn one(
     triangle: usize,
     movable: bool,
 ) -> Tally {
-    let [p, q, r] = corners.map(|v| points[v as usize]);
-    let to = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
-    let corner = Corner { a: to(p, q), b: to(p, r), mean_area };
-    let sums = std::array::from_fn(|i| {
-        let quality = Metric::ALL[i].quality(&corner);
-        quality * quality
-    });
+    let is_positive = predicates::is_positive(points, corners);
+    let Edges { a, b, c, unit } = Edges::of(points, corners);
+    let corner = Corner { a, b, mean_area: mean_area / unit / unit };
+    // The exact predicate has the last word over rounded areas; without it only a true zero makes a ratio infinite.
+    let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
+        (true, false) => f64::INFINITY,
+        (true, true) => metric.quality(&corner).min(f64::MAX.sqrt()),
+        (false, _) => metric.quality(&corner),
+    };
+    let sums = std::array::from_fn(|i| judged(Metric::ALL[i]).powi(2));
     let doubled = corner.doubled_area().abs();
     let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
-    let cotangents = [
-        cotangent(corner.a, corner.b),
-        cotangent(to(q, r), to(q, p)),
-        cotangent(to(r, p), to(r, q)),
-    ];
-    let imr = corner.inverse_mean_ratio();
+    let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
+    let imr = match is_positive {
+        true => corner.inverse_mean_ratio().min(f64::MAX),
+        false => f64::INFINITY,
+    };
     Tally {
         sums,
         cotangents: [
@@ -131,6 +136,39 @@ fn one(
         ],
         worst: (imr, triangle),
         worst_movable: if movable { imr } else { 0.0 },
+        inverted: usize::from(!is_positive),
+    }
+}
+
+/// The edges of a triangle: from its first corner to the second and to the third, and from the second to the third.
+/// They are in a unit of its own, a power of two, in which no product of them overflows and the longest does not
+/// vanish.
+struct Edges {
+    a: [f64; 2],
+    b: [f64; 2],
+    c: [f64; 2],
+    unit: f64,
+}
+
+impl Edges {
+    fn of(points: &[[f64; 2]], corners: &[u32; 3]) -> Self {
+        const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+        let [p, q, r] = corners.map(|v| points[v as usize]);
+        let to = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+        let edges = [to(p, q), to(p, r), to(q, r)];
+        let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        let unit = f64::from_bits(size.to_bits() & EXPONENT);
+        let [a, b, c] = edges.map(|edge| edge.map(|x| x / unit));
+        let exact = predicates::orientation(points, corners) / unit / unit;
+        let rounded = a[0] * b[1] - a[1] * b[0];
+        if (exact > 0.0) == (rounded > 0.0) {
+            return Self { a, b, c, unit };
+        }
+        // Rounding has turned it over. In coordinates along the first edge and across it, the sign of the area is that
+        // of a single number.
+        let length = a[0].hypot(a[1]);
+        let turned = |edge: [f64; 2]| [(a[0] * edge[0] + a[1] * edge[1]) / length, exact / length];
+        Self { a: [length, 0.0], b: turned(b), c: turned(c), unit }
     }
 }
 
@@ -141,7 +179,7 @@ mod tests {
 
     fn quality(points: &[[f64; 2]]) -> Quality {
         let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
-        Quality::of(points, &Topology::new(&mesh).unwrap())
+        Quality::of(points, &Topology::new(&mesh).unwrap()).unwrap()
     }
 
     #[test]

@@ -119,14 +119,20 @@ impl<'a> Smoother<'a> {
     }
 
     /// Statistics of the mesh with its vertices at `points`.
-    pub fn quality(&self, points: &[[f64; 2]]) -> Quality {
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn quality(&self, points: &[[f64; 2]]) -> Result<Quality, MeshError> {
         Quality::of(points, &self.topology)
     }
 
     /// Sends vertices of inverted or flat triangles back to where the mesh had them, in place, and
-    /// returns how many; see [`validity::certify`]. To be called when `points` were rounded again
-    /// after [`Self::run`].
-    pub fn certify(&self, points: &mut [[f64; 2]]) -> usize {
+    /// returns how many; see [`validity::certify`](crate::validity::certify). To be called when `points` were rounded
+    /// again after [`Self::run`].
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex. Nothing is moved then.
+    pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
         certify(&self.topology, &self.mesh.points, points)
     }
 
@@ -199,7 +205,7 @@ impl<'a> Smoother<'a> {
             (0..end.history.len()).fold(0, better)
         };
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
-        let mut returned = self.certify(&mut points);
+        let mut returned = self.certify(&mut points)?;
         // Judged as they will stand: rounding, and vertices that went back, may have cost more than was gained, and a
         // device moves vertices of an optimal mesh by its own rounding.
         let written = self.objective(base, &self.problem.normalized(&points, end.positions));

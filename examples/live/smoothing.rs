@@ -166,7 +166,7 @@ impl Smoothing {
     /// Counts the triangles that are inverted or flat, by exact arithmetic on the device's positions.
     pub(crate) fn count_infeasible(&self) -> Result<usize> {
         let points = self.device_mesh.read_points()?;
-        Ok(validity::infeasible(&points, self.topology.triangles()).len())
+        Ok(validity::infeasible(&points, self.topology.triangles())?.len())
     }
 }
 

@@ -116,8 +116,8 @@ pub(crate) fn simulate(
         log.push(Step {
             angle,
             took,
-            kept: Quality::of(&device_mesh.read_points()?, &topology),
-            left: Quality::of(&left_alone, &topology),
+            kept: Quality::of(&device_mesh.read_points()?, &topology)?,
+            left: Quality::of(&left_alone, &topology)?,
         });
     }
     Ok(log)

@@ -76,8 +76,10 @@ impl Coloring {
             let same = |p: u32, q: u32| p == q && p != UNCOLORED;
             !same(a, b) && !same(b, c) && !same(c, a)
         };
-        let complete = self.colors.iter().zip(topology.free());
-        complete.into_iter().all(|(&c, &free)| free == (c < self.count))
+        let is_complete = |(&color, &free): (&u32, &bool)| free == (color < self.count);
+        // A coloring of another mesh has other lengths.
+        self.colors.len() == topology.free().len()
+            && self.colors.iter().zip(topology.free()).all(is_complete)
             && topology.triangles().iter().all(differs)
     }
 }
@@ -334,14 +336,14 @@ impl<I: Copy + Into<u32>> Graph<I> {
     /// Gives a vertex the color of a neighbor, if no other neighbor has it and this one can do with another.
     fn lower(&self, v: u32, colors: &mut [u32]) {
         let color = colors[v as usize];
-        for &u in self.row(v) {
-            let u = u.into();
         // The colors that neighbors have, and those that several have.
         let (mut taken, mut shared) = (0u64, 0u64);
         for c in self.colors_around(v, colors).filter(|&c| c < 64) {
             shared |= taken & 1 << c;
             taken |= 1 << c;
         }
+        for &u in self.row(v) {
+            let u = u.into();
             let wanted = colors[u as usize];
             // Of neighbors that lie between the blocks not all neighbors are known. One with many neighbors would be
             // asked by each of them, and looks at all of them each time.
@@ -363,11 +365,11 @@ impl<I: Copy + Into<u32>> Graph<I> {
 /// Colors that suffice for a planar graph, hard as they may be to find.
 const FOUR: u32 = 4;
 
-/// The degree of a vertex that is not to be removed, or was.
-const STAYS: u32 = u32::MAX;
 /// A vertex with more neighbors keeps its color when others do without theirs.
 const MANY: usize = 64;
 
+/// The degree of a vertex that is not to be removed, or was.
+const STAYS: u32 = u32::MAX;
 
 /// Vertices by the number of their neighbors that are left.
 #[derive(Default)]

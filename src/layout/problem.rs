@@ -11,6 +11,7 @@ use crate::mesh::Mesh;
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
 use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
+use crate::topology::predicates::orientation;
 
 /// Vertices or triangles that one task goes through, and those of a task that takes note of each.
 const CHUNK: usize = 1 << 12;
@@ -53,7 +54,7 @@ impl Problem {
         coloring: &Coloring,
         curve: &[u32],
     ) -> Self {
-        let (center, scale) = normalization(mesh, topology);
+        let (center, scale, exact_mean) = normalization(mesh, topology);
         let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
 
         let (vertices, colors) = order(topology, coloring, curve);
@@ -75,7 +76,11 @@ impl Problem {
             let [p, q, r] = t.map(|v| positions[v as usize]);
             0.5 * (q - p).perp_dot(r - p)
         };
-        let mean_area = sum(&triangles, area) / triangles.len() as f64;
+        // Where triangles are as thin as rounding, their rounded areas may come to nothing.
+        let mean_area = match sum(&triangles, area) / triangles.len() as f64 {
+            mean if mean > 0.0 => mean,
+            _ => exact_mean,
+        };
         Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
     }
 
@@ -163,20 +168,18 @@ impl Problem {
     }
 }
 
-/// Center of the bounding box, and the power of two that brings the mean area into [0.5, 2).
-fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64) {
+/// Center of the bounding box, the power of two that brings the mean area into [0.5, 2), and that area.
+fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let (low, high) = bounds(mesh, topology);
     // Halved before they are added: the sum of two large coordinates may overflow.
     let center = low * 0.5 + high * 0.5;
-    // Areas are taken in units of the bounding box, where their squares cannot overflow or vanish.
+    // Of the points as they are, and in units of the bounding box, where their sum cannot overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
-    let relative = |t: &[u32; 3]| {
-        let [p, q, r] = t.map(|v| (DVec2::from(mesh.points[v as usize]) - center) / extent);
-        0.5 * (q - p).perp_dot(r - p)
-    };
-    let length =
-        (sum(topology.triangles(), relative) / topology.triangles().len() as f64).sqrt() * extent;
-    (center, (-length.log2().round()).exp2())
+    let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
+    let mean = sum(topology.triangles(), relative) / topology.triangles().len() as f64;
+    let length = mean.sqrt() * extent;
+    let scale = (-length.log2().round()).exp2();
+    (center, scale, (length * scale).powi(2))
 }
 
 /// The sum of a number of each triangle, in an order that does not depend on the number of threads.

@@ -1,26 +1,38 @@
 //! The certificate that no triangle is inverted or flat.
 
+use crate::error::MeshError;
 use crate::topology::Topology;
-use crate::topology::predicates::{infeasible, orientation};
+use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
 
-/// Makes `points` feasible as they stand, in place: each free vertex of an inverted or flat triangle
+/// Makes `points` feasible as they stand, in place: each vertex of an inverted or flat triangle
 /// goes back to where it was in `before`, until no such triangle is left. Returns how many
 /// vertices went back.
 ///
 /// This is the certificate: afterwards every triangle of `topology` is positive by exact
-/// arithmetic on these values, provided `before` was so.
-pub fn certify(topology: &Topology<'_>, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
+/// arithmetic on these values. A triangle with a coordinate that is not a finite number counts as inverted.
+///
+/// # Errors
+/// [`MeshError::PointCount`] if `before` or `points` has not one point for each vertex; nothing is moved then.
+/// [`MeshError::Infeasible`] if triangles are left that are inverted or flat in `before` already.
+pub fn certify(
+    topology: &Topology<'_>,
+    before: &[[f64; 2]],
+    points: &mut [[f64; 2]],
+) -> Result<usize, MeshError> {
+    topology.check_count(before)?;
+    topology.check_count(points)?;
     let triangles = topology.triangles();
-    let mut suspects = infeasible(points, triangles);
+    let mut suspects = not_positive(points, triangles);
+    let is_certified = suspects.is_empty();
     let mut returned = 0;
-    // Each round returns at least one vertex of every suspect (an infeasible triangle has a moved
-    // vertex, as `before` was feasible), and then looks again at the triangles around it.
+    // Each round returns the moved vertices of every suspect, and then looks again at the triangles around them.
     while !suspects.is_empty() {
         let mut touched = Vec::new();
         for &t in &suspects {
             for &v in &triangles[t as usize] {
                 let v_index = v as usize;
-                if points[v_index] != before[v_index] {
+                // By their bits: NaN differs from itself, and would go back forever.
+                if points[v_index].map(f64::to_bits) != before[v_index].map(f64::to_bits) {
                     points[v_index] = before[v_index];
                     returned += 1;
                     touched.extend_from_slice(topology.star(v));
@@ -29,10 +41,16 @@ pub fn certify(topology: &Topology<'_>, before: &[[f64; 2]], points: &mut [[f64;
         }
         touched.sort_unstable();
         touched.dedup();
-        touched.retain(|&t| orientation(points, &triangles[t as usize]) <= 0.0);
+        touched.retain(|&t| !is_positive(points, &triangles[t as usize]));
         suspects = touched;
     }
-    returned
+    if is_certified {
+        return Ok(0);
+    }
+    match bad_triangles(points, triangles) {
+        left if left.is_empty() => Ok(returned),
+        triangles => Err(MeshError::Infeasible { triangles }),
+    }
 }
 
 #[cfg(test)]
@@ -70,8 +88,44 @@ mod tests {
         let mut points = mesh.points.clone();
         points[6] = [0.5, -0.1];
         points[7] = [1.4, 0.4];
-        assert_eq!(certify(&topology, &mesh.points, &mut points), 1);
+        assert_eq!(certify(&topology, &mesh.points, &mut points), Ok(1));
         assert_eq!(points[6], [0.5, 0.5]);
         assert_eq!(points[7], [1.4, 0.4]);
+
+        for bad in [f64::NAN, f64::INFINITY] {
+            points[7] = [1.4, bad];
+            assert_eq!(certify(&topology, &mesh.points, &mut points), Ok(1));
+            assert_eq!(points, mesh.points);
+        }
+    }
+
+    #[test]
+    fn what_was_infeasible_before_is_not_certified() {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        for (bad, count) in [([1.5, 0.5], 1), ([f64::NAN, 0.5], 4)] {
+            let mut before = mesh.points.clone();
+            before[4] = bad;
+            let mut points = before.clone();
+            points[4] = [2.5, 0.5];
+            let error = certify(&topology, &before, &mut points).unwrap_err();
+            let MeshError::Infeasible { triangles } = error else { panic!("{error}") };
+            assert_eq!(triangles.len(), count);
+        }
+    }
+
+    #[test]
+    fn lists_of_other_lengths_are_errors() {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let mesh = Mesh { points, triangles: vec![[0, 1, 2]], fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        let mut points = mesh.points.clone();
+        for given in [0, 2] {
+            let expected = Err(MeshError::PointCount { expected: 3, given });
+            assert_eq!(certify(&topology, &mesh.points[..given], &mut points), expected);
+            assert_eq!(certify(&topology, &mesh.points, &mut points[..given]), expected);
+        }
     }
 }

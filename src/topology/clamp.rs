@@ -36,24 +36,26 @@ impl Topology<'_> {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that is not among the points or a point for each vertex missing,
-    /// [`MeshError::NotFinite`] for a place that is none. Nothing is moved then.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] for a vertex
+    /// that the mesh does not have, [`MeshError::NotFinite`] if a vertex of a triangle that changes has or is to get a
+    /// coordinate that is not a finite number, [`MeshError::BoundNotANumber`] if `worst_imr` is NaN. Nothing is moved
+    /// then.
     pub fn move_clamped(
         &self,
         points: &mut [[f64; 2]],
         moves: &[(u32, [f64; 2])],
         worst_imr: f64,
     ) -> Result<f64, MeshError> {
+        self.check_count(points)?;
+        if worst_imr.is_nan() {
+            return Err(MeshError::BoundNotANumber);
+        }
         let vertices = points.len();
-        let count = self.free().len();
-        let missing = (vertices < count).then_some(vertices as u32);
-        let unknown = moves.iter().map(|&(v, _)| v).find(|&v| v as usize >= count);
-        if let Some(vertex) = missing.or(unknown) {
-            let vertices = vertices.min(count);
+        if let Some(&(vertex, _)) = moves.iter().find(|&&(v, _)| v as usize >= vertices) {
             return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
         }
-        let is_finite = |to: &[f64; 2]| to.iter().all(|x| x.is_finite());
-        if let Some(&(vertex, _)) = moves.iter().find(|(_, to)| !is_finite(to)) {
+        let is_finite = |[x, y]: [f64; 2]| x.is_finite() && y.is_finite();
+        if let Some(&(vertex, _)) = moves.iter().find(|&&(_, to)| !is_finite(to)) {
             return Err(MeshError::NotFinite { vertex });
         }
 
@@ -62,10 +64,14 @@ impl Topology<'_> {
             ways.0.iter().flat_map(|way| self.star(way.vertex)).copied().collect();
         triangles.sort_unstable();
         triangles.dedup();
-        let limited: Vec<([u32; 3], f64)> = triangles
-            .into_iter()
-            .map(|t| self.triangles()[t as usize])
-            .filter(|corners| predicates::orientation(points, corners) > 0.0)
+        let corners = || triangles.iter().map(|&t| self.triangles()[t as usize]);
+        // Those of no triangle as well.
+        let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
+        if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
+            return Err(MeshError::NotFinite { vertex });
+        }
+        let limited: Vec<([u32; 3], f64)> = corners()
+            .filter(|corners| predicates::is_positive(points, corners))
             .map(|corners| (corners, worst_imr.max(imr(points, &corners) * (1.0 + ROUNDING))))
             .collect();
 
@@ -77,7 +83,7 @@ impl Topology<'_> {
         loop {
             ways.go(points, share);
             let holds = |(corners, limit): &([u32; 3], f64)| {
-                predicates::orientation(points, corners) > 0.0
+                predicates::is_positive(points, corners)
                     && imr(points, corners) <= limit * (1.0 + ROUNDING)
             };
             if share == 0.0 || limited.iter().all(holds) {

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
-use crate::error::MeshError;
+use crate::error::{BadTriangle, MeshError};
 use crate::mesh::Mesh;
 use crate::parallel::counting_sort::Groups;
 use crate::topology::predicates;
@@ -24,9 +24,9 @@ pub struct Topology<'m> {
 impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
-    /// Windings are made consistent across shared edges, and each edge-connected part
-    /// counter-clockwise on the whole. A vertex is free unless it lies on the boundary, is listed
-    /// in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
+    /// Windings are made consistent across shared edges, and such that most triangles of each edge-connected part are
+    /// counter-clockwise; if as many go one way as the other, the sum of their areas decides. A vertex is free unless
+    /// it lies on the boundary, is listed in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
     ///
     /// # Errors
     /// What is no 2D triangle mesh at all: see [`MeshError`]. Whether it is feasible and has a free
@@ -61,14 +61,33 @@ impl<'m> Topology<'m> {
     /// Checks that there is something to smooth, and that smoothing can keep what it needs.
     ///
     /// # Errors
-    /// [`MeshError::Infeasible`] if a triangle is inverted or flat at `points`,
-    /// [`MeshError::NothingFree`] if no vertex is free.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Infeasible`] if a triangle is
+    /// inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free.
     pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        predicates::check(points, &self.triangles)?;
+        let triangles = self.bad_triangles(points)?;
+        if !triangles.is_empty() {
+            return Err(MeshError::Infeasible { triangles });
+        }
         match self.free.contains(&true) {
             true => Ok(()),
             false => Err(MeshError::NothingFree { vertices: points.len() }),
         }
+    }
+
+    /// The triangles that are inverted or flat with the vertices at `points`, by exact predicates, ascending. Those
+    /// with a coordinate that is not a finite number count as inverted.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
+        self.check_count(points)?;
+        Ok(predicates::bad_triangles(points, &self.triangles))
+    }
+
+    /// Fails unless there is one point for each vertex.
+    pub(crate) fn check_count(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        let (expected, given) = (self.free.len(), points.len());
+        if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
     }
 
     /// The triangles in the mesh's order, each counter-clockwise.
@@ -211,7 +230,7 @@ mod tests {
         assert_eq!(topology.ring(4), [0, 1, 2, 3]);
         mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
         let clockwise = Topology::new(&mesh).unwrap();
-        assert!(predicates::check(&mesh.points, clockwise.triangles()).is_ok());
+        assert_eq!(clockwise.bad_triangles(&mesh.points), Ok(vec![]));
     }
 
     #[test]
@@ -227,13 +246,11 @@ mod tests {
         let mut mesh = fan();
         let refusal =
             |mesh: &Mesh| Topology::new(mesh).unwrap().check_smoothable(&mesh.points).unwrap_err();
-        mesh.points[4] = [1.0, -0.5];
-        let error = refusal(&mesh);
-        let vertices = [0, 1, 4];
-        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: false });
-        mesh.points[4] = [1.0, 0.0];
-        let error = refusal(&mesh);
-        assert_eq!(error, MeshError::Infeasible { count: 1, first: 0, vertices, flat: true });
+        for (place, flat) in [([1.0, -0.5], false), ([1.0, 0.0], true)] {
+            mesh.points[4] = place;
+            let triangles = vec![BadTriangle { triangle: 0, vertices: [0, 1, 4], flat }];
+            assert_eq!(refusal(&mesh), MeshError::Infeasible { triangles });
+        }
     }
 
     #[test]

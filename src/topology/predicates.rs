@@ -3,15 +3,10 @@
 use rayon::prelude::*;
 use robust::Coord;
 
-use crate::error::MeshError;
+use crate::error::{BadTriangle, MeshError};
 
-/// Twice the signed area of a triangle, in plain floating point: for sums, not for decisions.
-pub(crate) fn doubled_area(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
-    let [p, q, r] = corners.map(|v| points[v as usize]);
-    (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-}
-
-/// A number whose sign is exactly that of the triangle's area (Shewchuk's adaptive predicate).
+/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; not a
+/// finite number if a coordinate is none.
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| {
         let [x, y] = points[v as usize];
@@ -20,20 +15,47 @@ pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     robust::orient2d(p, q, r)
 }
 
-/// The counter-clockwise `triangles` that are inverted or flat, ascending.
-pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
-    let bad = |&t: &u32| orientation(points, &triangles[t as usize]) <= 0.0;
+/// Whether a triangle is counter-clockwise. False as well if a coordinate is NaN or infinite.
+pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
+    let orientation = orientation(points, corners);
+    orientation > 0.0 && orientation < f64::INFINITY
+}
+
+/// The counter-clockwise `triangles` that are inverted, flat, or have a coordinate that is not a finite number,
+/// ascending.
+///
+/// # Errors
+/// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have,
+/// [`MeshError::TooLarge`] if there are more triangles than 32-bit indices can number.
+pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32>, MeshError> {
+    let vertices = points.len();
+    if triangles.len() >= u32::MAX as usize {
+        return Err(MeshError::TooLarge { vertices, triangles: triangles.len() });
+    }
+    let missing = |&v: &u32| v as usize >= vertices;
+    let bad = triangles.par_iter().position_first(|t| t.iter().any(missing));
+    if let Some(t) = bad
+        && let Some(&vertex) = triangles[t].iter().find(|v| missing(v))
+    {
+        return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
+    }
+    Ok(not_positive(points, triangles))
+}
+
+/// As [`infeasible`], of triangles all of whose vertices are among the points.
+pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let bad = |&t: &u32| !is_positive(points, &triangles[t as usize]);
     (0..triangles.len() as u32).into_par_iter().filter(bad).collect()
 }
 
-/// Fails with [`MeshError::Infeasible`] unless every triangle is counter-clockwise.
-pub(crate) fn check(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
-    let bad = infeasible(points, triangles);
-    let Some(&first) = bad.first() else { return Ok(()) };
-    let first = first as usize;
-    let vertices = triangles[first];
-    let flat = orientation(points, &vertices) == 0.0;
-    Err(MeshError::Infeasible { count: bad.len(), first, vertices, flat })
+/// As [`not_positive`], each with what is wrong with it.
+pub(crate) fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
+    let describe = |t: u32| {
+        let vertices = triangles[t as usize];
+        let flat = orientation(points, &vertices) == 0.0;
+        BadTriangle { triangle: t as usize, vertices, flat }
+    };
+    not_positive(points, triangles).into_iter().map(describe).collect()
 }
 
 #[cfg(test)]
@@ -44,7 +66,30 @@ mod tests {
     fn a_flip_below_rounding_is_seen() {
         // 0.1 + 0.2 lies above 0.3 by one rounding; the naive determinant is not to be trusted.
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
-        assert_eq!(infeasible(&points, &[[0, 1, 2]]), [0]);
-        assert!(infeasible(&points, &[[1, 0, 2]]).is_empty());
+        assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
+        assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));
+    }
+
+    #[test]
+    fn a_coordinate_that_is_no_finite_number_makes_a_triangle_infeasible() {
+        let good = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in 0..6 {
+                let mut points = good;
+                points[place / 2][place % 2] = bad;
+                for triangle in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]] {
+                    let found = infeasible(&points, &[triangle]);
+                    assert_eq!(found, Ok(vec![0]), "{bad} at {place}, {triangle:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_triangle_of_a_missing_vertex_is_an_error() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let error = infeasible(&points, &[[0, 1, 2], [0, 3, 1]]);
+        let expected = MeshError::IndexOutOfRange { triangle: Some(1), vertex: 3, vertices: 3 };
+        assert_eq!(error, Err(expected));
     }
 }

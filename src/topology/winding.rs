@@ -40,8 +40,12 @@ fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
 }
 
-/// The triangles with windings made consistent across edges, each edge-connected part
-/// counter-clockwise on the whole.
+/// The triangles with windings made consistent across edges, and most triangles of each edge-connected part
+/// counter-clockwise.
+///
+/// Triangles are counted, whatever their size: one mirrored triangle may be larger than all sound ones together, as
+/// where a mesh of the globe crosses the date line. Only if as many go one way as the other does the sum of their areas
+/// decide, which does not depend on how they are numbered or listed.
 pub(crate) fn wind(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -57,12 +61,14 @@ pub(crate) fn wind(
         seen[seed] = true;
         part.clear();
         part.push(seed as u32);
-        let mut doubled_area = 0.0;
+        let (mut majority, mut doubled_area) = (0_i64, 0.0);
         let mut next = 0;
         while let Some(&t) = part.get(next) {
             next += 1;
             let corners = wound[t as usize];
-            doubled_area += predicates::doubled_area(points, &corners);
+            let orientation = predicates::orientation(points, &corners);
+            majority += i64::from(orientation > 0.0) - i64::from(orientation < 0.0);
+            doubled_area += orientation;
             // `across` belongs to the corners as given; a swap of the last two reverses its order.
             let given = triangles[t as usize];
             for (i, &other) in across[t as usize].iter().enumerate() {
@@ -80,7 +86,7 @@ pub(crate) fn wind(
                 part.push(other);
             }
         }
-        if doubled_area < 0.0 {
+        if majority < 0 || majority == 0 && doubled_area < 0.0 {
             for &t in &part {
                 wound[t as usize].swap(1, 2);
             }
@@ -89,7 +95,7 @@ pub(crate) fn wind(
     wound
 }
 
-/// Whether every triangle is counter-clockwise, to rounding.
+/// Whether every triangle is counter-clockwise.
 pub(crate) fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
-    triangles.par_iter().with_min_len(1 << 12).all(|t| predicates::doubled_area(points, t) > 0.0)
+    triangles.par_iter().with_min_len(1 << 12).all(|t| predicates::is_positive(points, t))
 }

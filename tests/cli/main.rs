@@ -41,12 +41,13 @@ impl Run {
         self
     }
 
-    /// After it failed with one line that holds each of the parts.
+    /// After it failed with one line, and under it perhaps an indented list, that hold each of the parts.
     #[track_caller]
     fn refused(self, parts: &[&str]) -> Self {
         let Self { code, out, err } = &self;
         assert_eq!((*code, out.as_str()), (Some(1), ""), "{err}");
-        assert!(err.starts_with("gpu-smooth: error: ") && err.lines().count() == 1, "{err}");
+        assert!(err.starts_with("gpu-smooth: error: "), "{err}");
+        assert!(err.lines().skip(1).all(|line| line.starts_with("  ")), "{err}");
         assert_holds(err, parts);
         self
     }

@@ -1,7 +1,10 @@
-//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, OUT untouched.
+//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, OUT untouched. Several inverted or
+//! flat triangles are listed under it.
 
-use super::{Folder, assert_holds, output::INVERTED, plate_path};
+use super::{Folder, assert_holds, output::INVERTED, plate_path, support};
+use serde_json::{Value, json};
 use std::fs;
+use std::path::PathBuf;
 
 const NODE: &str = "5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 0.25 0.5\n";
 const ELE: &str = INVERTED[1];
@@ -23,8 +26,16 @@ fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
             }
         }
         let before = folder.content();
-        folder.run([input, out, "--engine", "cpu", "--report", "r.json"]).refused(parts);
+        folder.run([input, out, "--engine", "cpu"]).refused(parts);
         assert!(folder.content() == before, "files have changed");
+        let run = folder.run([input, out, "--engine", "cpu", "--report", "r.json"]).refused(parts);
+        // Only bad triangles are reported.
+        let is_list = run.err.contains("inverted") || run.err.contains("flat");
+        let others = |content: Vec<(PathBuf, Vec<u8>)>| -> Vec<_> {
+            content.into_iter().filter(|(path, _)| !path.ends_with("r.json") || !is_list).collect()
+        };
+        assert!(others(folder.content()) == others(before), "files have changed");
+        assert!(!is_list || folder.json("r.json")["triangles"].is_array());
     }
 }
 
@@ -123,9 +134,9 @@ fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
         &moved("1.5 1.25"),
         ELE,
         &[
-            "in.ele:3: 2 triangles are inverted or flat, the first is triangle 2 (vertices 2, 3, 5)",
-            "which is inverted",
+            "error: in.ele: 2 triangles are inverted or flat. ",
             untangle,
+            "\n  in.ele:3: triangle 2 (vertices 2, 3, 5) is inverted\n  in.ele:4: triangle 3 (vertices 3, 4, 5) is inverted\n",
         ],
     );
     // Numbers from zero.
@@ -140,6 +151,81 @@ fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
     // A folded mesh, all clockwise but for one.
     let clockwise = "4 3\n1 2 1 5\n2 3 2 5\n3 4 3 5\n4 1 4 5\n";
     assert_triangle_refused(&moved("0.5 -1"), clockwise, &["triangle 1 (vertices 2, 1, 5) is inv"]);
+}
+
+/// A strip two squares wide, as a Triangle and a gmsh mesh. Of every eight rows one has its middle vertex thrown across its
+/// neighbors, which inverts triangles, and one has it on top of a neighbor, which makes triangles flat.
+fn folded(rows: usize) -> Folder {
+    let mut mesh = support::lattice(2, rows);
+    for row in (1..rows).step_by(4) {
+        let middle = 3 * row + 1;
+        let [x, y] = mesh.points[middle];
+        mesh.points[middle] = if row % 8 == 1 { [x, y + 1.8] } else { mesh.points[middle + 1] };
+    }
+    let [node, ele] = support::triangle_text(&mesh, "folded");
+    Folder::new(&[("in.node", &node), ("in.ele", &ele), ("in.msh", &support::write_msh22(&mesh))])
+}
+
+#[test]
+fn all_inverted_and_flat_triangles_are_listed() {
+    let folder = folded(60);
+    let mesh = folder.mesh("in.node");
+    let signs = support::orientations(&mesh);
+    let bad: Vec<usize> = (0..signs.len()).filter(|&t| signs[t] != 1).collect();
+    assert!(bad.len() > 20 && bad.len() < signs.len() / 2);
+    assert!(signs.contains(&0) && signs.contains(&-1));
+
+    for (input, out, list) in [("in.node", "out.node", "in.ele"), ("in.msh", "out.msh", "in.msh")] {
+        let text = folder.text(list);
+        let lines: Vec<Vec<u64>> = text
+            .lines()
+            .map(|line| line.split_whitespace().map_while(|word| word.parse().ok()).collect())
+            .collect();
+        // The vertices are the last three numbers of a row in both formats.
+        let row_of = |t: usize| {
+            let vertices = mesh.triangles[t].map(|v| u64::from(v) + 1);
+            lines.iter().position(|row| row.len() > 3 && row.ends_with(&vertices)).unwrap()
+        };
+        let report = |t: &usize| {
+            let row = row_of(*t);
+            let problem = if signs[*t] == 0 { "flat" } else { "inverted" };
+            let vertices = mesh.triangles[*t].map(|v| v + 1);
+            json!({
+                "triangle": lines[row][0], "file": list, "line": row + 1, "vertices": vertices,
+                "problem": problem,
+            })
+        };
+        let expected: Vec<Value> = bad.iter().map(report).collect();
+        let told: String = expected[..10]
+            .iter()
+            .map(|bad| {
+                let [a, b, c] = [0, 1, 2].map(|i| &bad["vertices"][i]);
+                let (triangle, line) = (&bad["triangle"], &bad["line"]);
+                let problem = bad["problem"].as_str().unwrap();
+                format!(
+                    "\n  {list}:{line}: triangle {triangle} (vertices {a}, {b}, {c}) is {problem}"
+                )
+            })
+            .collect();
+        let more = bad.len() - 10;
+
+        let run = folder.run([input, out, "--engine", "cpu", "--report", "r.json"]);
+        let count = format!("error: {list}: {} triangles are inverted or flat. ", bad.len());
+        let rest = format!("{told}\n  and {more} more; --report FILE lists all\n");
+        let err = run.refused(&[&count, &rest]).err;
+        let written = folder.json("r.json");
+        let first_line = err.lines().next().unwrap().strip_prefix("gpu-smooth: error: ");
+        assert_eq!(written["error"].as_str(), first_line);
+        assert_eq!(written["triangles"], Value::from(expected.clone()));
+        assert!(!folder.path(out).exists());
+
+        let text = folder.run(["quality", input]).clean().out;
+        let rest = format!(" {}{told}\n  and {more} more; --json lists all\n", bad.len());
+        assert!(text.ends_with(&rest), "{text}");
+        let json: Value =
+            serde_json::from_str(&folder.run(["quality", input, "--json"]).clean().out).unwrap();
+        assert_eq!(json["bad_triangles"], Value::from(expected));
+    }
 }
 
 #[test]

@@ -183,7 +183,7 @@ fn a_cancelled_run_returns_the_best_state_so_far() {
         assert_eq!(heard[1].1, *f.last().unwrap());
         let least = f.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(least < f[0]);
-        let measured = smoother.quality(&outcome.points).f(base);
+        let measured = smoother.quality(&outcome.points).unwrap().f(base);
         assert!((measured / least - 1.0).abs() < 1e-6, "{measured} {least}");
     }
 }

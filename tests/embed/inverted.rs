@@ -90,7 +90,7 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
             let case = format!("{throw:?}, {metric}, {derivatives:?}");
             assert!(end.as_flattened().iter().all(|x| x.is_finite()), "{case}: not finite");
             assert!(bad(&end) <= bad(&start), "{case}: {} of {}", bad(&end), bad(&start));
-            let f = |points: &[[f64; 2]]| Quality::of(points, &topology).f(metric);
+            let f = |points: &[[f64; 2]]| Quality::of(points, &topology).unwrap().f(metric);
             assert!(f(&end) < f(&start), "{case}: {} after {}", f(&end), f(&start));
         }
     }
@@ -111,7 +111,7 @@ fn once_the_application_mends_the_mesh_all_is_well_again() {
     }
     let points = app.points(&device_mesh);
     let topology = Topology::new(&sound).unwrap();
-    let quality = Quality::of(&points, &topology);
+    let quality = Quality::of(&points, &topology).unwrap();
     assert_eq!(quality.inverted, 0);
     assert!(quality.f(Metric::Imr) < 1.15 && quality.worst_imr < 3.0, "{quality:?}");
 }

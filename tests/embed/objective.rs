@@ -11,7 +11,7 @@ use crate::support::{orientations, transformed};
 const WORDS: usize = size_of::<ObjectiveValues>() / 4;
 
 fn quality(mesh: &Mesh, points: &[[f64; 2]]) -> Quality {
-    Quality::of(points, &Topology::new(mesh).unwrap())
+    Quality::of(points, &Topology::new(mesh).unwrap()).unwrap()
 }
 
 fn all_tracked() -> Options {

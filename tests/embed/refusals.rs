@@ -7,7 +7,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate};
-use crate::support::lattice;
+use crate::support::{lattice, orientations};
 
 /// What is said to a place for the vertices of a lattice of 36.
 #[track_caller]
@@ -152,10 +152,15 @@ fn a_mesh_with_an_inverted_triangle_is_refused() {
     // A vertex of the middle, across its star.
     mesh.points[14][0] += 1.5;
     let error = mesh_error(&mesh);
-    let MeshError::Infeasible { count, flat: false, .. } = error else { panic!("{error}") };
-    assert!(count > 0);
-    let text = format!("{count} triangles are inverted or flat, the first is triangle ");
-    assert!(error.to_string().starts_with(&text), "{error}");
+    let MeshError::Infeasible { triangles } = &error else { panic!("{error}") };
+    let inverted: Vec<_> = (0..).zip(orientations(&mesh)).filter(|(_, sign)| *sign != 1).collect();
+    assert!(inverted.len() > 1 && inverted.len() < 10);
+    assert!(triangles.iter().map(|bad| bad.triangle).eq(inverted.iter().map(|(t, _)| *t)));
+    assert!(triangles.iter().zip(inverted).all(|(bad, (_, sign))| bad.flat == (sign == 0)));
+    let list: Vec<_> =
+        triangles.iter().map(|bad| format!("{} ({})", bad.triangle, bad.problem())).collect();
+    let text = format!("{} triangles are inverted or flat: {}", list.len(), list.join(", "));
+    assert_eq!(error.to_string(), text);
 }
 
 #[test]

@@ -57,10 +57,10 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             let options = Options { scheme: metric.into(), derivatives, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
             let outcome = smoother.run(&options, backend, go_on).unwrap();
-            smoother.quality(&outcome.points).f(metric)
+            smoother.quality(&outcome.points).unwrap().f(metric)
         };
         let exact = f(Derivatives::Analytic, &backends[0]);
-        let gone = smoother.quality(&mesh.points).f(metric) - exact;
+        let gone = smoother.quality(&mesh.points).unwrap().f(metric) - exact;
         for backend in &backends {
             let near = f(Derivatives::FiniteDifference, backend);
             // The minimum is missed by half a width of the differences. That counts twice for the smooth
@@ -90,7 +90,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
             outcome.history.iter().map(|f| f.of(Metric::Rms).unwrap()).collect();
         let best = history.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(history.last() > Some(&(best * (1.0 + 1e-6))), "the last is not the best");
-        let f = smoother.quality(&outcome.points).f(Metric::Rms);
+        let f = smoother.quality(&outcome.points).unwrap().f(Metric::Rms);
         // What single precision makes of the history.
         assert!((f / best - 1.0).abs() < 2e-7, "{f} returned, {best} seen");
         assert_eq!(history[outcome.best_sweep as usize], best);

@@ -35,7 +35,7 @@ fn they_are_opened_in_double_precision() {
                 let after = with_points(&mesh, &outcome.points);
                 assert!(support::is_ccw(&after), "{label}");
                 let least = f.iter().copied().fold(f64::INFINITY, f64::min);
-                let found = smoother.quality(&outcome.points).f(base);
+                let found = smoother.quality(&outcome.points).unwrap().f(base);
                 assert!((found / least - 1.0).abs() < 1e-8, "{label}: {found} for {least}");
                 least
             });

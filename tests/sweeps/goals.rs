@@ -60,7 +60,7 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             let history = history(&outcome, base);
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
             assert_eq!(history[outcome.best_sweep as usize], best, "{label}");
-            let f = smoother.quality(&outcome.points).f(base);
+            let f = smoother.quality(&outcome.points).unwrap().f(base);
             // The device sums what single precision makes of each triangle.
             let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };
             let rounding = digits * (best - base.ideal_squared());

@@ -84,15 +84,15 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
     let mut mesh = even.clone();
     mesh.points.iter_mut().for_each(|p| *p = graded(*p));
     let smoother = Smoother::new(&mesh).unwrap();
-    let before = smoother.quality(&mesh.points).worst_movable_imr;
+    let before = smoother.quality(&mesh.points).unwrap().worst_movable_imr;
     assert!(before < 10.0, "{before}");
     for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
         for backend in backends() {
             let options = Options { scheme: metric.into(), max_sweeps: 100, ..Options::default() };
             let outcome = run(&smoother, &options, backend);
-            let after = smoother.quality(&outcome.points);
+            let after = smoother.quality(&outcome.points).unwrap();
             let label = format!("{metric} on the {}", name(backend));
-            let start = smoother.quality(&mesh.points).f(metric);
+            let start = smoother.quality(&mesh.points).unwrap().f(metric);
             assert!(after.f(metric) < start, "{label} does nothing");
             let worst = after.worst_movable_imr;
             assert!(worst <= before * (1.0 + 1e-4), "{label}: {worst} from {before}");
@@ -126,7 +126,7 @@ fn points_rounded_to_single_precision_are_feasible_once_certified() {
         outcome.points.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
     assert!(!support::is_ccw(&with_points(&mesh, &points)), "rounding alone inverts triangles");
     let rounded = points.clone();
-    let returned = smoother.certify(&mut points);
+    let returned = smoother.certify(&mut points).unwrap();
     assert!(support::is_ccw(&with_points(&mesh, &points)));
     let back = points.iter().zip(&rounded).filter(|(p, q)| p != q).count();
     assert_eq!(returned, back);
@@ -161,7 +161,7 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
     for backend in backends() {
         let outcome = run(&smoother, &Options::default(), backend);
         assert!(support::is_ccw(&with_points(&mesh, &outcome.points)), "on the {}", name(backend));
-        let f = |points: &[[f64; 2]]| smoother.quality(points).f(Metric::Imr);
+        let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(Metric::Imr);
         let (before, after) = (f(&mesh.points), f(&outcome.points));
         assert!(after <= before, "on the {}: {after} from {before}", name(backend));
     }

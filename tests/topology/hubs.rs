@@ -3,7 +3,8 @@
 
 use crate::boundary::assert_loops_are_the_boundary;
 use crate::support::{self, trig};
-use gpu_smooth::{Coloring, Mesh, Topology, prepare};
+use gpu_smooth::internal::{Coloring, prepare};
+use gpu_smooth::{Mesh, Topology};
 
 /// Triangles around the hub.
 const MANY: u32 = 200_000;
@@ -90,6 +91,7 @@ fn small_hubs_have_the_boundary_that_all_meshes_have() {
             assert_loops_are_the_boundary(&support::shuffled_windings(&mesh, 1));
             let topology = Topology::new(&mesh).unwrap();
             assert_eq!(topology.free()[0], is_closed);
+            assert_eq!(topology.bad_triangles(&mesh.points), Ok(vec![]));
         }
     }
 }

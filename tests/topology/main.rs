@@ -5,3 +5,5 @@ mod support;
 
 mod boundary;
 mod hubs;
+mod requests;
+mod windings;

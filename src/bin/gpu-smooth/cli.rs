@@ -165,7 +165,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
     pub(crate) edge_norm: EdgeNorm,
 
-    /// Write a report with the history of every sweep, as JSON
+    /// Write a report with the history of every sweep, as JSON; if inverted or flat triangles keep the mesh from
+    /// being smoothed, a list of them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
     /// What f the report's history holds: the first metric's, or every metric's

@@ -1,38 +1,99 @@
 //! What is wrong with a mesh, in the terms of its file.
 
-use gpu_smooth::{MeshError, MeshFile};
+use gpu_smooth::{BadTriangle, Location, MeshError, MeshFile, Place};
+use serde::Serialize;
 
-/// One line: file, place, problem, remedy.
+/// How many bad triangles the terminal is told of.
+pub(crate) const TOLD: usize = 10;
+
+/// An inverted or flat triangle in the terms of its file.
+#[derive(Serialize)]
+pub(crate) struct BadTriangleReport {
+    /// The file's number or tag for it.
+    triangle: u64,
+    file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    /// Of a binary file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    byte: Option<usize>,
+    /// The file's numbers or tags for them, in its order.
+    vertices: [u64; 3],
+    /// inverted or flat.
+    problem: &'static str,
+    #[serde(skip)]
+    place: Place,
+}
+
+impl BadTriangleReport {
+    /// The triangle, its vertices and what it is, without the place.
+    fn statement(&self) -> String {
+        let Self { triangle, vertices: [a, b, c], problem, .. } = self;
+        format!("triangle {triangle} (vertices {a}, {b}, {c}) is {problem}")
+    }
+}
+
+/// Finds bad triangles in their file, all of them at once.
+pub(crate) fn bad_triangles(file: &MeshFile, bad: &[BadTriangle]) -> Vec<BadTriangleReport> {
+    // As the file lists them; the library may have turned them over.
+    let corners = |bad: &BadTriangle| file.mesh().triangles[bad.triangle];
+    let places = file.triangle_places(bad.iter().map(|bad| bad.triangle));
+    let names = file.vertex_places(bad.iter().flat_map(corners));
+    let one = |(bad, place): (&BadTriangle, Place)| BadTriangleReport {
+        triangle: place.label,
+        file: place.path.display().to_string(),
+        line: match place.location {
+            Location::Line(line) => Some(line),
+            Location::Byte(_) => None,
+        },
+        byte: match place.location {
+            Location::Line(_) => None,
+            Location::Byte(byte) => Some(byte),
+        },
+        vertices: corners(bad).map(|v| names[&v].label),
+        problem: bad.problem(),
+        place,
+    };
+    bad.iter().zip(places.into_values()).map(one).collect()
+}
+
+/// A line each for the first of some bad triangles, and one for the rest of `count`; `all` says how to see them.
+pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> String {
+    let line = |bad: &BadTriangleReport| format!("\n  {}: {}", bad.place, bad.statement());
+    let mut text: String = first.iter().take(TOLD).map(line).collect();
+    if count > TOLD {
+        text.push_str(&format!("\n  and {} more; {all} lists all", count - TOLD));
+    }
+    text
+}
+
+/// File, place, problem and remedy, in one line unless several triangles are to be listed.
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
-        MeshError::Infeasible { count, first, flat, .. } => {
-            let place = file.triangle_place(first);
-            // As the file lists them; the error may have turned them over.
-            let [a, b, c] = file.mesh().triangles[first].map(name);
-            let bad = if flat { "flat" } else { "inverted" };
-            let which = match count {
-                1 => format!("triangle {} (vertices {a}, {b}, {c}) is {bad}", place.label),
-                _ => format!(
-                    "{count} triangles are inverted or flat, the first is triangle {} (vertices {a}, {b}, {c}), which is {bad}",
-                    place.label
+        MeshError::Infeasible { ref triangles } => {
+            let remedy = "Untangle the mesh first: smoothing keeps triangles from inverting, and cannot turn one back";
+            let count = triangles.len();
+            match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
+                [] => format!("{}: {error}. {remedy}", file.path().display()),
+                [one] if count == 1 => format!("{}: {}. {remedy}", one.place, one.statement()),
+                first => format!(
+                    "{}: {count} triangles are inverted or flat. {remedy}{}",
+                    first[0].file,
+                    list(first, count, "--report FILE")
                 ),
-            };
-            format!(
-                "{place}: {which}. Untangle the mesh first: smoothing keeps triangles from \
-                 inverting, and cannot turn one back"
-            )
+            }
         }
         MeshError::EdgeOfThree { edge, ref triangles } => {
-            let places: Vec<_> = triangles.iter().map(|&t| file.triangle_place(t)).collect();
-            let labels: Vec<_> = places.iter().map(|place| place.label.to_string()).collect();
+            let places = file.triangle_places(triangles.iter().copied());
+            let labels: Vec<_> = places.values().map(|place| place.label.to_string()).collect();
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
             format!(
                 "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). In a 2D mesh \
                  an edge has one or two: remove the others",
-                places.last().map(ToString::to_string).unwrap_or_default(),
+                places.values().last().map(ToString::to_string).unwrap_or_default(),
                 labels.len(),
                 labels.join(", ")
             )
@@ -52,10 +113,12 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())
         }
-        // The readers do not let these pass.
+        // The readers do not let these pass, and the command does not ask for them.
         MeshError::Empty
         | MeshError::TooLarge { .. }
         | MeshError::IndexOutOfRange { .. }
-        | MeshError::RepeatedVertex { .. } => format!("{}: {error}", file.path().display()),
+        | MeshError::RepeatedVertex { .. }
+        | MeshError::PointCount { .. }
+        | MeshError::BoundNotANumber => format!("{}: {error}", file.path().display()),
     }
 }

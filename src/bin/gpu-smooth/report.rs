@@ -6,6 +6,8 @@ use std::fmt::Write;
 use gpu_smooth::{Metric, Outcome, Quality, Scheme};
 use serde::Serialize;
 
+use crate::explain::BadTriangleReport;
+
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
 pub(crate) struct Report {
@@ -32,6 +34,15 @@ pub(crate) struct Report {
     pub(crate) after: QualityReport,
     pub(crate) history: Vec<SweepReport>,
     pub(crate) seconds: Seconds,
+}
+
+/// The report of a run that was refused because of inverted or flat triangles.
+#[derive(Serialize)]
+pub(crate) struct Refusal {
+    /// What the terminal was told, without the list.
+    pub(crate) error: String,
+    /// All of them, in the order of the file.
+    pub(crate) triangles: Vec<BadTriangleReport>,
 }
 
 #[derive(Serialize)]

@@ -5,16 +5,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother, Stop,
-    output,
+    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother,
+    Stop, output,
 };
+use serde::Serialize;
 
 use crate::cli::{History, OutputArgs, SmoothArgs};
 use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
 use crate::progress::Bar;
-use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds};
+use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
 use crate::tell;
 
 /// Reads a mesh.
@@ -45,15 +46,15 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
         let opening =
             opening.unwrap_or_else(|| scope.spawn(move || Ok(engine::choose(args, size))));
-        let smoother = Smoother::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
+        let smoother = Smoother::new(mesh).map_err(|error| refusal(args, &file, &error))?;
         let taken =
             opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
-        let before = smoother.quality(&mesh.points);
+        let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
         let (outcome, taken) = smooth(args, show, &smoother, taken)?;
         interrupt::has_result();
-        let after = smoother.quality(&outcome.points);
+        let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
 
         // Much may have changed during a long run.
@@ -86,7 +87,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             history: report::history(&outcome, &args.scheme, args.history == History::All),
             seconds,
         };
-        write_report(args, &report)?;
+        write_report(args, &report).map_err(|problem| format!("{problem}. The mesh was"))?;
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
@@ -160,12 +161,31 @@ fn check_report(args: &SmoothArgs) -> Result<(), String> {
     output::check(report).map_err(|error| format!("the report cannot be written: {error}"))
 }
 
-fn write_report(args: &SmoothArgs, report: &Report) -> Result<(), String> {
+/// Why a mesh is not smoothed. Where triangles are inverted or flat, the report that was asked for lists all of them.
+fn refusal(args: &SmoothArgs, file: &MeshFile, error: &MeshError) -> String {
+    let message = explain::mesh_error(file, error);
+    let MeshError::Infeasible { triangles } = error else { return message };
+    if args.report.is_none() {
+        return message;
+    }
+    let triangles = explain::bad_triangles(file, triangles);
+    let first_line = message.lines().next().unwrap_or_default().to_owned();
+    match write_report(args, &Refusal { error: first_line, triangles }) {
+        Ok(()) => message,
+        Err(problem) => format!("{message}\n  {problem}"),
+    }
+}
+
+fn told(error: impl std::error::Error) -> String {
+    error.to_string()
+}
+
+fn write_report(args: &SmoothArgs, report: &impl Serialize) -> Result<(), String> {
     let Some(path) = &args.report else { return Ok(()) };
-    let mut text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
+    let mut text = serde_json::to_string_pretty(report).map_err(told)?;
     text.push('\n');
     output::replace(path, text.as_bytes())
-        .map_err(|error| format!("the report was not written, but the mesh was: {error}"))
+        .map_err(|error| format!("the report was not written: {error}"))
 }
 
 fn engine_report(taken: &Taken) -> EngineReport {

@@ -61,8 +61,10 @@ pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
 pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
     let file = read(&args.mesh)?;
     let mesh = file.mesh();
-    let topology = Topology::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
-    let quality = Quality::of(&mesh.points, &topology);
+    let refused = |error| explain::mesh_error(&file, &error);
+    let topology = Topology::new(mesh).map_err(refused)?;
+    let quality = Quality::of(&mesh.points, &topology).map_err(refused)?;
+    let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
     let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
     let free = topology.free_count();
     if args.json {
@@ -71,6 +73,8 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
         value["vertices"] = vertices.into();
         value["triangles"] = triangles.into();
         value["free"] = free.into();
+        let bad = explain::bad_triangles(&file, &bad);
+        value["bad_triangles"] = serde_json::to_value(bad).map_err(|e| e.to_string())?;
         say(&format!("{value:#}"));
         return Ok(());
     }
@@ -92,7 +96,9 @@ pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
             "worst imr movable"
         ));
     }
-    say(&format!("{:<22}{:>12}", "inverted or flat", quality.inverted));
+    let first = explain::bad_triangles(&file, &bad[..bad.len().min(explain::TOLD)]);
+    let list = explain::list(&first, bad.len(), "--json");
+    say(&format!("{:<22}{:>12}{list}", "inverted or flat", quality.inverted));
     Ok(())
 }
 

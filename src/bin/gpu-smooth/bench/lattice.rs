@@ -52,7 +52,7 @@ mod tests {
         for vertices in [1, 100, 10_000] {
             let mesh = lattice(vertices);
             let topology = Topology::new(&mesh).unwrap();
-            assert_eq!(Quality::of(&mesh.points, &topology).inverted, 0);
+            assert_eq!(Quality::of(&mesh.points, &topology).unwrap().inverted, 0);
             assert!(topology.free_count() > 0);
             let count = mesh.points.len();
             assert!(count >= 9 && (count == vertices || vertices == 1), "{count}");
