@@ -5,7 +5,7 @@
 
 use crate::error::ReadError;
 use crate::file::text::Cursor;
-use rayon::prelude::*;
+use crate::parallel::map_parts;
 
 /// How many bytes of text one thread reads at a time.
 const CHUNK: usize = 1 << 17;
@@ -44,8 +44,8 @@ fn take_chunks<'a, T: Send>(
         if parts.is_empty() {
             break;
         }
-        let each = parts.par_iter_mut().zip(&mut buffers);
-        let damaged = each.map(|(part, rows)| {
+        let each = parts.iter_mut().zip(&mut buffers);
+        let damaged = map_parts(each, |_, (part, rows)| {
             rows.clear();
             while (rows.len() as u64) < left && part.next_row() {
                 match read(part) {
@@ -55,7 +55,6 @@ fn take_chunks<'a, T: Send>(
             }
             false
         });
-        let damaged: Vec<bool> = damaged.collect();
         for ((part, rows), damaged) in parts.iter().zip(&mut buffers).zip(damaged) {
             let found = rows.len();
             let mut taken = 0;

@@ -2,7 +2,7 @@
 
 use crate::file::binary::Order;
 use crate::file::text::{skip_blanks, token_end};
-use rayon::prelude::*;
+use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
 
@@ -108,7 +108,7 @@ fn write_blocks(
         let next = start..count.min(start + at_once);
         let (written, next) = rayon::join(
             || made.iter().try_for_each(|block| out.write_all(block)),
-            || next.into_par_iter().map(&make).collect(),
+            || map_parts(next, |_, block| make(block)),
         );
         written?;
         made = next;

@@ -1,12 +1,12 @@
 //! What hangs together in a mesh: consistent windings, the boundary, one-rings.
 
-use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::mesh::Mesh;
 use crate::parallel::counting_sort::Groups;
+use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::winding::{NONE, are_positive, neighbors, wind};
@@ -190,18 +190,19 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
 fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
     // Looking at all of a chunk goes without branches.
-    let any = |chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
-    let chunk = items.par_chunks(CHUNK).position_first(any)?;
+    let any = |_, chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
+    let chunk = map_parts(items.chunks(CHUNK), any).into_iter().position(|any| any)?;
     items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
 }
 
 /// Checks that coordinates are of a size to compute with. Vertices in no triangle may be anywhere.
 fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
-    let size = |(v, p): (usize, &[f64; 2])| match stars.of(v) {
+    let size = |v: usize| match stars.of(v) {
         [] => 0.0,
-        _ => p[0].abs().max(p[1].abs()),
+        _ => points[v][0].abs().max(points[v][1].abs()),
     };
-    let size = points.par_iter().enumerate().map(size).reduce(|| 0.0, f64::max);
+    let sizes = map_ranges(points.len(), 1 << 14, |range| range.map(size).fold(0.0, f64::max));
+    let size = sizes.into_iter().fold(0.0, f64::max);
     match size {
         1e-100..=1e100 => Ok(()),
         _ => Err(MeshError::OutOfRange { size }),

@@ -1,9 +1,9 @@
 //! Feasibility by exact predicates: no triangle inverted or flat, on the very values given.
 
-use rayon::prelude::*;
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
+use crate::parallel::map_ranges;
 
 /// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; not a
 /// finite number if a coordinate is none.
@@ -33,7 +33,7 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
         return Err(MeshError::TooLarge { vertices, triangles: triangles.len() });
     }
     let missing = |&v: &u32| v as usize >= vertices;
-    let bad = triangles.par_iter().position_first(|t| t.iter().any(missing));
+    let bad = triangles.iter().position(|t| t.iter().any(missing));
     if let Some(t) = bad
         && let Some(&vertex) = triangles[t].iter().find(|v| missing(v))
     {
@@ -44,8 +44,11 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
 
 /// As [`infeasible`], of triangles all of whose vertices are among the points.
 pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
-    let bad = |&t: &u32| !is_positive(points, &triangles[t as usize]);
-    (0..triangles.len() as u32).into_par_iter().filter(bad).collect()
+    let bad = |t: &usize| !is_positive(points, &triangles[*t]);
+    let found = map_ranges(triangles.len(), 1 << 12, |range| -> Vec<u32> {
+        range.filter(bad).map(|t| t as u32).collect()
+    });
+    found.concat()
 }
 
 /// As [`not_positive`], each with what is wrong with it.

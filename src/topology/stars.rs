@@ -1,8 +1,7 @@
 //! The triangles at each vertex, and whether they close a cycle around it.
 
-use rayon::prelude::*;
-
 use crate::parallel::counting_sort::Groups;
+use crate::parallel::map_parts;
 
 /// The triangles at each vertex, in ascending order.
 pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
@@ -30,31 +29,28 @@ pub(crate) fn others_at_edge<'a>(
 /// two triangles meet.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
-    let stars = stars.chunks_mut(CHUNK).into_par_iter();
-    stars
-        .zip(closed.par_chunks_mut(CHUNK))
-        .enumerate()
-        .map(|(chunk, ((bounds, stars), closed))| {
-            let mut edges = Vec::new();
-            let mut consistent = true;
-            for (i, closed) in closed.iter_mut().enumerate() {
-                let vertex = (chunk * CHUNK + i) as u32;
-                let star = (bounds[i] - bounds[0]) as usize..(bounds[i + 1] - bounds[0]) as usize;
-                let star = &mut stars[star];
-                outer_edges(triangles, star, vertex, &mut edges);
-                *closed = chain(&mut edges);
-                if *closed {
-                    for (t, edge) in star.iter_mut().zip(&edges) {
-                        *t = edge.triangle;
-                    }
-                } else {
-                    // Those of a cycle are all different.
-                    consistent &= are_different(&edges);
+    let parts = stars.chunks_mut(CHUNK).into_iter().zip(closed.chunks_mut(CHUNK));
+    let consistent = map_parts(parts, |chunk, ((bounds, stars), closed)| {
+        let mut edges = Vec::new();
+        let mut consistent = true;
+        for (i, closed) in closed.iter_mut().enumerate() {
+            let vertex = (chunk * CHUNK + i) as u32;
+            let star = (bounds[i] - bounds[0]) as usize..(bounds[i + 1] - bounds[0]) as usize;
+            let star = &mut stars[star];
+            outer_edges(triangles, star, vertex, &mut edges);
+            *closed = chain(&mut edges);
+            if *closed {
+                for (t, edge) in star.iter_mut().zip(&edges) {
+                    *t = edge.triangle;
                 }
+            } else {
+                // Those of a cycle are all different.
+                consistent &= are_different(&edges);
             }
-            consistent
-        })
-        .reduce(|| true, |a, b| a && b)
+        }
+        consistent
+    });
+    !consistent.contains(&false)
 }
 
 /// The edge of a triangle that does not touch one of its vertices.

@@ -1,9 +1,10 @@
 //! Windings made consistent across edges.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
 use crate::error::MeshError;
 use crate::parallel::counting_sort::Groups;
+use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::others_at_edge;
 
@@ -15,7 +16,8 @@ pub(crate) fn neighbors(
     triangles: &[[u32; 3]],
     stars: &Groups,
 ) -> Result<Vec<[u32; 3]>, MeshError> {
-    let across = |(t, corners): (usize, &[u32; 3])| {
+    let across = |t: usize| {
+        let corners = &triangles[t];
         let mut found = [NONE; 3];
         for i in 0..3 {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
@@ -32,7 +34,9 @@ pub(crate) fn neighbors(
         }
         Ok(found)
     };
-    triangles.par_iter().enumerate().map(across).collect()
+    let across = |range: Range<usize>| range.map(across).collect::<Result<Vec<_>, _>>();
+    let found = map_ranges(triangles.len(), 1 << 12, across).into_iter();
+    Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Whether a triangle's corners run from a to b somewhere.
@@ -97,5 +101,6 @@ pub(crate) fn wind(
 
 /// Whether every triangle is counter-clockwise.
 pub(crate) fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
-    triangles.par_iter().with_min_len(1 << 12).all(|t| predicates::is_positive(points, t))
+    let all_of = |_, chunk: &[[u32; 3]]| chunk.iter().all(|t| predicates::is_positive(points, t));
+    !map_parts(triangles.chunks(1 << 12), all_of).contains(&false)
 }
