@@ -10,8 +10,10 @@ struct Invariants {
     mean: f32,
 }
 
-// The value of a function of the invariants and its partial derivatives, named by what they are taken by.
+// The value of a function of the invariants and its partial derivatives, named by what they are taken by: by the
+// invariants times unit, one over an area, so that they have no dimension and nothing overflows.
 struct Slopes {
+    unit: f32,
     value: f32,
     excess: f32,
     area: f32,
@@ -35,11 +37,11 @@ fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
     let uv = distortion(t);
     // Moving the vertex changes u by (-1, w) and v by (-w, -1): the Hessian of the excess is 2/√3 times the
     // identity. The area is linear.
-    let e = vec2(-(uv.x + uv.y * TARGET_W), uv.x * TARGET_W - uv.y) * (0.5 / TARGET_W);
-    let d = vec2(t.a.y - t.b.y, t.b.x - t.a.x);
+    let e = vec2(-(uv.x + uv.y * TARGET_W), uv.x * TARGET_W - uv.y) * (0.5 / TARGET_W * slopes.unit);
+    let d = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * slopes.unit;
     let p = slopes.excess_excess * e + slopes.excess_area * d;
     let r = slopes.excess_area * e + slopes.area_area * d;
-    let own = slopes.excess * (2.0 * TARGET_W);
+    let own = slopes.excess * (2.0 * TARGET_W) * slopes.unit;
     return Derivatives(
         slopes.value,
         slopes.excess * e + slopes.area * d,

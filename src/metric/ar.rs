@@ -30,17 +30,16 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let inverse = t.area.constant(1.0) / t.area;
-    let q = (t.excess + t.area) * inverse;
-    let excess = q * 2.0 * inverse;
-    let twice = inverse * inverse * 2.0;
+    let unit = t.area.constant(1.0) / t.area;
+    let q = (t.excess + t.area) * unit;
     let less_one = q - 1.0;
     Slopes {
+        unit,
         value: less_one * (q + 1.0),
-        excess,
-        area: less_one * -1.0 * excess,
-        excess_excess: twice,
-        excess_area: (q * 2.0 - 1.0) * -1.0 * twice,
-        area_area: less_one * (q * 3.0 - 1.0) * twice,
+        excess: q * 2.0,
+        area: less_one * q * -2.0,
+        excess_excess: q.constant(2.0),
+        excess_area: (q * 2.0 - 1.0) * -2.0,
+        area_area: less_one * (q * 3.0 - 1.0) * 2.0,
     }
 }

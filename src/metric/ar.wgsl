@@ -7,16 +7,15 @@ fn ar_value(t: Invariants) -> f32 {
 }
 
 fn ar_slopes(t: Invariants) -> Slopes {
-    let inverse = 1.0 / t.area;
-    let q = (t.excess + t.area) * inverse;
-    let excess = 2.0 * q * inverse;
-    let twice = 2.0 * inverse * inverse;
+    let unit = 1.0 / t.area;
+    let q = (t.excess + t.area) * unit;
     return Slopes(
+        unit,
         (q - 1.0) * (q + 1.0),
-        excess,
-        (1.0 - q) * excess,
-        twice,
-        (1.0 - 2.0 * q) * twice,
-        (q - 1.0) * (3.0 * q - 1.0) * twice,
+        2.0 * q,
+        2.0 * (1.0 - q) * q,
+        2.0,
+        2.0 * (1.0 - 2.0 * q),
+        2.0 * (q - 1.0) * (3.0 * q - 1.0),
     );
 }

@@ -23,21 +23,21 @@ pub(super) const PROPERTIES: Properties = Properties {
 
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    let q = t.area * (1.0 / t.mean) - 1.0;
+    let q = (t.area - t.mean) * (1.0 / t.mean);
     q * q
 }
 
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let inverse = 1.0 / t.mean;
-    let q = t.area * inverse - 1.0;
+    let q = (t.area - t.mean) * (1.0 / t.mean);
     let zero = q.constant(0.0);
     Slopes {
+        unit: q.constant(1.0 / t.mean),
         value: q * q,
         excess: zero,
-        area: q * (2.0 * inverse),
+        area: q * 2.0,
         excess_excess: zero,
         excess_area: zero,
-        area_area: q.constant(2.0 * inverse * inverse),
+        area_area: q.constant(2.0),
     }
 }

@@ -64,8 +64,9 @@ impl<T: Real> Corner<T> {
         let [u, v] = self.distortion();
         // Moving the vertex changes u by (-1, w) and v by (-w, -1), w = 1/√3: the Hessian of the excess is
         // 2/√3 times the identity. The area is linear.
-        let (ex, ey) = ((u + v * W) * (-0.5 / W), (u * W - v) * (0.5 / W));
-        let (dx, dy) = (self.a[1] - self.b[1], self.b[0] - self.a[0]);
+        let unit = slopes.unit;
+        let (ex, ey) = ((u + v * W) * (-0.5 / W) * unit, (u * W - v) * (0.5 / W) * unit);
+        let (dx, dy) = ((self.a[1] - self.b[1]) * unit, (self.b[0] - self.a[0]) * unit);
         // The gradients of ∂f/∂excess and ∂f/∂area.
         let (px, py) = (
             slopes.excess_excess * ex + slopes.excess_area * dx,
@@ -75,7 +76,7 @@ impl<T: Real> Corner<T> {
             slopes.excess_area * ex + slopes.area_area * dx,
             slopes.excess_area * ey + slopes.area_area * dy,
         );
-        let own = slopes.excess * (2.0 * W);
+        let own = slopes.excess * (2.0 * W) * unit;
         Dual {
             value: slopes.value,
             gradient: [
@@ -113,19 +114,22 @@ pub struct Invariants<T> {
     pub mean: f64,
 }
 
-/// The value of a function of the [`Invariants`] and its partial derivatives, named by what they are taken by.
+/// The value of a function of the [`Invariants`] and its partial derivatives, named by what they are taken by. They are
+/// by the invariants times `unit`, so that they have no dimension and neither overflow nor vanish in single precision.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<T> {
+    /// One over an area, of the triangle or of the mean.
+    pub unit: T,
     /// The function itself.
     pub value: T,
-    /// ∂/∂excess.
+    /// The derivative by unit · excess.
     pub excess: T,
-    /// ∂/∂area.
+    /// The derivative by unit · area.
     pub area: T,
-    /// ∂²/∂excess².
+    /// The second derivative by unit · excess.
     pub excess_excess: T,
-    /// ∂²/∂excess ∂area.
+    /// The mixed second derivative.
     pub excess_area: T,
-    /// ∂²/∂area².
+    /// The second derivative by unit · area.
     pub area_area: T,
 }

@@ -30,16 +30,16 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let inverse = t.area.constant(1.0) / t.area;
-    let m = t.excess * inverse;
-    let excess = (m + 1.0) * 2.0 * inverse;
-    let twice = inverse * inverse * 2.0;
+    let unit = t.area.constant(1.0) / t.area;
+    let m = t.excess * unit;
+    let excess = (m + 1.0) * 2.0;
     Slopes {
+        unit,
         value: m * (m + 2.0),
         excess,
         area: excess * m * -1.0,
-        excess_excess: twice,
-        excess_area: (m * 2.0 + 1.0) * -1.0 * twice,
-        area_area: m * (m * 3.0 + 2.0) * twice,
+        excess_excess: m.constant(2.0),
+        excess_area: (m * 2.0 + 1.0) * -2.0,
+        area_area: m * (m * 3.0 + 2.0) * 2.0,
     }
 }

@@ -6,16 +6,16 @@ fn imr_value(t: Invariants) -> f32 {
 }
 
 fn imr_slopes(t: Invariants) -> Slopes {
-    let inverse = 1.0 / t.area;
-    let m = t.excess * inverse;
-    let excess = 2.0 * (m + 1.0) * inverse;
-    let twice = 2.0 * inverse * inverse;
+    let unit = 1.0 / t.area;
+    let m = t.excess * unit;
+    let excess = 2.0 * (m + 1.0);
     return Slopes(
+        unit,
         m * (m + 2.0),
         excess,
         -m * excess,
-        twice,
-        -(2.0 * m + 1.0) * twice,
-        m * (3.0 * m + 2.0) * twice,
+        2.0,
+        -2.0 * (2.0 * m + 1.0),
+        2.0 * m * (3.0 * m + 2.0),
     );
 }

@@ -21,20 +21,20 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("rms.wgsl"),
 };
 
-/// q² - 1, with q² = (excess + area) / mean.
+/// q² - 1, with q² = (excess + area) / mean. The area less the mean is exact where they are near each other.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    (t.excess + t.area) * (1.0 / t.mean) - 1.0
+    (t.excess + (t.area - t.mean)) * (1.0 / t.mean)
 }
 
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let zero = t.area.constant(0.0);
-    let slope = t.area.constant(1.0 / t.mean);
+    let (zero, one) = (t.area.constant(0.0), t.area.constant(1.0));
     Slopes {
+        unit: t.area.constant(1.0 / t.mean),
         value: value(t),
-        excess: slope,
-        area: slope,
+        excess: one,
+        area: one,
         excess_excess: zero,
         excess_area: zero,
         area_area: zero,

@@ -2,9 +2,9 @@
 // Quadratic: its Newton step is the mean of the ring.
 
 fn rms_value(t: Invariants) -> f32 {
-    return (t.excess + t.area) / t.mean - 1.0;
+    return (t.excess + (t.area - t.mean)) / t.mean;
 }
 
 fn rms_slopes(t: Invariants) -> Slopes {
-    return Slopes(rms_value(t), 1.0 / t.mean, 1.0 / t.mean, 0.0, 0.0, 0.0);
+    return Slopes(1.0 / t.mean, rms_value(t), 1.0, 1.0, 0.0, 0.0, 0.0);
 }

@@ -82,7 +82,7 @@ mod tests {
         let error = "edge+foo".parse::<Scheme>().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no metric is called 'foo'; there are edge, area, rms, imr, ar"
+            "no metric is called 'foo'; there are edge, area, rms, imr, ar, shape-size"
         );
         assert!("".parse::<Scheme>().is_err());
         assert!("imr+".parse::<Scheme>().is_err());

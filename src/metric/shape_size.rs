@@ -25,24 +25,26 @@ pub(super) const PROPERTIES: Properties = Properties {
 /// 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ, which does not cancel.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    let (e, tau) = (t.excess * (1.0 / t.mean), t.area * (1.0 / t.mean));
-    let (inverse, off) = (tau.constant(1.0) / tau, tau - 1.0);
+    let scale = 1.0 / t.mean;
+    let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
+    let inverse = tau.constant(1.0) / tau;
     (e * (inverse * inverse + 1.0) + off * off * inverse) * 2.0
 }
 
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let scale = 1.0 / t.mean;
-    let (e, tau) = (t.excess * scale, t.area * scale);
-    let (inverse, off) = (tau.constant(1.0) / tau, tau - 1.0);
+    let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
+    let inverse = tau.constant(1.0) / tau;
     let square = inverse * inverse;
     let cube = square * inverse;
     Slopes {
+        unit: e.constant(scale),
         value: (e * (square + 1.0) + off * off * inverse) * 2.0,
-        excess: (square + 1.0) * (2.0 * scale),
-        area: (off * (tau + 1.0) * square - e * cube * 2.0) * (2.0 * scale),
+        excess: (square + 1.0) * 2.0,
+        area: (off * (tau + 1.0) * square - e * cube * 2.0) * 2.0,
         excess_excess: e.constant(0.0),
-        excess_area: cube * (-4.0 * scale * scale),
-        area_area: (e * inverse * 3.0 + 1.0) * cube * (4.0 * scale * scale),
+        excess_area: cube * -4.0,
+        area_area: (e * inverse * 3.0 + 1.0) * cube * 4.0,
     }
 }

@@ -3,24 +3,26 @@
 
 fn shape_size_value(t: Invariants) -> f32 {
     let e = t.excess / t.mean;
-    let tau = t.area / t.mean;
-    let inverse = 1.0 / tau;
-    return 2.0 * (e * (inverse * inverse + 1.0) + (tau - 1.0) * (tau - 1.0) * inverse);
+    let off = (t.area - t.mean) / t.mean;
+    let inverse = t.mean / t.area;
+    return 2.0 * (e * (inverse * inverse + 1.0) + off * off * inverse);
 }
 
 fn shape_size_slopes(t: Invariants) -> Slopes {
     let scale = 1.0 / t.mean;
     let e = t.excess * scale;
     let tau = t.area * scale;
-    let inverse = 1.0 / tau;
+    let off = (t.area - t.mean) * scale;
+    let inverse = t.mean / t.area;
     let square = inverse * inverse;
     let cube = square * inverse;
     return Slopes(
-        2.0 * (e * (square + 1.0) + (tau - 1.0) * (tau - 1.0) * inverse),
-        2.0 * scale * (square + 1.0),
-        2.0 * scale * ((tau - 1.0) * (tau + 1.0) * square - 2.0 * e * cube),
+        scale,
+        2.0 * (e * (square + 1.0) + off * off * inverse),
+        2.0 * (square + 1.0),
+        2.0 * (off * (tau + 1.0) * square - 2.0 * e * cube),
         0.0,
-        -4.0 * scale * scale * cube,
-        4.0 * scale * scale * cube * (3.0 * e * inverse + 1.0),
+        -4.0 * cube,
+        4.0 * cube * (3.0 * e * inverse + 1.0),
     );
 }

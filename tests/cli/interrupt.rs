@@ -124,6 +124,8 @@ fn a_goal_not_reached_is_told_when_interrupted() {
     let plate = plate_path().to_str().unwrap();
     let args = [plate, "out", "-v", "--engine", "cpu", "--method", "paper", "--desired", "1"];
     let args = [&args[..], &["--fraction", "1", "--scheme", "edge+imr"]].concat();
+    // Sweeps so slow that the run does not stall before the signal.
+    let args = [&args[..], &["--derivatives", "finite-difference", "--inner", "30"]].concat();
     let mut run = Started::new(&folder, &[&args[..], &["--max-sweeps", "100000000"]].concat());
     run.line();
     run.signal("-INT");

@@ -1,7 +1,7 @@
 //! What is printed, and what is not.
 
 use super::{Folder, assert_holds, finish, number, plate_path, small, support};
-use gpu_smooth::Metric;
+use gpu_smooth::{MeshFile, Metric};
 use std::fs;
 use std::process::Stdio;
 
@@ -110,13 +110,18 @@ fn a_worst_element_that_got_worse_is_told_with_what_helps() {
     let plate = plate_path().to_str().unwrap();
     let out = folder.run([plate, "good", "--engine", "cpu"]).clean().out;
     assert!(!out.contains(" rose "), "{out}");
-    let line = "good out --engine cpu --scheme area --max-sweeps 30 --report r.json";
+    // A graded mesh, whose shapes give way to even sizes.
+    let file = MeshFile::read(&folder.path("good.node")).unwrap();
+    let graded = |&[x, y]: &[f64; 2]| [x * x.hypot(y), y * x.hypot(y)];
+    let points: Vec<_> = file.mesh().points.iter().map(graded).collect();
+    file.write(&folder.path("graded"), &points).unwrap();
+    let line = "graded out --engine cpu --scheme shape-size --max-sweeps 30 --report r.json";
     let out = folder.line(line).clean().out;
     let report = folder.json("r.json");
     let [before, after] = ["before", "after"].map(|key| number(&report[key]["worst_movable_imr"]));
     assert!(after > 1.01 * before);
     let told = format!("\nworst imr rose from {before:.4}");
-    assert_holds(&out, &[&told[..told.len() - 1], " to ", "--scheme imr or area+imr"]);
+    assert_holds(&out, &[&told[..told.len() - 1], " to ", "--scheme imr or shape-size+imr"]);
 }
 
 #[test]

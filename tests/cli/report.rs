@@ -16,7 +16,7 @@ fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_else(|| panic!("{value} is not a text"))
 }
 
-const METRICS: [&str; 5] = ["edge", "area", "rms", "imr", "ar"];
+const METRICS: [&str; 6] = ["edge", "area", "rms", "imr", "ar", "shape-size"];
 
 #[test]
 fn report_holds_the_documented_keys() {
@@ -33,6 +33,7 @@ fn report_holds_the_documented_keys() {
                 "sweeps",
                 "corrections",
                 "opening_sweeps",
+                "remaining",
                 "levels_left_out",
                 "best_sweep",
                 "stop",

@@ -6,7 +6,7 @@ use gpu_smooth::{
     Backend, Derivatives, Mesh, Method, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
 };
 
-use crate::app::{App, bad_plate};
+use crate::app::{App, bad_plate, plate};
 use crate::support::{lattice, perturb_random};
 
 fn options(scheme: &str) -> Options {
@@ -27,6 +27,14 @@ fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     (outcome.points, outcome.best_sweep)
 }
 
+/// Perturbed until a triangle is beyond the shape guard of every metric: a run takes the worst triangle of its mesh for
+/// its guard where that is less, which an application's mesh, never at rest, does not.
+fn flattened(mesh: &Mesh) -> Mesh {
+    let mesh = perturb_random(mesh, 1.0, 1);
+    assert!(crate::support::worst_imr(&mesh) > 30.0);
+    mesh
+}
+
 /// Bit by bit where a vertex has moved, and to the device's 48 bits where it has not.
 fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]]) {
     let mut moved = 0;
@@ -43,7 +51,7 @@ fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]
 
 #[test]
 fn encoded_sweeps_are_those_of_a_run() {
-    let mesh = bad_plate(800);
+    let mesh = flattened(&plate(800));
     let cases = [
         ("over-relaxed after four", options("imr"), 13),
         ("over-relaxed after six", Options { plain_sweeps: 6, ..options("imr") }, 9),
@@ -86,7 +94,7 @@ fn encoded_sweeps_are_those_of_a_run() {
 
 #[test]
 fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
-    let (plate, other) = (bad_plate(700), perturb_random(&lattice(20, 17), 0.7, 3));
+    let (plate, other) = (bad_plate(700), flattened(&lattice(20, 17)));
     let (imr, edge) = (options("imr"), options("edge+imr"));
     let (first_expected, _) = run(&plate, &imr, 9);
     let (second_expected, best) = run(&other, &edge, 6);

@@ -67,7 +67,8 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             // metrics, once where EDGE has a kink; AREA has 0 for its ideal, so only the way gone is a measure.
             let (missed, bound) = match metric {
                 Metric::Edge => (near / exact - 1.0, 5e-3),
-                Metric::Area => ((near - exact) / gone, 2e-2),
+                // Where the shape guard stops runs of AREA, the way they came decides: either may end lower.
+                Metric::Area => (((near - exact) / gone).abs(), 2e-2),
                 _ => (near / exact - 1.0, 1e-3),
             };
             assert!((0.0..bound).contains(&missed), "{metric}: {near} for {exact}");

@@ -59,7 +59,9 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");
             let history = history(&outcome, base);
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
-            assert_eq!(history[outcome.best_sweep as usize], best, "{label}");
+            // Of a scheme of one metric the last state is the best, but for a device's rounding.
+            let returned = history[outcome.best_sweep as usize];
+            assert!(returned <= best * (1.0 + 1e-9), "{label}: {returned} for {best}");
             let f = smoother.quality(&outcome.points).unwrap().f(base);
             // The device sums what single precision makes of each triangle.
             let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };

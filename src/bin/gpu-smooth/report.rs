@@ -192,7 +192,10 @@ impl Report {
         if after <= 1.01 * before {
             return None;
         }
-        let shape = self.scheme.split('+').any(|metric| matches!(metric, "imr" | "ar"));
+        let judges_shape = |metric: &str| {
+            metric.parse::<Metric>().is_ok_and(|metric| metric.properties().is_inverse_mean_ratio)
+        };
+        let shape = self.scheme.split('+').any(judges_shape);
         let base = self.scheme.split('+').next().unwrap_or_default();
         let remedy = match shape {
             true => "f is a mean, which may fall as one element gets worse".to_owned(),

@@ -22,7 +22,7 @@ use crate::metric::Metric;
 ///
 /// ```wgsl
 /// struct ObjectiveValues {
-///     f: array<f32, 5>,
+///     f: array<f32, 6>,
 ///     inverted: u32,
 ///     worst_imr: f32,
 /// }

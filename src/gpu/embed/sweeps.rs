@@ -24,7 +24,7 @@ pub struct Sweeps {
 impl Sweeps {
     /// Binds the scheme, relaxation and derivatives of `options` to a mesh. What `options` say on
     /// stopping has no effect here, nor does [`Options::method`]: a correction from coarser levels takes a line search, which
-    /// the host would have to wait for.
+    /// the host would have to wait for. The shape guard is that of the metric alone, whatever the mesh is like now.
     ///
     /// Compiles the kernels it is the first to need; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
     ///
