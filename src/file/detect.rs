@@ -67,7 +67,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     by_rows(source)
 }
 
-/// Tells apart formats that are but rows of numbers, by how many numbers the first rows have.
+/// Tells formats apart that consist only of rows of numbers, by how many numbers the first rows have.
 fn by_rows(source: &Source) -> Result<Content, ReadError> {
     let [first, second, third] = first_rows(source);
     let numbers =
