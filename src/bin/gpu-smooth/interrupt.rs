@@ -43,7 +43,7 @@ pub(crate) fn watch(quiet: bool) {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// Leaves it to the run to end, or ends the process.
+/// Asks the run to end at the first signal while there is a result, else ends the process.
 fn received(signal: i32, quiet: bool) {
     let has_result = HAS_RESULT.load(Ordering::SeqCst);
     let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);

@@ -18,7 +18,7 @@ const INTERVAL: Duration = Duration::from_secs(1);
 /// the user wants every sweep.
 pub(crate) struct Bar {
     started: Instant,
-    /// And when it began.
+    /// The phase of the run, and when it began.
     phase: Option<(Phase, Instant)>,
     bar: ProgressBar,
     /// When the next line is due, if there are lines.
