@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::store::{RunRecord, Store};
 use super::study::{Batch, Case, Place, Setting, Size, Start};
 
-/// What runs cost alike.
+/// What runs that cost alike have in common.
 type Kind = (Setting, Size, Start, Place, String);
 
 /// Counts runs and their times.
