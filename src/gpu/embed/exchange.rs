@@ -142,7 +142,7 @@ impl BoundVertices {
     ///
     /// A vertex whose floats are those of the last export has not been moved by the application and
     /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
-    /// where it was. Triangles may arrive inverted; sweeps then go on around them.
+    /// where it was. The application may have inverted triangles; sweeps then invert no others and improve the rest.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }
