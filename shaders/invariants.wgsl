@@ -2,8 +2,8 @@
 
 const TARGET_W: f32 = 0.57735026919; // 1/√3
 
-// The same as the Rust struct Invariants (src/metric/corner.rs). The excess is √3/6 times the sum of the squared lengths,
-// less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean area.
+// The same as the Rust struct Invariants (src/metric/corner.rs). The excess is √3/6 times the sum of the squared
+// lengths, less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean area.
 struct Invariants {
     excess: f32,
     area: f32,

@@ -111,8 +111,8 @@ impl Smoothing {
     pub(crate) fn set_points(&mut self, points: Vec<[f64; 2]>) {
         self.points = points;
         self.moved = true;
-        // All of them: those that were not moved have the floats of the last export, and the import
-        // leaves them alone.
+        // All vertices are written: those that were not moved have the floats of the last export, and the import leaves
+        // them alone.
         let bytes = floats(&self.points);
         self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&bytes));
     }

@@ -236,7 +236,7 @@ fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     plan
 }
 
-/// Both distributions of a mesh.
+/// The distributions of the mean ratio and of the edge ratio over a mesh.
 fn distribution(
     case: &Case,
     mesh: &Mesh,

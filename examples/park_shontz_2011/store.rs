@@ -136,7 +136,7 @@ impl Store {
         }
         let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
         fs::create_dir_all(folder.join("data")).map_err(failed)?;
-        // Again as a whole, without the line that was cut off.
+        // The file is written anew, without the line that was cut off.
         let mut text = String::new();
         for record in &records {
             text += &line(record)?;

@@ -76,7 +76,7 @@ pub(crate) const SCHEMES: [&str; 13] = [
     "ar",
 ];
 
-/// The same runs on several meshes, with every scheme.
+/// Runs with the same settings on several meshes, by every scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Batch {
     pub(crate) setting: Setting,

@@ -145,7 +145,8 @@ fn first_rows(source: &Source) -> [Vec<&[u8]>; 3] {
     })
 }
 
-/// For a `.node` or `.ele` under another ending: the other file of the mesh if it is there, and where its `.poly` would be.
+/// For a `.node` or `.ele` under another ending: the other file of the mesh if it exists, and where its `.poly` would
+/// be.
 fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
     [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
         let other = appended(stem, &format!(".{ending}"));

@@ -175,7 +175,7 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
         .flat_map(|edge| edge.vertices().map(|v| v.fix()));
     let fixed = lone.into_iter().chain(on_lines).map(|v| v.index() as u32).collect();
     let mesh = compacted(Mesh { points, triangles, fixed });
-    // Also that no loop was lost: the triangles fill what the loops enclose.
+    // The triangles fill what the loops enclose, so no loop was lost.
     let fills = (area(&mesh) / outline.area() - 1.0).abs() < 1e-9;
     if is_ccw(&mesh) && is_valid(&mesh) && fills {
         Ok(Some(mesh))

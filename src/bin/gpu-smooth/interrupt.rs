@@ -1,7 +1,7 @@
 //! Ctrl-C, and what else asks a run to end: SIGINT and SIGTERM.
 //!
-//! Until there is a smoothed state, and at the second signal, the process ends at once and leaves no half-written file. In
-//! between, a signal ends the run at the next sweep, and the best mesh so far is written.
+//! Before there is a smoothed state, a signal ends the process at once. After that, the first signal ends the run at the
+//! next sweep, and the best mesh so far is written; a second one ends the process at once. No half-written file is left.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};

@@ -14,8 +14,8 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Time between lines where there is no bar.
 const INTERVAL: Duration = Duration::from_secs(1);
 
-/// Shows sweeps, f and speed on standard error if the run takes a while: as a bar if that is a terminal, else as lines where
-/// the user wants every sweep.
+/// Shows sweeps, f and speed on standard error if the run takes a while: as a bar if that is a terminal, else as lines
+/// where the user wants every sweep.
 pub(crate) struct Bar {
     started: Instant,
     /// The phase of the run, and when it began.

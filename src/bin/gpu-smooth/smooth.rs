@@ -87,7 +87,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             history: report::history(&outcome, &args.scheme, args.history == History::All),
             seconds,
         };
-        write_report(args, &report).map_err(|problem| format!("{problem}. The mesh was"))?;
+        write_report(args, &report)
+            .map_err(|problem| format!("{problem}. The mesh was written"))?;
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");

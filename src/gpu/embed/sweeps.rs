@@ -26,8 +26,8 @@ impl Sweeps {
     ///
     /// What `options` say on stopping has no effect here, nor does [`Options::method`]: a correction from coarser levels
     /// takes a line search, which the host would have to wait for. Without corrections a large mesh converges in
-    /// hundreds of sweeps instead of a dozen. Metrics without a barrier (RMS, EDGE, AREA) leave no triangle with an inverse
-    /// mean ratio above 30 unless its patch had a worse one.
+    /// hundreds of sweeps instead of a dozen. Metrics without a barrier (RMS, EDGE, AREA) leave no triangle with an
+    /// inverse mean ratio above 30 unless its patch had a worse one.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
     ///

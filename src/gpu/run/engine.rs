@@ -33,8 +33,9 @@ pub(crate) struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order) and makes the pipelines of
-    /// `steps`, which are all that a run by the plan may take. The device ends [`Engine::sweeps`] by the plan's stop rule.
+    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order) and makes the pipelines
+    /// of `steps`, which are all that a run by the plan may take. The device ends [`Engine::sweeps`] by the plan's stop
+    /// rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or what the device refuses.
