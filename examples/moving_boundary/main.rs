@@ -75,7 +75,7 @@ pub(crate) fn simulate(
     let topology = Topology::new(&mesh)?;
     let hole = hole(&topology, &mesh.points);
 
-    // `Gpu::open` makes a device for whoever has none; examples/embed brings its own.
+    // `Gpu::open` makes a device for a program that has none; examples/embed brings its own.
     let gpu = Gpu::open(None)?;
     let (device, queue) = (gpu.device(), gpu.queue());
     let positions: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();

@@ -98,7 +98,7 @@ pub fn check(path: &Path) -> Result<(), WriteError> {
     Temporary::create(directory).map(drop).map_err(|source| refused(directory, source))
 }
 
-/// Whether two paths lead to one file, be it by another spelling, a symbolic link or a hard link. The file need not exist
+/// Whether two paths lead to one file, also by another spelling, a symbolic link or a hard link. The file need not exist
 /// yet. Hard links are recognized on Unix only.
 pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)

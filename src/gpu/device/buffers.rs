@@ -53,7 +53,7 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
         write_by_pieces(gpu, &buffer, bytes);
         return buffer;
     }
-    // A device that is lost or out of memory maps nothing, which the error scope reports. wgpu's own
+    // A device that is lost or out of memory maps nothing. The error scope or a later call reports that, where wgpu's own
     // `create_buffer_init` would panic.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.slice(..bytes.len()).copy_from_slice(bytes);
