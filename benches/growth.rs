@@ -19,7 +19,7 @@ const SIZE: (u32, u32) = (720, 400);
 const COLORS: [RGBColor; 4] =
     [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(90, 90, 90), RGBColor(230, 159, 0)];
 
-/// Vertices, and the nanoseconds a sweep takes for each free one.
+/// Points of a curve: the number of vertices, and the nanoseconds that a sweep takes for each free one.
 type Curve = Vec<(f64, f64)>;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -23,7 +23,7 @@ pub(crate) fn irregular(side: usize, seed: u64) -> Mesh {
     perturb_random(&mesh, 0.8, seed)
 }
 
-/// The same, numbered as badly as can be.
+/// The mesh of [`irregular`] with vertices and triangles numbered at random, the worst order for caches.
 pub(crate) fn mixed(side: usize, seed: u64) -> Mesh {
     renumbered(&irregular(side, seed), seed).0
 }

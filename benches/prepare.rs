@@ -101,7 +101,7 @@ fn certificate(bencher: Bencher, case: Case) {
         .bench_local(|| certify(&topology, &before, &mut points).unwrap());
 }
 
-/// All of it that comes before the first sweep.
+/// All phases before the first sweep.
 #[divan::bench(args = cases(), max_time = 2, sample_size = 1, sample_count = 10)]
 fn smoother(bencher: Bencher, case: Case) {
     case.bench(bencher, || Smoother::new(case.mesh()).unwrap());

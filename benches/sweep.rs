@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// Columns and rows of the lattices: ten thousand, 57 thousand and a million vertices.
+/// Cells along a side of the lattices: ten thousand, 57 thousand and a million vertices.
 const SIDES: [usize; 3] = [99, 238, 999];
 
 fn problem(size: usize) -> &'static Problem {
@@ -81,7 +81,7 @@ impl Case {
     }
 }
 
-/// One sweep with the objective after it, over-relaxed, from the sixth on.
+/// One over-relaxed sweep with the objective after it, from the sixth sweep on.
 #[divan::bench(args = cases(&[false, true]), max_time = 2, sample_size = 1)]
 fn sweep(bencher: Bencher, case: &Case) {
     let Some(mut engine) = case.engine() else { return };
@@ -91,7 +91,7 @@ fn sweep(bencher: Bencher, case: &Case) {
         .bench_local(|| engine.advance(1).unwrap());
 }
 
-/// The objective alone, in triangles.
+/// The objective alone, counted in triangles.
 #[divan::bench(args = cases(&[false]), max_time = 0.5, sample_size = 1)]
 fn objective(bencher: Bencher, case: &Case) {
     bencher

@@ -56,7 +56,7 @@ fn main() {
 
 struct Measured {
     seconds: f64,
-    /// The most memory it held, in MB; from Linux alone.
+    /// The most memory that the process held, in MB; known on Linux only.
     peak: f64,
 }
 
@@ -67,7 +67,7 @@ fn measure(command: &mut Command) -> Option<Measured> {
     for repeat in 0..=REPEATS {
         let start = Instant::now();
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
-        // Once with an eye on the memory, without the clock.
+        // One more run, untimed, to watch the memory.
         while repeat == 0 && child.try_wait().unwrap().is_none() {
             peak = peak.max(resident(child.id()).unwrap_or(0.0));
             thread::sleep(Duration::from_millis(1));

@@ -1,5 +1,5 @@
-// Tries the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and the test of areas
-// on areas that are no numbers. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
+// Runs the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and the test of areas
+// on areas that are not numbers. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
 
 // Two positions as pairs of floats, xy + zw.
 struct ArithmeticInput {
@@ -11,8 +11,9 @@ struct ArithmeticResult {
     two_sum: vec2<f32>,
     pair_add: vec2<f32>,
     edge: vec2<f32>,
-    // pair_difference of x, and whether the triangle at the origin with corners a and b has a positive area.
+    // pair_difference of x.
     difference: f32,
+    // 1 if the triangle of the origin, a and b has a positive area, else 0.
     is_positive: f32,
     advanced: vec4<f32>,
 }

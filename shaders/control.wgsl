@@ -1,4 +1,4 @@
-// How far a run is: written by finish.wgsl alone.
+// The state of a run, written by finish.wgsl alone.
 
 struct Control {
     // Not zero when the run has ended: every kernel then leaves everything as it is.
@@ -11,7 +11,7 @@ struct Control {
     best_sum: vec2<f32>,
     padding: vec2<u32>,
     // Sums by evaluation (modulo HISTORY) and slot, each a pair of floats. A slot is a metric, or
-    // INVERTED: the number of triangles that are inverted or flat in single precision, or
-    // WORST: the largest imr² - 1, no sum.
+    // INVERTED, the number of triangles that are inverted or flat in single precision, or
+    // WORST, the largest imr² - 1, which is not a sum.
     history: array<vec2<f32>, HISTORY_LENGTH>,
 }

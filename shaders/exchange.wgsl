@@ -4,10 +4,11 @@ struct Exchange {
     // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
     zero: u32,
     vertices: u32,
-    // In floats, from the start of the binding.
+    // Floats before the first vertex, from the start of the binding.
     offset: u32,
+    // Floats from one vertex to the next.
     stride: u32,
-    // The normalized position is (x - center) * scale, the center a pair of floats, xy + zw.
+    // The normalized position is (x - center) * scale. The center is held in pairs of floats, xy + zw.
     center: vec4<f32>,
     scale: f32,
     inverse_scale: f32,

@@ -1,5 +1,5 @@
 // Ends a sweep: adds up the partial sums, writes the history, and decides whether the run is over by
-// the rule of StopRule::judge in src/run/plan.rs. One workgroup.
+// the rule of StopRule::judge in src/run/stop.rs. One workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
@@ -47,7 +47,7 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
-// Of two parts of the triangles: the sum, or the worst, which stands behind what is summed.
+// Joins the values of two parts of the triangles: their sum, or in the last slot, that of the worst, the larger.
 fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     if tracked == TRACKED {
         return max(a, b);
@@ -57,7 +57,7 @@ fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
 
 @compute @workgroup_size(FINISH_WORKGROUP)
 fn finish(@builtin(local_invocation_index) local: u32) {
-    // Nothing returns early here: barriers must be met by all.
+    // No invocation returns before the loop: all must reach its barriers.
     let running = control.done == 0u;
     let evaluation = control.evaluated;
     let partials = params.partials;

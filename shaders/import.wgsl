@@ -21,7 +21,7 @@ fn import_positions(
     }
     let x = imported(given.x, vec2(exchange.center.x, exchange.center.z));
     let y = imported(given.y, vec2(exchange.center.y, exchange.center.w));
-    // A vertex at no finite place would spoil its neighbors, and these theirs.
+    // A position that is not finite would spread from neighbor to neighbor.
     if is_finite(x.x) && is_finite(y.x) {
         set_position(vertex, vec4(x.x, y.x, x.y, y.y));
     }

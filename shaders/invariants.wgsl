@@ -1,17 +1,17 @@
-// The invariants of a triangle, and the chain rule from derivatives by them to derivatives by its vertex.
+// The invariants of a triangle, and the chain rule from derivatives by the invariants to derivatives by a vertex.
 
 const TARGET_W: f32 = 0.57735026919; // 1/√3
 
-// As the Rust struct Invariants (src/metric/corner.rs): excess is √3/6 times the sum of the squared lengths less
-// the doubled area, by a sum of squares; area is the doubled area; mean the doubled mean area.
+// The same as the Rust struct Invariants (src/metric/corner.rs). The excess is √3/6 times the sum of the squared
+// lengths, less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean area.
 struct Invariants {
     excess: f32,
     area: f32,
     mean: f32,
 }
 
-// The value of a function of the invariants and its partial derivatives, named by what they are taken by: by the
-// invariants times unit, one over an area, so that they have no dimension and nothing overflows.
+// The value of a function of the invariants, and its partial derivatives by the invariants times unit, one over an area:
+// they have no dimension, and nothing overflows. They are named by their variables.
 struct Slopes {
     unit: f32,
     value: f32,

@@ -1,7 +1,7 @@
-// Partial sums over the triangles: of q² - ideal² for each tracked metric, and of the inverted triangles; behind them the
-// worst imr² - 1. Each invocation strides over the triangles and leaves one pair of floats for each; finish.wgsl adds
-// them up. Further parts of the triangles continue the sums of the parts before. There is no barrier, as barriers are
-// slow on software adapters.
+// Partial sums over the triangles: of q² - ideal² for each tracked metric, and the number of inverted triangles. After
+// them comes the worst imr² - 1. Each invocation strides over the triangles and leaves a pair of floats for each of
+// these; finish.wgsl joins them. Further parts of the triangles continue the sums of the parts before. There is no
+// barrier, as barriers are slow on software adapters.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective(

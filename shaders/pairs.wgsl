@@ -3,14 +3,14 @@
 // Compilers may treat floats as real numbers: they reorder sums, take (a + b) - a for b, and assume that there are no
 // infinities and NaNs. WGSL permits it, and Metal does it by default. A pair would then lose its low part. So every
 // sum that has to be rounded just as it is written passes through `opaque`, and tests of numbers go by their bits.
-// tests/fast_math.rs simulates such a compiler; check_arithmetic.wgsl tries the compiler of each adapter.
+// tests/fast_math simulates such a compiler; check_arithmetic.wgsl checks the compiler of each adapter.
 
 // The bits of x. The exclusive or with a zero that is only known at run time keeps a compiler from relating them to x.
 fn opaque_bits(x: f32) -> u32 {
     return bitcast<u32>(x) ^ runtime_zero();
 }
 
-// x, as a number of unknown origin.
+// x, as a number whose origin the compiler does not know.
 fn opaque(x: f32) -> f32 {
     return bitcast<f32>(opaque_bits(x));
 }

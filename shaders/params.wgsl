@@ -9,7 +9,7 @@ struct Params {
     // Invocations of the objective kernel.
     partials: u32,
     inner: u32,
-    // Stopping, see finish.wgsl. Sums are of q² - ideal² over all triangles.
+    // The rest but mean_area is for finish.wgsl, which ends a run. Sums are of q² - ideal² over all triangles.
     base: u32,
     window: u32,
     max_sweeps: u32,

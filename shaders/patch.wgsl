@@ -18,8 +18,8 @@ struct Derivatives {
 // log2 of the exponent of EDGE's p-norm in this sweep.
 var<private> sharpness: u32;
 
-// From one position to another. The differences of the high and of the low parts are opaque: mixed up, as in
-// head.xy - (tail.xy + tail.zw) + head.zw, they would lose the low parts.
+// The edge from one position to another. The differences of the high and of the low parts are opaque: in another order,
+// as in head.xy - (tail.xy + tail.zw) + head.zw, they would lose the low parts.
 fn edge(tail: vec4<f32>, head: vec4<f32>) -> vec2<f32> {
     return opaque2(head.xy - tail.xy) + opaque2(head.zw - tail.zw);
 }

@@ -6,7 +6,7 @@ struct Publish {
     offset: u32,
     triangles: u32,
     padding: vec2<u32>,
-    // By metric: what the sums leave out, per triangle; 0 where nothing is summed.
+    // ideal² of each metric, which the sums leave out of each triangle; 0 for a metric that is not tracked.
     ideal_squared: array<vec4<f32>, SLOT_VECTORS>,
 }
 
@@ -24,7 +24,7 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
     if slot == INVERTED {
         word = u32(sum.x) + u32(i32(sum.y));
     } else if slot == WORST {
-        // By its bits: compilers may take it that there is no such number.
+        // Infinity is written by its bits: compilers may assume that there is no such number.
         let is_tangled = control.history[last + INVERTED].x > 0.0;
         word = select(bitcast<u32>(sqrt(1.0 + sum.x)), INFINITY, is_tangled);
     } else {

@@ -1,4 +1,4 @@
-//! The examples do what they are examples of.
+//! The examples run and show what they are meant to show.
 
 #[allow(dead_code)]
 #[path = "../examples/embed/main.rs"]

@@ -60,8 +60,8 @@ impl Frame {
 pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let (device, queue) = open_device(mesh)?;
 
-    // The application's own: a vertex buffer, and a picture drawn from it. STORAGE is what the smoother
-    // needs of the buffer.
+    // The application's own resources: a vertex buffer, and a picture drawn from it. The smoother needs the usage
+    // STORAGE of the buffer.
     let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("vertices"),
         contents: bytemuck::cast_slice(&vertices_of(mesh)),
@@ -75,7 +75,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         mapped_at_creation: false,
     });
 
-    // The smoother's, made once and bound to these two buffers. Device and queue are handles: a clone names the same device.
+    // The smoother's resources, made once and bound to the vertex buffer and the one for objectives. Device and queue are
+    // handles: a clone is the same device.
     let gpu = Gpu::new(device.clone(), queue.clone())?;
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
     let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
@@ -87,8 +88,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let mut frame = |sweeps| -> Result<Frame> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if sweeps > 0 {
-            // The import takes over whatever the application has moved since the last export. Nothing
-            // has been here, so that it could be left out.
+            // The import reads what the application has moved since the last export. Here it has moved nothing, so that
+            // the import could be left out.
             bound.encode_import(&mut encoder);
             smoother.encode(&mut encoder, sweeps);
             bound.encode_export(&mut encoder);
@@ -97,7 +98,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         picture.draw(&mut encoder, &vertices);
         queue.submit([encoder.finish()]);
 
-        // Only for the file and the numbers: a window needs neither.
+        // This is only for the file and the printed numbers: an application with a window needs neither.
         let pixels = picture.read(&device, &queue)?;
         let quality: Vec<ObjectiveValues> = picture::read(&device, &queue, &objectives)?;
         Ok(Frame { pixels, quality: quality[0] })

@@ -212,7 +212,7 @@ impl App {
     }
 }
 
-/// Sweeps and frames a second, twice a second anew.
+/// Counts sweeps and frames a second, updated twice a second.
 struct Meter {
     since: Instant,
     counts: [u32; 2],

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Every frame is one command buffer: sweeps of the smoother, then the drawing, both on the vertex buffer
-//! of this application; see `smoothing.rs`. With a script (`script.rs` tells the format) nobody needs to
-//! be at the mouse, and with `--headless` no window is needed either.
+//! of this application; see `smoothing.rs`. With a script (see `script.rs` for its format) no user is needed, and
+//! with `--headless` no window either.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 pub(crate) mod app;

@@ -20,15 +20,17 @@ pub(crate) const STOPS: [[u8; 3]; 7] = [
 
 const LINE: u32 = 20;
 const PAD: u32 = 12;
-/// Width of one of the two columns, of a column's labels, and lines in a column.
+/// Width of one of the two columns.
 const COLUMN: u32 = 440;
+/// Width of a column's labels.
 const LABELS: u32 = 100;
+/// Lines in a column.
 const LINES: u32 = 6;
 const PAPER: [u8; 4] = [24, 28, 36, 255];
 const TEXT: Rgb888 = Rgb888::new(235, 238, 242);
 const LABEL: Rgb888 = Rgb888::new(150, 190, 235);
 
-/// A label and what it says.
+/// A label and its text.
 pub(crate) type Line = (&'static str, String);
 
 /// A small picture that is drawn on the CPU when its text changes.

@@ -12,9 +12,9 @@ const BACKGROUND: wgpu::Color = wgpu::Color { r: 0.89, g: 0.89, b: 0.87, a: 1.0 
 pub(crate) struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Of what is drawn into.
+    /// The format of the texture that is drawn into.
     pub(crate) format: wgpu::TextureFormat,
-    /// Of triangles, edges, marks and the panel.
+    /// The pipelines of triangles, edges, marks and the panel.
     pipelines: [(wgpu::RenderPipeline, wgpu::BindGroup); 4],
     uniform: wgpu::Buffer,
     vertices: wgpu::Buffer,

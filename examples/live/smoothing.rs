@@ -19,7 +19,7 @@ pub(crate) struct Smoothing {
     pub(crate) topology: Topology<'static>,
     /// The vertices that are drawn.
     pub(crate) vertices: wgpu::Buffer,
-    /// The same on the host, as the last frame left them.
+    /// The positions on the host, as the last frame left them.
     pub(crate) points: Vec<[f64; 2]>,
     /// How good the mesh is, as the last frame left it.
     pub(crate) objectives: ObjectiveValues,
@@ -111,8 +111,8 @@ impl Smoothing {
     pub(crate) fn set_points(&mut self, points: Vec<[f64; 2]>) {
         self.points = points;
         self.moved = true;
-        // All of them: those that were not moved have the floats of the last export, and the import
-        // leaves them alone.
+        // All vertices are written: those that were not moved have the floats of the last export, and the import leaves
+        // them alone.
         let bytes = floats(&self.points);
         self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&bytes));
     }
@@ -140,7 +140,7 @@ impl Smoothing {
     /// To be called when what was encoded has been submitted.
     pub(crate) fn request(&mut self) {
         let (sender, receiver) = channel();
-        // A receiver that is gone wants no answer.
+        // If the receiver is gone, nobody waits for the answer.
         let answer = move |result| drop(sender.send(result));
         self.staging.slice(..).map_async(wgpu::MapMode::Read, answer);
         self.mapped = Some(receiver);

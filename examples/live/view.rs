@@ -7,7 +7,7 @@ const MARGIN: f64 = 24.0;
 #[derive(Clone, Copy)]
 pub(crate) struct View {
     size: [f64; 2],
-    /// Shown at `middle`, in pixels from the top left.
+    /// The point that is shown at `middle`, which is in pixels from the top left.
     center: [f64; 2],
     middle: [f64; 2],
     pixels_per_unit: f64,

@@ -26,7 +26,7 @@ pub(crate) fn run(request: Request) -> Result<()> {
 
 /// What winit talks to.
 struct Shell {
-    /// Until there is a window for it.
+    /// The application before there is a window for it.
     request: Option<Request>,
     stage: Option<Stage>,
     problem: Option<Box<dyn std::error::Error>>,
@@ -102,7 +102,7 @@ impl Stage {
     fn draw(&mut self, event_loop: &ActiveEventLoop) -> Result<bool> {
         let size = self.window.inner_size();
         if self.occluded || size.width == 0 || size.height == 0 {
-            // An event will tell when that changes.
+            // An event comes when that changes.
             return Ok(true);
         }
         let (texture, reconfigure) = match self.surface.get_current_texture() {

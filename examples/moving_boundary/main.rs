@@ -58,9 +58,9 @@ pub(crate) struct Step {
     pub(crate) angle: f64,
     /// From the first call of the step until the device was done.
     pub(crate) took: Duration,
-    /// With sweeps.
+    /// The quality of the mesh that is swept in each step.
     pub(crate) kept: Quality,
-    /// With the same motion and no sweeps.
+    /// The quality of the mesh with the same motion and no sweeps.
     pub(crate) left: Quality,
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn simulate(
     let topology = Topology::new(&mesh)?;
     let hole = hole(&topology, &mesh.points);
 
-    // `Gpu::open` makes a device for whoever has none; examples/embed brings its own.
+    // `Gpu::open` makes a device for a program that has none; examples/embed brings its own.
     let gpu = Gpu::open(None)?;
     let (device, queue) = (gpu.device(), gpu.queue());
     let positions: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
@@ -101,14 +101,14 @@ pub(crate) fn simulate(
             queue.write_buffer(&buffer, stride * u64::from(v), bytemuck::cast_slice(&xy));
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        // All other vertices still are where the export left them, and keep their full precision.
+        // All other vertices are still where the export left them, and keep their full precision.
         bound.encode_import(&mut encoder);
-        // No `restart`: the hole turns by less than an edge. That the scheme goes on over-relaxed is what
-        // carries the motion far into the mesh.
+        // No `restart`: the hole turns by less than an edge, and over-relaxed sweeps carry the motion farther into the
+        // mesh than plain ones.
         smoother.encode(&mut encoder, sweeps);
         bound.encode_export(&mut encoder);
         queue.submit([encoder.finish()]);
-        // Here the simulation would compute on the vertex buffer. This is for the clock only.
+        // Here the simulation would compute on the vertex buffer. This example only waits, to take the time.
         device.poll(wgpu::PollType::wait_indefinitely())?;
         let took = start.elapsed();
 

@@ -26,8 +26,8 @@ pub(crate) struct Measure {
 }
 
 impl Claim {
-    /// Reproduced, not reproduced, or only under what.
-    /// `size` is that of the tables: where others stand in, it is said.
+    /// Whether the claim is reproduced, is not, or is under some conditions only. `size` is that of the tables: the
+    /// verdict says where meshes of another size stand in.
     pub(crate) fn verdict(&self, size: Size) -> String {
         let at_paper = |setting| {
             let mut of =

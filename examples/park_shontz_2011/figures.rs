@@ -159,7 +159,7 @@ fn panel_of_histories(
     let Some((_, first)) = curves.first() else { return Ok(()) };
     let target = first.history[0].f - view.fraction * (first.history[0].f - first.desired);
     let points: Vec<_> = curves.iter().flat_map(|(_, run)| judged(run, judge)).collect();
-    // To a little past where the slowest has passed, as the paper's zoom.
+    // The time axis ends a little after the slowest scheme has passed, as in the paper's zoom.
     let end = |run: &RunRecord| {
         let passed = run.reach(view.fraction).seconds();
         passed.map_or(run.history.last().map_or(0.0, |s| s.seconds), |seconds| 1.25 * seconds)

@@ -119,7 +119,7 @@ impl Request {
     }
 }
 
-/// Does what of a study is not yet in the folder.
+/// Does the runs of a study that are not yet in the folder.
 pub(crate) fn gather(
     study: &Study,
     places: &[Place],

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::store::{RunRecord, Store};
 use super::study::{Batch, Case, Place, Setting, Size, Start};
 
-/// What runs cost alike.
+/// What runs that cost alike have in common.
 type Kind = (Setting, Size, Start, Place, String);
 
 /// Counts runs and their times.
@@ -96,7 +96,7 @@ impl Progress {
         }
     }
 
-    /// By the mean of the same kind of run; of a kind not yet seen, by the guesses.
+    /// The time of the runs to do, by the mean of runs of their kind, or for a kind not yet seen by its guess.
     fn seconds_left(&self) -> f64 {
         let mut seen = (0.0, 0.0);
         for (kind, (runs, seconds)) in &self.done {

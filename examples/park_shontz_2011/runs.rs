@@ -32,11 +32,11 @@ impl Prepared {
 /// Makes runs; keeps the last mesh, as the next run is mostly on the same.
 pub(crate) struct Runner {
     gpu: Option<Gpu>,
-    /// Of the meshes in the tables.
+    /// The size of the meshes in the tables.
     size: Size,
     reference_sweeps: u32,
     last: Option<((String, Size, Start), Prepared)>,
-    /// Whose kernels the driver has compiled.
+    /// Schemes and settings whose kernels the driver has compiled.
     warm: HashSet<(String, Setting)>,
 }
 
@@ -236,7 +236,7 @@ fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     plan
 }
 
-/// Both distributions of a mesh.
+/// The distributions of the mean ratio and of the edge ratio over a mesh.
 fn distribution(
     case: &Case,
     mesh: &Mesh,

@@ -40,16 +40,17 @@ pub(crate) struct DesiredRecord {
     pub(crate) origin: String,
 }
 
-/// After a sweep; the first of a run is before any.
+/// The state after a sweep; the first one of a run is before any sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sample {
-    /// Since the first sweep began.
+    /// Time since the first sweep began.
     pub(crate) seconds: f64,
-    /// By the base metric.
+    /// The objective by the base metric.
     pub(crate) f: f64,
-    /// By EDGE and by AREA, where a figure needs them.
+    /// The objective by EDGE, where a figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) edge: Option<f64>,
+    /// The objective by AREA, where a figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
 }
@@ -61,10 +62,10 @@ pub(crate) struct RunRecord {
     pub(crate) case: Case,
     pub(crate) desired: f64,
     pub(crate) stop: String,
-    /// With all that belongs to it, for the estimate of the time left.
+    /// Time of the run with its preparation, for the estimate of the time left.
     pub(crate) wall_seconds: f64,
     pub(crate) history: Vec<Sample>,
-    /// Where the run had converged, for Figures 4 and 5.
+    /// The distributions where the run had converged, for Figures 4 and 5.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) distributions: Vec<DistributionRecord>,
 }
@@ -74,12 +75,12 @@ pub(crate) struct RunRecord {
 pub(crate) struct DistributionRecord {
     pub(crate) domain: String,
     pub(crate) start: Start,
-    /// Empty before smoothing.
+    /// The scheme; empty before smoothing.
     pub(crate) scheme: String,
-    /// Shortest over longest edge, or mean ratio.
+    /// The quality counted: shortest over longest edge, or mean ratio.
     pub(crate) quality: String,
     pub(crate) mean: f64,
-    /// Of [`BINS`] equal parts of 0 to 1.
+    /// The elements in each of [`BINS`] equal parts of 0 to 1.
     pub(crate) counts: Vec<usize>,
 }
 
@@ -135,7 +136,7 @@ impl Store {
         }
         let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
         fs::create_dir_all(folder.join("data")).map_err(failed)?;
-        // Again as a whole, without the line that was cut off.
+        // The file is written anew, without the line that was cut off.
         let mut text = String::new();
         for record in &records {
             text += &line(record)?;

@@ -76,7 +76,7 @@ pub(crate) const SCHEMES: [&str; 13] = [
     "ar",
 ];
 
-/// The same runs on several meshes, with every scheme.
+/// Runs with the same settings on several meshes, by every scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Batch {
     pub(crate) setting: Setting,
@@ -89,9 +89,9 @@ pub(crate) struct Batch {
     /// The most Newton steps a visit.
     pub(crate) inner: u32,
     pub(crate) max_sweeps: u32,
-    /// On the CPU.
+    /// How often each run is made on the CPU.
     pub(crate) cpu_repeats: u32,
-    /// On the GPU.
+    /// How often each run is made on the GPU.
     pub(crate) gpu_repeats: u32,
 }
 
@@ -141,7 +141,7 @@ impl Study {
         }
     }
 
-    /// The same on coarse meshes: under two minutes.
+    /// Every scheme and setting on coarse meshes: under two minutes.
     pub(crate) fn quick() -> Self {
         Self {
             mode: "quick".into(),

@@ -51,7 +51,7 @@ pub(crate) fn sizes(data: &Data, size: Size) -> Table {
             mesh.vertices.to_string(),
             paper.elements.to_string(),
             mesh.elements.to_string(),
-            // Of 2 V - 2 + 2 H - E with H holes, which the paper does not tell.
+            // The boundary has 2 V - 2 + 2 H - E vertices with H holes; the paper does not say how many holes.
             (2 * paper.vertices - 2 - paper.elements).to_string(),
             mesh.boundary.to_string(),
             format!("{:.2}°", mesh.min_angle),

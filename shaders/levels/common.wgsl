@@ -1,24 +1,30 @@
 // Common to the kernels of a correction from coarser levels, beside params.wgsl and the bindings of fine.wgsl,
-// transfer.wgsl or coarse.wgsl. Each kernel is one step on vectors; `op` says where these are.
+// transfer.wgsl or coarse.wgsl. Each kernel is one step on vectors; `op` holds the places of these vectors.
 
 struct LevelOp {
-    // Invocations, and the row or triangle of the first one. Other dispatches take the rest.
+    // Invocations: the rows or triangles of this dispatch, of which there may be more.
     rows: u32,
+    // The row or triangle of the first invocation.
     first: u32,
     // Number of free vertices.
     free: u32,
     // Entries of `ring` in front of the binding.
     ring_base: u32,
-    // In `structure`: where each row starts, relative to the columns of the first, and the columns.
+    // Place in `structure` of the start of each row, relative to `columns`.
     starts: u32,
+    // Place in `structure` of the columns.
     columns: u32,
-    // In `values`: the matrix entries that belong to `columns`, and the reciprocal diagonal.
+    // Place in `values` of the matrix entries, one for each column.
     entries: u32,
+    // Place in `values` of the reciprocal diagonal.
     diagonal: u32,
-    // In `vectors`: the vector that is multiplied (NONE for zero), the right-hand side, the last step, the result.
+    // Place in `vectors` of the vector that is multiplied; NONE for zero.
     x: u32,
+    // Place in `vectors` of the right-hand side.
     right: u32,
+    // Place in `vectors` of the last step.
     step: u32,
+    // Place in `vectors` of the result.
     out: u32,
     a: f32,
     b: f32,

@@ -67,7 +67,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     by_rows(source)
 }
 
-/// Tells apart formats that are but rows of numbers, by how many numbers the first rows have.
+/// Tells formats apart that consist only of rows of numbers, by how many numbers the first rows have.
 fn by_rows(source: &Source) -> Result<Content, ReadError> {
     let [first, second, third] = first_rows(source);
     let numbers =
@@ -145,7 +145,8 @@ fn first_rows(source: &Source) -> [Vec<&[u8]>; 3] {
     })
 }
 
-/// For a `.node` or `.ele` under another ending: the other file of the mesh if it is there, and where its `.poly` would be.
+/// For a `.node` or `.ele` under another ending: the other file of the mesh if it exists, and where its `.poly` would
+/// be.
 fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
     [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
         let other = appended(stem, &format!(".{ending}"));

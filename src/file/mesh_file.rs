@@ -55,7 +55,7 @@ pub struct MeshFile {
     mesh: Mesh,
     format: Format,
     notes: Vec<String>,
-    /// Where the x of each vertex starts in the first of the sources.
+    /// The byte at which the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
     /// The byte order of the file's numbers, if they are not text.
     order: Option<Order>,
@@ -141,8 +141,8 @@ impl MeshFile {
         &self.mesh
     }
 
-    /// The [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]: numbers from 0, as the file
-    /// first names them. `None` if all triangles are of one region.
+    /// The [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]. Regions are numbered from 0 in
+    /// the order in which the file first names them. `None` if all triangles are of one region.
     pub fn regions(&self) -> Option<&[u32]> {
         self.regions.as_deref()
     }
@@ -176,7 +176,7 @@ impl MeshFile {
 
     /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.
     ///
-    /// For messages: it may go through the whole file.
+    /// Meant for messages: it may search the whole file.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -185,8 +185,8 @@ impl MeshFile {
         found.unwrap_or_else(|| panic!("there is no vertex {index}"))
     }
 
-    /// Where vertices have their coordinates, by their zero-based indices. The file is gone through once for all of
-    /// them. Indices of no vertex are left out.
+    /// Where vertices have their coordinates, by their zero-based indices. The file is searched once for all of them.
+    /// Indices of no vertex are left out.
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.x_at.len());
@@ -203,7 +203,7 @@ impl MeshFile {
 
     /// Where triangle `index` (zero-based, as in [`Mesh::triangles`]) lists its vertices.
     ///
-    /// For messages: it may go through the whole file.
+    /// Meant for messages: it may search the whole file.
     ///
     /// # Panics
     /// If there is no such triangle.
@@ -212,8 +212,8 @@ impl MeshFile {
         found.unwrap_or_else(|| panic!("there is no triangle {index}"))
     }
 
-    /// Where triangles list their vertices, by their zero-based indices. The file is gone through once for all of
-    /// them. Indices of no triangle are left out.
+    /// Where triangles list their vertices, by their zero-based indices. The file is searched once for all of them.
+    /// Indices of no triangle are left out.
     pub fn triangle_places(
         &self,
         indices: impl IntoIterator<Item = usize>,
@@ -255,9 +255,9 @@ impl MeshFile {
         replace::replace_all(&jobs)
     }
 
-    /// Finds out, as far as can be told without writing, whether [`write`](Self::write) to `path`
-    /// can work: that its ending does not promise another format, that the directory is there and
-    /// takes new files, and that no directory or read-only file is in the way.
+    /// Checks, as far as is possible without writing, whether [`write`](Self::write) to `path` can work: that its ending
+    /// does not promise another format, that the directory exists and takes new files, and that no directory or
+    /// read-only file is in the way.
     ///
     /// # Errors
     /// [`WriteError`] that says what is wrong.

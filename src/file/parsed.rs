@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 /// What a reader returns.
 pub(crate) struct Parsed {
     pub(crate) format: Format,
-    /// Its fixed vertices are those that the file holds by lines and other elements, not those between regions.
+    /// The mesh. Its fixed vertices are those of lines and other elements of the file, not those between regions.
     pub(crate) mesh: Mesh,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
     pub(crate) x_at: Vec<usize>,
@@ -19,7 +19,7 @@ pub(crate) struct Parsed {
     pub(crate) notes: Vec<String>,
 }
 
-/// The remark that elements other than triangles hold their vertices.
+/// The remark that elements other than triangles keep their vertices fixed.
 pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
     let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
     format!("{count} {what}{s}{of}: {their} vertices stay fixed")

@@ -54,9 +54,9 @@ pub struct AbandonedWrites {
     _temporaries: MutexGuard<'static, Vec<PathBuf>>,
 }
 
-/// Abandons all that [`MeshFile::write`](crate::MeshFile::write) is doing on other threads, for a program that is about to end:
-/// removes the temporary files, which [`std::process::exit`] would leave behind. Files that are just taking
-/// their places do so first, all of them. No thread can write a mesh file as long as the returned value lives.
+/// Abandons what [`MeshFile::write`](crate::MeshFile::write) is doing on other threads, for a program that is about to
+/// end: removes the temporary files, which [`std::process::exit`] would leave behind. If written files are just taking
+/// their places, it waits until all of them have. No thread can write a mesh file as long as the returned value lives.
 pub fn abandon_writes() -> AbandonedWrites {
     let (committing, mut temporaries) = (lock(&COMMITTING), lock(&TEMPORARIES));
     for path in temporaries.drain(..) {
@@ -65,8 +65,8 @@ pub fn abandon_writes() -> AbandonedWrites {
     AbandonedWrites { _committing: committing, _temporaries: temporaries }
 }
 
-/// Finds out, as far as can be told without writing, whether [`replace`] can work: that the directory is there and takes
-/// new files, and that no directory or read-only file is in the way.
+/// Checks, as far as is possible without writing, whether [`replace`] can work: that the directory exists and takes new
+/// files, and that no directory or read-only file is in the way.
 ///
 /// # Errors
 /// [`WriteError::Io`] that says what is wrong.
@@ -98,13 +98,13 @@ pub fn check(path: &Path) -> Result<(), WriteError> {
     Temporary::create(directory).map(drop).map_err(|source| refused(directory, source))
 }
 
-/// Whether two paths lead to one file, be it by another spelling, a symbolic link or a hard link. The file need not exist
-/// yet. Hard links are told on Unix only.
+/// Whether two paths lead to one file, also by another spelling, a symbolic link or a hard link. The file need not exist
+/// yet. Hard links are recognized on Unix only.
 pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
 }
 
-/// What tells a file from all others.
+/// What identifies a file.
 #[derive(PartialEq)]
 enum Identity {
     #[cfg(unix)]
@@ -115,7 +115,7 @@ enum Identity {
     Path(PathBuf),
 }
 
-/// None where nothing could be written anyway, for want of a directory, say.
+/// The identity of the file at a path. None where no file could be written anyway, as without a directory.
 fn identity(path: &Path) -> Option<Identity> {
     let (target, existing) = resolve(path).ok()?;
     #[cfg(unix)]
@@ -149,7 +149,7 @@ struct Staged {
     /// None if the content went straight to a device or pipe.
     content: Option<Temporary>,
     existed: bool,
-    /// A second name of what stood there, while it may have to come back.
+    /// A second name of the file that stood there, as long as it may have to be restored.
     previous: Option<Temporary>,
 }
 
@@ -209,7 +209,7 @@ impl Staged {
     }
 }
 
-/// A name for a file that is removed when dropped, unless it was renamed.
+/// The path of a temporary file. Dropping it removes the file, unless the file was renamed.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -228,7 +228,7 @@ impl Temporary {
         }
     }
 
-    /// Short, whatever the destination's own name is: that may be as long as names can be.
+    /// An unused name. It is short, as the destination's own name may be as long as names can be.
     fn unused_name(directory: &Path) -> PathBuf {
         static COUNTER: AtomicU64 = AtomicU64::new(0);
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
@@ -243,8 +243,8 @@ impl Drop for Temporary {
     }
 }
 
-/// Where the path leads through all symbolic links, and what is there, if anything: the last link may point to
-/// nothing yet.
+/// Where the path leads through all symbolic links, and the metadata of what is there, if anything: the last link may
+/// point to nothing yet.
 fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
     match fs::metadata(path) {
         // A device or pipe may be reached by a link, as /proc has them, that is not a path.

@@ -96,7 +96,7 @@ impl Rewrite<'_> {
     }
 }
 
-/// Writes blocks of a file in their order. While the system takes some, all threads make the next.
+/// Writes blocks of a file in their order. While one thread writes some of them, the others make the next.
 fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,

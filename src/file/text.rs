@@ -21,7 +21,7 @@ pub(crate) struct Cursor<'a> {
     /// How many lines were begun. Zero before the first one and after bytes were taken: then the next line starts at
     /// `at`.
     line: usize,
-    /// In a binary file, where the bytes last taken start.
+    /// Where the bytes last taken start. None in a text file.
     taken: Option<usize>,
 }
 

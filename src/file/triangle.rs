@@ -35,7 +35,7 @@ impl Names {
     }
 }
 
-/// The path with more at its end. Unlike `with_extension`, it leaves the 1 of `la.1` alone.
+/// The path with `ending` appended. Unlike `with_extension`, it leaves the 1 of `la.1` alone.
 pub(crate) fn appended(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
@@ -159,7 +159,7 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     Ok((numbers, points, x_at))
 }
 
-/// Reads the number of vertices, and that they are in the plane.
+/// Reads the number of vertices, and checks that they are in the plane.
 fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     header(cursor, "vertices")?;
     let count = cursor.vertex_count()?;

@@ -1,12 +1,10 @@
 //! The wgpu engine, for any adapter, software ones included, and for an application's own device.
 //!
-//! By lifetime: a [`Gpu`] is a device with its pipelines and serves many meshes; a [`DeviceMesh`] is a mesh
-//! that stays on the device; [`Sweeps`] are a scheme bound to it, and [`BoundVertices`] and
-//! [`BoundObjective`] the application's buffers. All that can fail and all that makes resources is done when these
-//! are made; in a frame, they only encode into the application's own command encoder, or, under the
-//! clock of [`Timestamps`], into one that is timed. The blocking and the asynchronous calls of
-//! [`Smoother`](crate::Smoother) make what they need for themselves. The kernels are core WebGPU, see
-//! [`Kernel`].
+//! A [`Gpu`] is a device with its pipelines and serves many meshes. A [`DeviceMesh`] is a mesh that stays on the
+//! device. [`Sweeps`] bind a scheme to that mesh; [`BoundVertices`] and [`BoundObjective`] bind the application's
+//! buffers. Their constructors make all resources and return all errors; in a frame they only encode into the
+//! application's own command encoder, or into one whose kernels are timed, see [`Timestamps`]. The calls of
+//! [`Smoother`](crate::Smoother) make all of this themselves. The kernels are core WebGPU, see [`Kernel`].
 
 mod device;
 mod embed;

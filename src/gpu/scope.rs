@@ -1,8 +1,8 @@
-//! Error scopes: whatever wgpu says of a call becomes an error.
+//! Error scopes, which turn what wgpu reports of a call into an error.
 
 use crate::error::GpuError;
 
-/// Runs wgpu calls and turns whatever the device says about them into an error.
+/// Runs wgpu calls and turns whatever wgpu reports of them into an error.
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -15,15 +15,15 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
         return Err(GpuError::OutOfMemory(error.to_string()));
     }
     match internal.or(validation) {
-        // What wgpu says of a lost device are its consequences: "... is invalid".
+        // Of a lost device wgpu reports only the consequences: "... is invalid".
         Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
         Some(error) => Err(GpuError::Refused(error.to_string())),
         None => Ok(value),
     }
 }
 
-/// Whether the device is lost, found by trial: it then makes a buffer that cannot be mapped, without
-/// a word to the error scopes.
+/// Whether the device is lost, found by trial: a lost device makes a buffer that cannot be mapped, and reports nothing
+/// to the error scopes.
 fn is_lost(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);

@@ -1,4 +1,4 @@
-//! Command lines that ask for nothing that can be done: exit code 2, and nothing touched.
+//! Command lines that make no sense: exit code 2, and no file touched.
 
 use super::{Folder, assert_holds, small};
 

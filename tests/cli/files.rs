@@ -1,4 +1,4 @@
-//! What of a file comes back as it was, in each format, and where it may be written.
+//! What is kept of a file in each format, and where it may be written.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number, small, support};
 use gpu_smooth::Mesh;

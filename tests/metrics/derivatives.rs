@@ -1,4 +1,4 @@
-//! Dual numbers against central differences of the value, and what the CPU engine takes against them.
+//! Dual numbers against central differences of the value, and the CPU engine's derivatives against dual numbers.
 
 use crate::support::SplitMix64;
 use crate::triangles::*;

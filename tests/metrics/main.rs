@@ -1,4 +1,4 @@
-//! The metrics: what their rows in src/metric.rs promise, their derivatives, and their WGSL.
+//! The metrics: the properties stated in their files, their derivatives, and their WGSL.
 
 #[path = "../support/mod.rs"]
 mod support;

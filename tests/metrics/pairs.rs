@@ -1,4 +1,4 @@
-//! The pairs of floats that carry positions and sums: what is left of their 48 bits on the adapter.
+//! The pairs of floats that hold positions and sums: how many of their 48 bits are right on the adapter.
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;

@@ -1,4 +1,4 @@
-//! What the row of each metric says of it.
+//! Each metric has the properties that its file states.
 
 use crate::support::SplitMix64;
 use crate::triangles::*;

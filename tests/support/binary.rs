@@ -10,7 +10,7 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Of a version of the format, after the section that tells it.
+    /// Starts a file of a version of the format, with the section that states it.
     pub fn new(version: &str, big: bool) -> Binary {
         let mut file = Binary { bytes: Vec::new(), big };
         file.text(&format!("$MeshFormat\n{version} 1 8\n"));

@@ -67,7 +67,7 @@ pub fn boundary(mesh: &Mesh) -> Vec<bool> {
     on
 }
 
-/// Which vertices hold still: those of the boundary, the fixed ones and those of no triangle.
+/// Which vertices stay: those of the boundary, the fixed ones and those of no triangle.
 pub fn held(mesh: &Mesh) -> Vec<bool> {
     let mut held = boundary(mesh);
     mesh.fixed.iter().for_each(|&v| held[v as usize] = true);

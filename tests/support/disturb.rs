@@ -134,8 +134,8 @@ fn flattens_at([p, q, r]: [[f64; 2]; 3], [a, b, c]: [[f64; 2]; 3]) -> f64 {
     [half / bend, area / half].into_iter().filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
 }
 
-/// Distance of each vertex to the nearest held one, or nearly: what is nearest to a vertex is sought
-/// among what is nearest to its neighbors.
+/// The approximate distance of each vertex to the nearest held one, which is sought only among those nearest to its
+/// neighbors.
 fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
     let stars = Stars::new(mesh);
     let held = held(mesh);

@@ -86,7 +86,8 @@ pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
     Ok(if min_angle(&boxed) > min_angle(&mesh) { boxed } else { mesh })
 }
 
-/// With the outline in a box, if so wished, to have the convex hull far from it.
+/// Triangulates the outline in about `vertices` vertices. `boxed` puts it in a box, which keeps the convex hull far from
+/// it.
 fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result<Mesh, String> {
     let (domain, target) = (outline.area(), vertices as f64);
     // As many as a typical mesh has; then by what came out, between sizes that were too small and too large.
@@ -174,7 +175,7 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
         .flat_map(|edge| edge.vertices().map(|v| v.fix()));
     let fixed = lone.into_iter().chain(on_lines).map(|v| v.index() as u32).collect();
     let mesh = compacted(Mesh { points, triangles, fixed });
-    // Also that no loop was lost: the triangles fill what the loops enclose.
+    // The triangles fill what the loops enclose, so no loop was lost.
     let fills = (area(&mesh) / outline.area() - 1.0).abs() < 1e-9;
     if is_ccw(&mesh) && is_valid(&mesh) && fills {
         Ok(Some(mesh))
@@ -198,7 +199,7 @@ fn surrounding_box(outline: &Outline) -> [[f64; 2]; 4] {
     [[left, bottom], [right, bottom], [right, top], [left, top]]
 }
 
-/// Without the vertices of no triangle, and listing as fixed only those the boundary does not hold.
+/// The mesh without vertices of no triangle, with only those fixed that are not on the boundary.
 fn compacted(mesh: Mesh) -> Mesh {
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.points.len()];

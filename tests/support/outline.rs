@@ -18,7 +18,7 @@ use super::trig::on_circle;
 
 type Point = [f64; 2];
 
-/// A domain: what of the plane an odd number of loops goes round.
+/// A domain: the part of the plane that an odd number of loops encloses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// Closed polygons; the last point joins the first, which is not repeated. In any winding.

@@ -1,4 +1,4 @@
-//! The same mesh told differently: what smoothing does must not depend on it.
+//! The same mesh in another order, winding or position: smoothing must not depend on these.
 
 use super::rng::SplitMix64;
 use gpu_smooth::Mesh;

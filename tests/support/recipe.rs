@@ -24,7 +24,7 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// From the arguments after the program's name.
+    /// Parses the arguments after the program's name.
     pub fn parse(args: &[String]) -> Result<Self, String> {
         let mut recipe = Self {
             command: format!("cargo run --release --example make_mesh -- {}", args.join(" ")),

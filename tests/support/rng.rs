@@ -17,22 +17,22 @@ impl SplitMix64 {
         z ^ (z >> 31)
     }
 
-    /// In [0, 1), every multiple of 2^-53 equally likely.
+    /// A number in [0, 1), every multiple of 2^-53 equally likely.
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// In [low, high).
+    /// A number in [low, high).
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// In 0..n; the bias of at most n / 2^64 does not matter here.
+    /// An integer in 0..n. The bias of at most n / 2^64 does not matter here.
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.next_u64()) * n as u128) >> 64) as usize
     }
 
-    /// Fisher and Yates.
+    /// Puts a slice in random order, by the method of Fisher and Yates.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));

@@ -1,4 +1,4 @@
-//! Meshes as text. Numbers are as short as reads back to the same bits.
+//! Meshes as text. Numbers have the fewest digits that read back to the same bits.
 
 use super::check::boundary;
 use gpu_smooth::Mesh;
@@ -38,7 +38,7 @@ pub fn write_triangle(mesh: &Mesh, stem: &Path, comment: &str) -> io::Result<()>
     fs::write(named(".ele"), ele)
 }
 
-/// Gmsh 2.2 text. The format has no word for fixed vertices: they are not told apart.
+/// Gmsh 2.2 text. The format cannot mark fixed vertices.
 pub fn write_msh22(mesh: &Mesh) -> String {
     let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh.points.len());
     for (i, [x, y]) in mesh.points.iter().enumerate() {
@@ -51,7 +51,7 @@ pub fn write_msh22(mesh: &Mesh) -> String {
     text + "$EndElements\n"
 }
 
-/// Gmsh 4.1 text, one block each of nodes and elements. Fixed vertices are not told apart.
+/// Gmsh 4.1 text, one block each of nodes and elements. Fixed vertices are not marked.
 pub fn write_msh41(mesh: &Mesh) -> String {
     let (nodes, elements) = (mesh.points.len(), mesh.triangles.len());
     let mut text = format!(

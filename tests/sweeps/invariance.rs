@@ -1,4 +1,4 @@
-//! What must not matter: place, unit, windings, numbering, and how small the smallest triangle is.
+//! What results must not depend on: place, unit, windings, numbering, and how small the smallest triangle is.
 
 use crate::support::{self, transformed};
 use crate::{backends, history, name, perturbed, plate, run};

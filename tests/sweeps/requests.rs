@@ -1,4 +1,4 @@
-//! What a caller may ask for, and what it is told when that makes no sense.
+//! What a caller may ask for, and the errors for requests that make no sense.
 
 use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
 use gpu_smooth::{

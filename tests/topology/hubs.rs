@@ -1,5 +1,5 @@
-//! Vertices of very many triangles. Nothing here is timed: with steps that grow as the square of their number these
-//! tests take minutes to hours, and are noticed by that.
+//! Vertices of very many triangles. Nothing is timed here: steps whose time grows with the square of their number would
+//! take minutes to hours.
 
 use crate::boundary::assert_loops_are_the_boundary;
 use crate::support::{self, trig};

@@ -1,4 +1,4 @@
-//! What an application may pass by mistake is answered, not met with a panic.
+//! Mistakes of an application are answered with an error, not a panic.
 
 use crate::support;
 use gpu_smooth::internal::Coloring;

@@ -9,7 +9,7 @@ use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcom
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness};
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
-/// without inverting one. OUT is IN but for the coordinates of vertices that moved.
+/// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
 #[derive(Parser)]
 #[command(
     version,
@@ -107,7 +107,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) output: Option<PathBuf>,
 
     /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
-    /// convergence. Metrics: edge, area, rms, imr, ar (see `gpu-smooth metrics`)
+    /// convergence. Metrics: edge, area, rms, imr, ar, shape-size (see `gpu-smooth metrics`)
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
 
@@ -146,8 +146,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
-    /// Sweeps corrected from coarser levels of the mesh (imr, ar and rms), over-relaxed sweeps, or the paper's
-    /// plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
+    /// Sweeps corrected from coarser levels of the mesh (imr, ar, rms and shape-size), over-relaxed sweeps, or the
+    /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
     #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
     pub(crate) method: MethodChoice,
     /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
@@ -224,7 +224,7 @@ impl Cli {
     }
 }
 
-/// What is wrong with a command that comes after arguments of a run, if it does.
+/// The error if a command comes after arguments of a run.
 fn misplaced(matches: &ArgMatches) -> Option<String> {
     let name = matches.subcommand_name()?;
     let command = Cli::command();
@@ -245,7 +245,7 @@ fn misplaced(matches: &ArgMatches) -> Option<String> {
     })
 }
 
-/// Says of a third file that it is one too many.
+/// The error if a third file is given.
 fn one_mesh_only(error: clap::Error) -> clap::Error {
     let is_command = |arg: &OsString| Cli::command().find_subcommand(arg).is_some();
     match error.get(ContextKind::InvalidArg) {
@@ -254,7 +254,8 @@ fn one_mesh_only(error: clap::Error) -> clap::Error {
                 && !extra.starts_with('-')
                 && !std::env::args_os().skip(1).any(|arg| is_command(&arg)) =>
         {
-            let text = format!("unexpected argument '{extra}': IN and OUT are all, one mesh a run");
+            let text =
+                format!("unexpected argument '{extra}' after IN and OUT: give one mesh a run");
             Cli::command().error(ErrorKind::UnknownArgument, text)
         }
         _ => error,

@@ -3,21 +3,21 @@
 use gpu_smooth::{BadTriangle, Location, MeshError, MeshFile, Place};
 use serde::Serialize;
 
-/// How many bad triangles the terminal is told of.
+/// How many bad triangles are listed on the terminal.
 pub(crate) const TOLD: usize = 10;
 
 /// An inverted or flat triangle in the terms of its file.
 #[derive(Serialize)]
 pub(crate) struct BadTriangleReport {
-    /// The file's number or tag for it.
+    /// The file's number or tag for the triangle.
     triangle: u64,
     file: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<usize>,
-    /// Of a binary file.
+    /// Only in a binary file, which has no lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     byte: Option<usize>,
-    /// The file's numbers or tags for them, in its order.
+    /// The file's numbers or tags for the triangle's vertices, in the order of the file.
     vertices: [u64; 3],
     /// inverted or flat.
     problem: &'static str,

@@ -1,7 +1,7 @@
 //! Ctrl-C, and what else asks a run to end: SIGINT and SIGTERM.
 //!
-//! Until there is a smoothed state, and at the second signal, the process ends at once and leaves no half-written file. In
-//! between, a signal ends the run at the next sweep, and the best mesh so far is written.
+//! Before there is a smoothed state, a signal ends the process at once. After that, the first signal ends the run at the
+//! next sweep, and the best mesh so far is written; a second one ends the process at once. No half-written file is left.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
@@ -43,7 +43,7 @@ pub(crate) fn watch(quiet: bool) {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// Leaves it to the run to end, or ends the process.
+/// Asks the run to end at the first signal while there is a result, else ends the process.
 fn received(signal: i32, quiet: bool) {
     let has_result = HAS_RESULT.load(Ordering::SeqCst);
     let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);

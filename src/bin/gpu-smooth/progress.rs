@@ -14,11 +14,11 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Time between lines where there is no bar.
 const INTERVAL: Duration = Duration::from_secs(1);
 
-/// Shows sweeps, f and speed on standard error if the run takes a while: as a bar if that is a terminal, else as lines where
-/// the user wants every sweep.
+/// Shows sweeps, f and speed on standard error if the run takes a while: as a bar if that is a terminal, else as lines
+/// where the user wants every sweep.
 pub(crate) struct Bar {
     started: Instant,
-    /// And when it began.
+    /// The phase of the run, and when it began.
     phase: Option<(Phase, Instant)>,
     bar: ProgressBar,
     /// When the next line is due, if there are lines.

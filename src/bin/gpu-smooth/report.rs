@@ -39,9 +39,9 @@ pub(crate) struct Report {
 /// The report of a run that was refused because of inverted or flat triangles.
 #[derive(Serialize)]
 pub(crate) struct Refusal {
-    /// What the terminal was told, without the list.
+    /// The message on the terminal, without its list of triangles.
     pub(crate) error: String,
-    /// All of them, in the order of the file.
+    /// All inverted and flat triangles, in the order of the file.
     pub(crate) triangles: Vec<BadTriangleReport>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct EngineReport {
     pub(crate) kind: &'static str,
     pub(crate) adapter: Option<String>,
     pub(crate) driver: Option<String>,
-    /// Why it was taken, if the command line left that open.
+    /// Why this engine was taken, if the command line left that open.
     pub(crate) reason: Option<String>,
 }
 
@@ -75,12 +75,12 @@ pub(crate) struct GoalReport {
 
 #[derive(Serialize)]
 pub(crate) struct QualityReport {
-    /// By metric.
+    /// The objective by each metric.
     pub(crate) f: BTreeMap<&'static str, f64>,
     pub(crate) min_angle: f64,
     pub(crate) max_angle: f64,
     pub(crate) worst_imr: f64,
-    /// Among triangles with a free vertex.
+    /// The worst inverse mean ratio of a triangle with a free vertex.
     pub(crate) worst_movable_imr: f64,
     pub(crate) inverted: usize,
 }
@@ -92,7 +92,7 @@ pub(crate) struct SweepReport {
     pub(crate) metric: Option<&'static str>,
     /// The base metric's objective after the sweep.
     pub(crate) f: f64,
-    /// Every metric's, where asked for.
+    /// The objective of every metric, where asked for.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) all: BTreeMap<&'static str, f64>,
 }
@@ -186,7 +186,7 @@ impl Report {
         text
     }
 
-    /// What to know of the worst element if it is worse than before, by a hundredth at least.
+    /// A remark on the worst element if it is worse than before by a hundredth or more.
     fn warning(&self) -> Option<String> {
         let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
         if after <= 1.01 * before {
@@ -269,7 +269,7 @@ impl Report {
     }
 }
 
-/// About six significant digits.
+/// A number with about six significant digits.
 pub(crate) fn six(x: f64) -> String {
     match x.abs() {
         a if !a.is_finite() => "infinite".into(),

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     };
     let start = Instant::now();
     interrupt::watch(show.quiet);
-    // The driver starts meanwhile: as the mesh is read, or prepared if its size decides on the engine.
+    // The driver starts while the mesh is read, or while it is prepared if its size decides on the engine.
     std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let mut file = read(input)?;
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
 
-        // Much may have changed during a long run.
+        // The destination may have changed during a long run.
         check_report(args)?;
         file.write(out, &outcome.points).map_err(|error| error.to_string())?;
         let written = Instant::now();
@@ -87,7 +87,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             history: report::history(&outcome, &args.scheme, args.history == History::All),
             seconds,
         };
-        write_report(args, &report).map_err(|problem| format!("{problem}. The mesh was"))?;
+        write_report(args, &report)
+            .map_err(|problem| format!("{problem}. The mesh was written"))?;
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
@@ -101,7 +102,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     })
 }
 
-/// Smooths, on the CPU if the GPU cannot hold the mesh and the user left the choice.
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
 fn smooth(
     args: &SmoothArgs,
     show: &OutputArgs,
@@ -140,7 +141,7 @@ fn smooth(
     })
 }
 
-/// Refuses before the work what would fail after it.
+/// Refuses destinations that cannot be written before the work is done.
 fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
     file.check_destination(out).map_err(|error| error.to_string())?;
     let Some(report) = &args.report else { return Ok(()) };

@@ -42,7 +42,7 @@ pub(crate) fn error(text: &str) {
     eprintln!("gpu-smooth: error: {text}");
 }
 
-/// What to tell of a mesh besides its size, one line each.
+/// Remarks on a mesh besides its size, one line each.
 pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
     let mut remarks = file.notes().to_vec();
     match file.interface_vertices().len() {

@@ -41,8 +41,8 @@ struct Layout {
 struct Element {
     tag: u64,
     kind: Kind,
-    /// What names its region. In version 2.2: its physical group and its geometrical entity, zero for one that it has
-    /// not. In version 4.1: the entity of its block, and zero.
+    /// What names its region. In version 2.2: its physical group and its geometrical entity, zero where it has none. In
+    /// version 4.1: the entity of its block, and zero.
     region: [i64; 2],
     /// As many node tags as the kind has.
     nodes: [u64; 4],
@@ -53,20 +53,20 @@ trait Sink {
     /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
     /// another cursor. Where it returns an error it must not have changed.
     const TAKES_AHEAD: bool = false;
-    /// About so many nodes follow.
+    /// Announces about how many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
-    /// A node, its coordinates just read. `dimension` is that of the model entity it lies on,
+    /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
     /// where the file says so.
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
-    /// The file has parameters of nodes on surfaces of the model.
+    /// Notes that the file has parameters of nodes on surfaces of the model.
     fn parametric(&mut self) {}
-    /// No more nodes follow.
+    /// Ends the list of nodes.
     fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
         Ok(())
     }
-    /// About so many elements follow.
+    /// Announces about how many elements follow.
     fn expect_elements(&mut self, _count: usize) {}
-    /// An element, just read.
+    /// Takes an element that was just read.
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
 }
 
@@ -202,7 +202,7 @@ fn ahead<'a, S: Sink, T: Send>(
     if !S::TAKES_AHEAD {
         return 0;
     }
-    // For errors, which are dropped: the row is read again one by one, and fails again.
+    // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
     let nowhere = &Cursor::new(cursor.source);
     take_rows(cursor, count, read, |row| take(nowhere, sink, row))
 }

@@ -149,7 +149,7 @@ struct Locator<'a> {
     places: Vec<(Location, u64)>,
 }
 
-/// What of a list is looked for.
+/// What is looked for in a list.
 struct Wanted<'a> {
     /// The indices not found yet, ascending.
     left: &'a [usize],
@@ -161,13 +161,13 @@ fn find(source: &Source, nodes: &[usize], triangles: &[usize]) -> Vec<(Location,
     let wanted = |left| Wanted { left, next: 0 };
     let places = Vec::with_capacity(nodes.len() + triangles.len());
     let mut locator = Locator { nodes: wanted(nodes), triangles: wanted(triangles), places };
-    // It was read before without error.
+    // There is no error to handle: the file was read before without one.
     let _ = walk(source, &mut locator);
     locator.places
 }
 
 impl Wanted<'_> {
-    /// Notes where the next of the list stands, if it is looked for.
+    /// Notes the place of the next node or triangle in the file, if it is looked for.
     fn pass(&mut self, places: &mut Vec<(Location, u64)>, cursor: &Cursor<'_>, tag: u64) {
         if self.left.first() == Some(&self.next) {
             places.push((cursor.location(), tag));

@@ -12,7 +12,7 @@ pub(super) enum TagMap {
     Sparse(HashMap<u64, u32>),
 }
 
-/// Stands where there is no index: the highest one in use is less, as there are at most `u32::MAX` vertices.
+/// Marks a tag without a vertex. Indices are less, as there are at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
 impl TagMap {

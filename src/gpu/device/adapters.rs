@@ -1,4 +1,4 @@
-//! The adapters there are.
+//! The adapters of this machine.
 
 /// What an adapter is called and how wgpu drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,13 +38,13 @@ impl AdapterSummary {
     }
 }
 
-/// Every adapter there is, the one that would be chosen first in front.
+/// All adapters of this machine, in the order in which they would be chosen.
 pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
 
-/// Usable adapters, fastest kind first. OpenGL is only looked at where there is nothing better: it
-/// shows the same devices again, and its driver is slow to start.
+/// Adapters that can compute, fastest kind first. OpenGL's are listed only where there are no others: they are the same
+/// devices again, and the driver is slow to start.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
     let native = usable_adapters(wgpu::Backends::PRIMARY);
     if native.is_empty() { usable_adapters(wgpu::Backends::SECONDARY) } else { native }

@@ -1,4 +1,4 @@
-//! A trial of the arithmetic that an adapter's compiler makes of the kernels.
+//! Checks the arithmetic of kernels as the adapter's compiler translates it.
 
 use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
@@ -14,13 +14,13 @@ use crate::gpu::kernels::uniforms::{
 use crate::gpu::scope::scoped;
 
 impl Gpu {
-    /// Tries the arithmetic of the adapter, once: a later call tells what the first one found.
+    /// Checks the arithmetic of the adapter. The check is made once; later calls return its result.
     ///
     /// The kernels hold positions in pairs of floats. A compiler that reorders sums, as WGSL permits, may drop the
     /// second float of each. The kernels guard against it; this call runs one tiny kernel and compares its results
-    /// with exact ones. [`Gpu::open`] makes it, as do the runs of [`Smoother`](crate::Smoother). An application that
-    /// encodes sweeps itself on a device of its own ([`Gpu::new`]) makes it when it starts, on any thread: it polls the
-    /// device and blocks until all work submitted so far is done.
+    /// with exact ones. [`Gpu::open`] calls it, and so do the runs of [`Smoother`](crate::Smoother). An application that
+    /// encodes sweeps itself on a device of its own ([`Gpu::new`]) should call it when it starts. It may be called on any
+    /// thread, polls the device and blocks until all work submitted so far is done.
     ///
     /// # Errors
     /// [`GpuError::Arithmetic`] if digits are lost, or what the device refuses.
@@ -92,7 +92,7 @@ async fn fault(
     Ok(cases.iter().zip(&results).find_map(|(case, result)| case.fault(result)))
 }
 
-/// An input of the kernel, and what is expected of it.
+/// An input of the kernel, and what to check of the result.
 struct Case {
     input: ArithmeticInput,
     expected: Expected,
@@ -105,7 +105,8 @@ enum Expected {
     Positive(bool),
 }
 
-/// Positions up to a million edges from the origin, so that an edge is all in the low parts, and areas of all kinds.
+/// Inputs: positions up to a million edges from the origin, where an edge lies in the low parts alone, and edge vectors
+/// that span areas of all kinds.
 fn cases() -> Vec<Case> {
     let digits = (0..24).map(|i| {
         let n = f64::from(i);
@@ -140,19 +141,19 @@ fn cases() -> Vec<Case> {
     digits.chain(areas).collect()
 }
 
-/// As kernels store it: the high parts, then the low parts.
+/// A position as kernels store it: the high parts, then the low parts.
 fn position([x, y]: [f64; 2]) -> [f32; 4] {
     let ([x, x_low], [y, y_low]) = (pair(x), pair(y));
     [x, y, x_low, y_low]
 }
 
-/// What is left of 48 bits after a few roundings. One float has 24.
+/// The relative error allowed in a pair of floats: its 48 bits less a few roundings. One float has 24 bits.
 const PAIR: f64 = 1.0 / (1u64 << 40) as f64;
-/// What is left of the 24 bits of a float.
+/// The relative error allowed in a float: its 24 bits less a few roundings.
 const FLOAT: f64 = 1.0 / (1u64 << 20) as f64;
 
 impl Case {
-    /// The operation whose result is wrong, if there is one. Comparisons are such that NaN is wrong.
+    /// The operation whose result is wrong, if there is one. Comparisons are written so that NaN counts as wrong.
     fn fault(&self, result: &ArithmeticResult) -> Option<&'static str> {
         if let Expected::Positive(positive) = self.expected {
             let found = result.is_positive != 0.0;
@@ -218,7 +219,7 @@ mod tests {
         gpu.check_arithmetic().unwrap();
     }
 
-    /// What a compiler may make of the sums if nothing keeps it from that.
+    /// Sums as written, as a compiler may rewrite them if nothing prevents it, and the fault to be found then.
     const FOLDED: [(&str, &str, &str); 6] = [
         (
             "opaque(a - aa) + opaque(b - bb)",
@@ -263,7 +264,7 @@ mod tests {
     #[test]
     fn a_nan_area_that_passes_for_positive_is_found() {
         let gpu = Gpu::open(None).unwrap();
-        // !(x > 0) as compilers write it that know no NaN.
+        // !(x > 0) as written by a compiler that assumes there are no NaNs.
         let careless = [("opaque_bits(x) - 1u < 0x7f7fffffu", "!(x <= 0.0)")];
         let operation = "an area that is inverted, flat or not a number passes for positive";
         assert_eq!(fault_after(&gpu, &careless), Some(operation));

@@ -7,12 +7,12 @@ use wgpu::BufferUsages as Usage;
 
 use crate::gpu::device::Gpu;
 
-/// A uniform that stands at a dynamic offset.
+/// Binds a uniform that is read at a dynamic offset.
 pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     bytes(buffer, 0..size_of::<T>() as u64)
 }
 
-/// Some rows of a buffer, each of `size` bytes.
+/// Binds some rows of a buffer, each of `size` bytes.
 pub(crate) fn rows<'b>(
     buffer: &'b wgpu::Buffer,
     range: &Range<u32>,
@@ -29,9 +29,9 @@ pub(crate) fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingRe
     })
 }
 
-/// Bytes of a large buffer that are sent at once, and pieces that are on their way before one is waited for: with
-/// fewer than eight million vertices nothing ever waits.
+/// Bytes of a large buffer that are sent at once.
 const PIECE: usize = 16 << 20;
+/// How many pieces may be under way before one is waited for. With fewer than eight million vertices nothing waits.
 const UNDER_WAY: usize = 8;
 
 /// A buffer holding `contents`. To be called in an error scope.
@@ -53,8 +53,8 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
         write_by_pieces(gpu, &buffer, bytes);
         return buffer;
     }
-    // A device that is lost or out of memory maps nothing, and the error scope hears of it: no reason
-    // to panic, as wgpu's own `create_buffer_init` does.
+    // A device that is lost or out of memory maps nothing. The error scope or a later call reports that, where wgpu's own
+    // `create_buffer_init` would panic.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.slice(..bytes.len()).copy_from_slice(bytes);
     }
@@ -62,14 +62,14 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     buffer
 }
 
-/// Fills a large buffer. What is on its way takes as much memory again, until the device has it: so there is only
-/// so much of it.
+/// Fills a large buffer piece by piece. Until the device has a piece, it takes its size in memory again: so only a few
+/// are under way at once.
 fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: &[u8]) {
     let mut under_way = VecDeque::new();
     for (at, piece) in (0..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
         if under_way.len() == UNDER_WAY {
             let submission_index = under_way.pop_front();
-            // That the device is lost, whoever waits for results is told.
+            // If the device is lost, reading back the results reports it.
             let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
         }
         gpu.queue.write_buffer(buffer, at, piece);

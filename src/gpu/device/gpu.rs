@@ -10,7 +10,7 @@ use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::table::{Kernel, Positions};
 use crate::run::Options;
 
-/// A device with its pipelines: made once, it serves many meshes. A handle: clones name the same.
+/// A device with its pipelines. Made once, it serves many meshes. It is a handle: clones are the same device.
 #[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
@@ -23,20 +23,20 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Takes an application's own device and queue (both are handles: clones name the same device).
+    /// Takes an application's own device and queue (both are handles, which can be cloned).
     ///
-    /// It has to be made with [`Self::required_limits`] or better. Its callbacks for errors and
-    /// for loss stay the application's: this library catches the errors of its own calls in error
-    /// scopes, and learns of a lost device by reading back. What is wrong with an encoder that was passed in (it
-    /// is of another device, or finished) wgpu reports when the application finishes it, to the application.
+    /// The device has to be made with [`Self::required_limits`] or better. Its callbacks for errors and for loss stay the
+    /// application's: this library catches the errors of its own calls in error scopes, and learns of a lost device by
+    /// reading back. Faults of an encoder that was passed in (it is of another device, or finished) are reported by wgpu
+    /// to the application when it finishes the encoder.
     ///
     /// Nothing is submitted and nothing waits, so this may be called on any thread. The arithmetic of the adapter is
-    /// therefore not tried here: runs of [`Smoother`](crate::Smoother) do it first, and an application that encodes
+    /// therefore not checked here: runs of [`Smoother`](crate::Smoother) check it first, and an application that encodes
     /// sweeps itself calls [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
     ///
     /// # Panics
-    /// Nothing here does. But wgpu itself panics where resources of two *instances* meet, in its own calls as in
-    /// this library's: an application has one [`wgpu::Instance`].
+    /// This library does not panic, but wgpu itself does where resources of two *instances* meet. An application should
+    /// have one [`wgpu::Instance`].
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the device binds too few storage buffers, or what it refuses.
@@ -56,9 +56,10 @@ impl Gpu {
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
     }
 
-    /// Compiles all that meshes take with these options, so that neither a frame nor a later
-    /// [`Sweeps::new`](crate::gpu::Sweeps::new) has to wait for it. What is compiled already costs nothing; another
-    /// thread can do it meanwhile. Meshes so large that their positions take two bindings compile for themselves.
+    /// Compiles the kernels that meshes need with these options, so that neither a frame nor a later
+    /// [`Sweeps::new`](crate::gpu::Sweeps::new) waits for the compiler. Kernels that are compiled already cost nothing.
+    /// May be called on another thread. Meshes so large that their positions take two bindings need kernels of their own,
+    /// which are not included.
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
@@ -112,8 +113,8 @@ impl Gpu {
     }
 
     /// The limits to make a device with, for an application that needs `own` for itself and has meshes of up
-    /// to `size`: `own`, raised where the kernels or the meshes need more. Buffers larger than what the
-    /// adapter binds at once are bound part by part: that takes its largest `max_storage_buffer_binding_size`.
+    /// to `size`: `own`, raised where the kernels or the meshes need more. Buffers larger than what the adapter binds at
+    /// once are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize};
@@ -150,7 +151,7 @@ impl Gpu {
         limits::required(own, size, available)
     }
 
-    /// Says whether meshes of this size fit the device, however their buffers are bound. Allocates nothing.
+    /// Checks whether meshes of this size fit the device, bound part by part if need be. Allocates nothing.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if not; it names the buffer and the limit. [`GpuError::TooLarge`] for a mesh that the kernels

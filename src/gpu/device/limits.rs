@@ -16,7 +16,7 @@ macro_rules! row {
     };
 }
 
-/// The limits that the kernels need on meshes bound like this. Tests make a device of exactly these.
+/// The limits that the kernels need on meshes whose positions are bound like this. Tests make a device of exactly these.
 fn rows(positions: Positions) -> [Row; 11] {
     let storage = storage_bindings(positions);
     let largest = FINISH_WORKGROUP.max(WORKGROUP);

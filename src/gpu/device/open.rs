@@ -1,4 +1,4 @@
-//! Opening adapters, of which only those are taken whose arithmetic is right.
+//! Opens adapters, and passes over those whose arithmetic is wrong.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -26,7 +26,7 @@ impl Gpu {
         })
     }
 
-    /// Opens an adapter with all it has, and checks its arithmetic.
+    /// Opens an adapter with the highest limits that it offers, and checks its arithmetic.
     pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let summary = AdapterSummary::new(&adapter.get_info());
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -56,8 +56,8 @@ impl Gpu {
     }
 }
 
-/// Every adapter there is, the one that would be chosen first in front, and why it cannot be used if it cannot. Opens
-/// each of them; [`adapters`](crate::gpu::adapters) only lists them.
+/// All adapters of this machine, in the order in which they would be chosen, each with the reason if it cannot be used.
+/// Opens each of them; [`adapters`](crate::gpu::adapters) only lists them.
 pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     let checked = |adapter: &wgpu::Adapter| {
         (AdapterSummary::new(&adapter.get_info()), Gpu::start(adapter).map(|_| ()))

@@ -24,7 +24,7 @@ struct Need {
 
 /// How a buffer that is larger than a binding is bound.
 enum Spread {
-    /// It cannot be bound.
+    /// It cannot be bound, as it is always bound whole.
     No,
     /// As two bindings, half of the buffer in each.
     Two,
@@ -47,8 +47,8 @@ const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
 const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
-    /// The bytes of each buffer. For the one-rings it is a bound: they hold each corner of a triangle at most once. For
-    /// the best positions too: they hold only free vertices.
+    /// The bytes of each buffer. Two are upper bounds: one-rings hold each corner of a triangle at most once, and best
+    /// positions are kept of free vertices only.
     fn needs(self, positions: Positions) -> [Need; 6] {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
@@ -70,9 +70,9 @@ impl MeshSize {
         ]
     }
 
-    /// The most bytes of device memory that the mesh and sweeps on it take: 84 a vertex. A scheme whose last state is
-    /// its best takes 68. Corrections from coarser levels are not included; they take some 60 more. [`u64::MAX`] for
-    /// a mesh that takes more than that.
+    /// The most bytes of device memory that the mesh and sweeps on it take: about 84 for each vertex. A scheme whose last
+    /// state is its best takes 68. Not included are corrections from coarser levels, which take some 60 more for each
+    /// vertex. [`u64::MAX`] for a mesh that takes more than that.
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }
@@ -102,7 +102,7 @@ impl MeshSize {
             };
             check_limit("max_storage_buffer_binding_size", bound, &what, at_once)?;
         }
-        // That other kernels bind few enough was checked when the `Gpu` was made.
+        // The kernels of positions in one binding were checked against this limit when the `Gpu` was made.
         if positions == Positions::Whole {
             return Ok(());
         }

@@ -14,7 +14,7 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 
-/// Where an application keeps its vertices: f32 x and y of vertex i at `offset + i * stride`.
+/// Where an application keeps its vertices: x and y of vertex i are two f32, the first at byte `offset + i * stride`.
 ///
 /// What follows y within the stride, a z or anything else, is neither read nor written.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +27,7 @@ pub struct VertexBuffer<'a> {
     pub stride: u64,
 }
 
-/// A place of words in a buffer, as the kernels see it: bound from an aligned byte on.
+/// A range of 4-byte words in a buffer, bound from an aligned byte on.
 pub(crate) struct Window<'a> {
     buffer: &'a wgpu::Buffer,
     start: u64,
@@ -83,7 +83,7 @@ impl<'a> Window<'a> {
 }
 
 /// A vertex buffer bound to a mesh for import and export. Made by
-/// [`DeviceMesh::bind_vertices`](crate::gpu::DeviceMesh::bind_vertices); it keeps the buffer alive, and works on when
+/// [`DeviceMesh::bind_vertices`](crate::gpu::DeviceMesh::bind_vertices). It keeps the buffer alive, and can be used after
 /// the mesh is dropped.
 pub struct BoundVertices {
     import: Pipeline,
@@ -137,18 +137,18 @@ impl BoundVertices {
         Ok(Self { import: import?, export: export?, bind_group, count })
     }
 
-    /// Takes all positions, of fixed vertices too, from the application's vertex buffer, as it is when
-    /// the command buffer runs.
+    /// Encodes the import: when the command buffer runs, all positions, those of fixed vertices too, are read from the
+    /// application's vertex buffer.
     ///
     /// A vertex whose floats are those of the last export has not been moved by the application and
     /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
-    /// where it was. Triangles may arrive inverted; sweeps then go on around them.
+    /// where it was. The application may have inverted triangles; sweeps then invert no others and improve the rest.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }
 
-    /// Writes all positions into the application's vertex buffer: of every vertex that a triangle uses, x
-    /// and y and nothing else.
+    /// Encodes the export: when the command buffer runs, x and y of every vertex that a triangle uses are written into
+    /// the application's vertex buffer.
     pub fn encode_export(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth export", &self.export);
     }

@@ -15,12 +15,11 @@ use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::Mesh;
 
-/// A mesh on the device, as long as its triangles stay. Several can be alive at once.
+/// A mesh on the device. Its triangles stay the same; its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the
+/// application through [`BoundVertices::encode_import`]. Several meshes can be on a device at once.
 ///
-/// Its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the application through
-/// [`BoundVertices::encode_import`], topology and pipelines staying as they are. So does the mean
-/// area of the triangles that AREA and RMS measure by: where the application makes the whole mesh larger or
-/// smaller, IMR, AR and EDGE suit better.
+/// AREA, RMS and SHAPE-SIZE measure by the mean area of the triangles as they were uploaded. Where the application makes
+/// the whole mesh larger or smaller, IMR, AR and EDGE suit better.
 pub struct DeviceMesh {
     pub(crate) gpu: Gpu,
     pub(crate) problem: Problem,
@@ -56,12 +55,11 @@ impl DeviceMesh {
         Ok(device_mesh)
     }
 
-    /// Holds these vertices where they are, and lets go of all others. Boundary vertices always stay, named or
-    /// not; so what [`Mesh::fixed`] lists is to be named again if it is to stay. Takes effect in what is
-    /// submitted after the call.
+    /// Fixes these vertices (zero-based) and frees all others, those of [`Mesh::fixed`] too if they are not listed again.
+    /// Boundary vertices always stay, listed or not. Takes effect in what is submitted after the call.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh has not.
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have.
     pub fn set_fixed(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let mut fixed = vec![false; self.vertex_count];
         for &vertex in vertices {
@@ -72,7 +70,7 @@ impl DeviceMesh {
             *flag = true;
         }
         let mut starts = self.problem.ring_start().to_vec();
-        // One start a free vertex; the entry after them is the end of the last ring.
+        // One start for each free vertex; the entry after them is the end of the last ring.
         let free = self.problem.free_count();
         for (start, &vertex) in starts[..free].iter_mut().zip(self.problem.vertices()) {
             *start |= if fixed[vertex as usize] { HELD } else { 0 };
@@ -82,19 +80,19 @@ impl DeviceMesh {
         Ok(scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?)
     }
 
-    /// Binds an application's vertex buffer to the mesh, once: what is encoded in each frame then makes no
-    /// resource. Several can be bound, as they are where frames overlap.
+    /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers
+    /// can be bound, for frames that overlap.
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`,
-    /// [`GpuError::Limit`] if the device cannot bind as much.
+    /// [`GpuError::Limit`] if it is larger than what the device binds at once.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
         BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
     }
 
-    /// Reads the positions back, in the mesh's order and units; blocks until the device has done all
-    /// that was submitted. A vertex in no triangle is where the mesh had it.
+    /// Reads the positions back, in the order and unit of the mesh; blocks until the device has done all that was
+    /// submitted. A vertex of no triangle is where the mesh had it.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -102,7 +100,7 @@ impl DeviceMesh {
         pollster::block_on(self.wait_for_points(Waiting::Block))
     }
 
-    /// As [`read_points`](Self::read_points), without blocking: completes once somebody has polled the device.
+    /// As [`read_points`](Self::read_points), without blocking: completes once the application has polled the device.
     /// The copy is submitted when the future is first polled.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! For applications: a mesh that stays on their device, sweeps in their command encoder, results in their buffers.
+//! For applications: a mesh that stays on their device, sweeps in their command encoders, results in their buffers.
 
 mod exchange;
 mod mesh;

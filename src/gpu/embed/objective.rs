@@ -17,8 +17,8 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Metric;
 
-/// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The
-/// application casts the bytes it reads back to it, or declares the same in its shaders:
+/// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The application
+/// casts the bytes that it reads back to this struct, or declares it in its shaders:
 ///
 /// ```wgsl
 /// struct ObjectiveValues {
@@ -31,8 +31,8 @@ use crate::metric::Metric;
 #[repr(C)]
 pub struct ObjectiveValues {
     /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]; 0 for one that is not the scheme's base
-    /// unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are
-    /// inverted, f by IMR and AR says nothing.
+    /// unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted, f by a metric with
+    /// a barrier (IMR, AR, SHAPE-SIZE) is meaningless.
     pub f: [f32; Metric::ALL.len()],
     /// How many triangles are inverted or flat, in single precision.
     pub inverted: u32,
@@ -47,8 +47,8 @@ impl ObjectiveValues {
     }
 }
 
-/// A place in a buffer of the application, bound to the sweeps whose scheme is to be judged. Made by
-/// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); outlives the sweeps.
+/// A place in a buffer of the application for the objectives of one [`Sweeps`](crate::gpu::Sweeps). Made by
+/// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); it can be used after the sweeps are dropped.
 pub struct BoundObjective {
     dispatches: Arc<Dispatches>,
     publish: Pipeline,

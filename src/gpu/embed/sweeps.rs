@@ -10,10 +10,10 @@ use crate::gpu::encode::Encoder;
 use crate::gpu::run::Dispatches;
 use crate::run::Options;
 
-/// A scheme bound to a mesh on the device. Encodes into the application's command encoder; never submits,
-/// never reads back, never stops by itself.
+/// A scheme bound to a mesh on the device. Encodes sweeps into the application's command encoder; never submits, never
+/// reads back, never stops by itself.
 ///
-/// Several can be bound to one mesh, and those of several meshes interleaved in one encoder.
+/// Several schemes can be bound to one mesh, and the sweeps of several meshes interleaved in one encoder.
 pub struct Sweeps {
     gpu: crate::gpu::Gpu,
     dispatches: Arc<Dispatches>,
@@ -22,11 +22,14 @@ pub struct Sweeps {
 }
 
 impl Sweeps {
-    /// Binds the scheme, relaxation and derivatives of `options` to a mesh. What `options` say on
-    /// stopping has no effect here, nor does [`Options::method`]: a correction from coarser levels takes a line search, which
-    /// the host would have to wait for. The shape guard is that of the metric alone, whatever the mesh is like now.
+    /// Binds the scheme, relaxation and derivatives of `options` to a mesh.
     ///
-    /// Compiles the kernels it is the first to need; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
+    /// What `options` say on stopping has no effect here, nor does [`Options::method`]: a correction from coarser levels
+    /// takes a line search, which the host would have to wait for. Without corrections a large mesh converges in
+    /// hundreds of sweeps instead of a dozen. Metrics without a barrier (RMS, EDGE, AREA) leave no triangle with an
+    /// inverse mean ratio above 30 unless its patch had a worse one.
+    ///
+    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
@@ -49,8 +52,8 @@ impl Sweeps {
         }
     }
 
-    /// Starts the scheme anew: plain sweeps first, over-relaxed ones after. To be called when the
-    /// application has moved vertices far.
+    /// Starts the scheme anew, with plain sweeps before over-relaxed ones. To be called when the application has moved
+    /// vertices far.
     pub fn restart(&mut self) {
         self.done = 0;
     }

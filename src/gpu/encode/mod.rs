@@ -1,4 +1,4 @@
-//! Command encoders: kernels in one pass, or timed in a pass each.
+//! Encodes kernels: all in one pass, or each in a pass that is timed.
 
 mod passes;
 mod timestamps;

@@ -1,4 +1,4 @@
-//! Compute passes: all kernels in one, or a timed one for each.
+//! Compute passes: one for all kernels, or one for each that is timed.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,14 +6,14 @@ use crate::error::GpuError;
 use crate::gpu::encode::timestamps::{Spans, Timestamps};
 use crate::gpu::kernels::pipelines::Pipeline;
 
-/// Where sweeps, imports and the like are encoded: an application's [`wgpu::CommandEncoder`], or the same
-/// under a clock, as [`Timestamps::time`] gives it.
+/// What this library encodes into: an application's [`wgpu::CommandEncoder`], or one whose kernels are timed, made by
+/// [`Timestamps::time`].
 pub trait Encoder: sealed::Target {}
 
 impl Encoder for wgpu::CommandEncoder {}
 impl Encoder for Timed<'_> {}
 
-/// Keeps [`Encoder`] to this library's own.
+/// Keeps other crates from implementing [`Encoder`].
 pub(crate) mod sealed {
     use super::Passes;
 
@@ -33,15 +33,15 @@ impl sealed::Target for wgpu::CommandEncoder {
     }
 }
 
-/// What kernels are encoded into.
+/// The compute passes that the kernels of one call are encoded into.
 pub struct Passes<'e>(State<'e>);
 
-// One on the stack for each call: a box would cost more than the room.
+// It lives on the stack of one call: a box would cost more than the space.
 #[allow(clippy::large_enum_variant)]
 enum State<'e> {
-    /// All in one pass, and the pipeline that is set in it.
+    /// All kernels in one pass. `set` is the pipeline that is set in it.
     One { pass: wgpu::ComputePass<'e>, set: Option<wgpu::ComputePipeline> },
-    /// Each in a pass of its own: core WebGPU takes the time at the ends of a pass only.
+    /// Each kernel in a pass of its own: core WebGPU takes the time at the ends of a pass only.
     Timed { encoder: &'e mut wgpu::CommandEncoder, timestamps: &'e mut Timestamps },
 }
 
@@ -81,8 +81,8 @@ impl<'e> Passes<'e> {
     }
 }
 
-/// An application's encoder under a clock: everything of this library that takes an encoder takes it. It
-/// dereferences to the encoder, so that the application can encode its own in between, untimed.
+/// An application's encoder in which the kernels of this library are timed. All calls of this library that take an
+/// encoder take it. It dereferences to the encoder, so that the application can encode untimed work of its own.
 pub struct Timed<'t> {
     encoder: &'t mut wgpu::CommandEncoder,
     timestamps: &'t mut Timestamps,
@@ -109,7 +109,7 @@ impl sealed::Target for Timed<'_> {
 }
 
 impl Timestamps {
-    /// Puts the application's encoder under the clock. Submits nothing.
+    /// Times the kernels that this library encodes into the application's encoder from now on. Submits nothing.
     pub fn time<'t>(&'t mut self, encoder: &'t mut wgpu::CommandEncoder) -> Timed<'t> {
         self.restart();
         Timed { encoder, timestamps: self }
@@ -117,8 +117,8 @@ impl Timestamps {
 }
 
 impl Timed<'_> {
-    /// Encodes what brings the times into a buffer, and ends the timing. Without this call the times are lost, and
-    /// nothing else.
+    /// Ends the timing and encodes the copy of the times into a buffer. Without this call the times are lost, but
+    /// nothing else is.
     ///
     /// # Errors
     /// What the device refuses.

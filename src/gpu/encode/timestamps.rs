@@ -1,4 +1,4 @@
-//! How long the device takes for each kernel.
+//! Measures how long the device takes for each kernel.
 
 use wgpu::BufferUsages as Usage;
 
@@ -14,11 +14,10 @@ const SET: usize = 1024;
 /// Bytes of a span: two timestamps.
 const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 
-/// A clock for what this library encodes. It needs a device with
+/// Times the kernels that this library encodes, by the device's clock. It needs a device with
 /// [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), see [`Gpu::optional_features`].
 ///
-/// Under the clock every kernel gets a pass of its own, each color of a sweep too, so that a frame takes a little
-/// longer than without.
+/// Every timed kernel gets a pass of its own, each color of a sweep too, so that a frame takes a little longer.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::Timestamps};
@@ -41,15 +40,15 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// ```
 pub struct Timestamps {
     gpu: Gpu,
-    /// Kept from one encoder to the next, and added to as more spans are taken.
+    /// The query sets: kept from one encoder to the next, and more made as more spans are taken.
     sets: Vec<wgpu::QuerySet>,
-    /// What has been encoded under the clock: kernel and color.
+    /// The timed kernels in the order of encoding, with their colors.
     taken: Vec<(Kernel, Option<u32>)>,
     failed: Option<GpuError>,
 }
 
 impl Timestamps {
-    /// A clock for one device. It serves any number of encoders, one after the other.
+    /// Times kernels on one device. It serves any number of encoders, one after the other.
     ///
     /// # Errors
     /// [`GpuError::Feature`] if the device was made without `TIMESTAMP_QUERY`.
@@ -60,13 +59,13 @@ impl Timestamps {
         Ok(Self { gpu: gpu.clone(), sets: Vec::new(), taken: Vec::new(), failed: None })
     }
 
-    /// Forgets what was taken before.
+    /// Forgets the spans of the last encoder.
     pub(crate) fn restart(&mut self) {
         self.taken.clear();
         self.failed = None;
     }
 
-    /// Encodes what brings the times into a buffer.
+    /// Encodes the copy of the times into a buffer.
     pub(crate) fn resolve(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -87,7 +86,7 @@ impl Timestamps {
         Ok(Spans { gpu: gpu.clone(), times, taken })
     }
 
-    /// Takes the times of a pass that is about to be encoded.
+    /// The places for the times of a pass that is about to be encoded.
     pub(crate) fn next(
         &mut self,
         kernel: &Kernel,
@@ -117,7 +116,7 @@ impl Timestamps {
     }
 }
 
-/// Times on their way: to be read once the encoder's command buffer has been submitted.
+/// The times of one encoder's kernels, to be read once its command buffer has been submitted.
 pub struct Spans {
     gpu: Gpu,
     times: wgpu::Buffer,
@@ -127,11 +126,11 @@ pub struct Spans {
 /// The time one kernel took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Which one; [`Kernel::label`] is its name.
+    /// The kernel; [`Kernel::label`] names it.
     pub kernel: Kernel,
     /// The color of the vertices, from 0 on, if it is a sweep.
     pub color: Option<u32>,
-    /// From the start of the first kernel under the clock to that of this one, in nanoseconds.
+    /// From the start of the first timed kernel to the start of this one, in nanoseconds.
     pub start: f64,
     /// From the start of this kernel's pass to its end, in nanoseconds.
     pub nanoseconds: f64,
@@ -146,7 +145,7 @@ impl Spans {
         pollster::block_on(self.wait(Waiting::Block))
     }
 
-    /// As [`read`](Self::read), without blocking: completes once somebody has polled the device.
+    /// As [`read`](Self::read), without blocking: completes once the application has polled the device.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.

@@ -1,4 +1,4 @@
-//! Pipelines and bind groups. All are made here; the pipelines of a run once per device.
+//! Makes pipelines and bind groups. The pipelines of runs are made once for a device.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -7,7 +7,7 @@ use crate::error::GpuError;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::scope::scoped;
 
-/// The bindings of group 0, in order. Tests hold them against the WGSL.
+/// The bindings of group 0, in order. Tests compare them with the WGSL.
 fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
     let mut bindings = bindings_of_whole(interface).to_vec();
     if interface.sees(positions) == Positions::InTwo {
@@ -79,7 +79,7 @@ impl Binding {
     }
 }
 
-/// The most storage buffers a kernel sees, to be held against the device's limit.
+/// The most storage buffers that a kernel binds, to be compared with the device's limit.
 pub(crate) fn storage_bindings(positions: Positions) -> u32 {
     let bindings = bindings(Interface::Run, positions);
     bindings.iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32

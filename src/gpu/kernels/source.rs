@@ -126,7 +126,7 @@ impl Kernel {
     }
 }
 
-/// Constants shared with Rust.
+/// The constants that kernels share with Rust.
 fn constants() -> String {
     let mut text = String::new();
     for (name, value) in [
@@ -228,8 +228,8 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// The tracked values of a triangle: q² - ideal² of each metric, and 1 if its area is not positive. Beside them
-/// imr² - 1.
+/// Two functions of a triangle: `tracked_values`, which returns q² - ideal² of each metric and then 1 if the area is
+/// not positive, and `shape_excess`, which returns imr² - 1.
 fn tracked_metrics(metrics: &[Metric]) -> String {
     let mut text = INVARIANTS.to_owned();
     text.extend(metrics.iter().map(|m| m.properties().wgsl));

@@ -12,7 +12,7 @@ pub enum Kernel {
     Objective(Vec<Metric>),
     /// Completes the sums of [`Objective`](Self::Objective) and decides whether the run ends.
     Finish(Vec<Metric>),
-    /// Copies the positions aside if they are the best so far.
+    /// Keeps a copy of the positions if they are the best so far.
     KeepBest,
     /// Reads positions from an application's vertex buffer.
     Import,
@@ -22,7 +22,7 @@ pub enum Kernel {
     Publish,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
-    /// Smooths that gradient over the one-rings, before it is restricted.
+    /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
     SmoothGradient,
     /// Sums the smoothed gradient over each aggregate: from the free vertices to the first coarse level.
     Restrict,
@@ -32,7 +32,7 @@ pub enum Kernel {
     MatrixVector,
     /// One step of Chebyshev's iteration on a coarse level.
     Chebyshev,
-    /// Multiplies by the inverse on the coarsest level.
+    /// Solves on the coarsest level: its inverse matrix times the right-hand side.
     CoarsestSolve,
     /// Partial sums of the objective with the vertices moved along the correction, and of the slope there.
     ObjectiveAlongCorrection(Metric),
@@ -40,11 +40,11 @@ pub enum Kernel {
     SumAlongCorrection,
     /// Moves the free vertices along the correction.
     MoveAlongCorrection,
-    /// Tries the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
+    /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
     CheckArithmetic,
 }
 
-/// What a kernel binds as group 0.
+/// The bindings of a kernel, all in group 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interface {
     /// A run on a mesh: `shaders/common.wgsl`.
@@ -53,7 +53,7 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
-    /// A mesh that is corrected: `shaders/levels/fine.wgsl`.
+    /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
     Fine,
     /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
     Transfer,
@@ -74,7 +74,8 @@ impl Interface {
         Interface::Arithmetic,
     ];
 
-    /// How its kernels bind positions on a mesh bound like this: interfaces without positions have one form only.
+    /// How the kernels of this interface bind the positions of a mesh that are bound as `positions` says. Interfaces
+    /// without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
             Interface::Run | Interface::Exchange | Interface::Fine => positions,

@@ -19,7 +19,7 @@ pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 /// The slot of the worst imr² - 1.
 pub(crate) const WORST: u32 = INVERTED + 1;
-/// Set in the ring start of a vertex that is to stay, though it has a ring. Ring starts must be less.
+/// Set in the ring start of a free vertex that the application holds in place. Ring starts themselves are less.
 pub(crate) const HELD: u32 = 1 << 31;
 
 /// `Params` in shaders/params.wgsl.
@@ -150,7 +150,7 @@ pub(crate) fn split(p: DVec2) -> [f32; 4] {
     [x, y, x_low, y_low]
 }
 
-/// The point that [`split`] gave or the device moved.
+/// The point that pairs of floats stand for: the inverse of [`split`].
 pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
     DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
 }

@@ -19,7 +19,7 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
-    /// How they are bound.
+    /// How the buffers are bound.
     pub(crate) parts: Parts,
 }
 
@@ -42,7 +42,8 @@ impl MeshBuffers {
         })
     }
 
-    /// The positions, and their low parts where they are by themselves.
+    /// The binding of the positions; where they take two bindings, that of their high parts and that of their low
+    /// parts.
     pub(crate) fn bind_positions(
         &self,
     ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
@@ -83,10 +84,11 @@ impl MeshBuffers {
     }
 }
 
-/// Bytes of the high or the low parts of a position.
+/// Bytes of the high parts of a position; its low parts have as many.
 const PART: u64 = POSITION / 2;
 
-/// The numbers of the buffer of positions: vertex by vertex, or all the low parts from a byte on.
+/// The content of the buffer of positions: high and low parts of one vertex after the other, or, with `low`, all high
+/// parts and from that byte on all low parts.
 fn laid_out(positions: &[DVec2], low: Option<u64>) -> Vec<[f32; 2]> {
     let count = positions.len();
     let (step, low, length) = match low {

@@ -1,4 +1,4 @@
-//! A mesh on a device: its buffers, and how they are bound where a device binds less at once.
+//! A mesh on a device: its buffers, and how they are bound where they are larger than a binding.
 
 mod buffers;
 mod parts;

@@ -1,9 +1,9 @@
 //! How a mesh is bound where its buffers are larger than a binding: part by part.
 //!
 //! Buffers stay whole. A sweep over a color is one dispatch, or several where the one-rings of the color do not fit
-//! one binding; each sees those of its own vertices. So it is with the triangles of the objective. Positions are
-//! read from anywhere, and every kernel sees all of them, in two bindings if need be: the high parts
-//! and the low parts.
+//! one binding; each dispatch binds the one-rings of its own vertices. Likewise the objective takes a dispatch for each
+//! part of the triangles. Any position may be read, so that every kernel binds all of them, in two bindings if need
+//! be: the high parts and the low parts.
 
 use std::ops::Range;
 
@@ -15,38 +15,39 @@ use crate::gpu::kernels::table::Positions;
 use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 
-/// The parts of a mesh: one of each kind where all fits a binding.
+/// The parts of a mesh, by kind. A kind that fits one binding has one part.
 pub(crate) struct Parts {
-    /// The byte of the buffer of positions from which on there are the low parts, if these take a binding of
-    /// their own.
+    /// The byte at which the low parts start in the buffer of positions, if they take a binding of their own.
     pub(crate) low_positions: Option<u64>,
-    /// The one-rings.
+    /// The parts of the one-rings.
     pub(crate) rings: Vec<RingPart>,
-    /// The triangles.
+    /// The parts of the triangles.
     pub(crate) triangles: Vec<Range<u32>>,
-    /// The free vertices, for what is one position each.
+    /// The parts of the free vertices, for buffers that hold a position for each.
     pub(crate) free: Vec<Range<u32>>,
 }
 
 /// The one-rings that are bound at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RingPart {
-    /// Whose they are.
+    /// The vertices that these one-rings surround.
     pub(crate) vertices: Range<u32>,
-    /// Where they are in the buffer, from an aligned place on.
+    /// The range that is bound of the buffer of one-rings. Its start is aligned.
     pub(crate) entries: Range<u32>,
 }
 
 impl Parts {
+    /// Cuts a mesh into parts that fit the limits.
+    ///
     /// # Errors
-    /// [`GpuError::Limit`] if the mesh does not fit the limits even so.
+    /// [`GpuError::Limit`] if no parts of the mesh do.
     pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
         let triangles = problem.triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
         size.check(limits)?;
         let free = problem.free_count() as u32;
-        // Of triangles whole rounds of the objective, whose sums then do not depend on the parts: 64 triangles are
-        // bytes enough for a binding to begin after them. So many positions are, too.
+        // A part has whole rounds of the objective, so that the sums do not depend on the parts. A binding may start
+        // after a round, as the bytes of 64 triangles are a multiple of the alignment; so are those of 64 positions.
         let round = objective_invocations(triangles);
         Ok(Self {
             low_positions: low_positions(size.vertices, limits),
@@ -67,12 +68,12 @@ impl Parts {
     }
 }
 
-/// A part, or the last one where another kind has more.
+/// The part with this number, or the last one of a kind that has fewer.
 pub(crate) fn of_part<T>(parts: &[T], part: usize) -> &T {
     &parts[part.min(parts.len() - 1)]
 }
 
-/// Where the low parts of so many positions begin, if they take a binding of their own.
+/// The byte at which the low parts of this many positions start, if they take a binding of their own.
 fn low_positions(vertices: usize, limits: &wgpu::Limits) -> Option<u64> {
     let in_two = Positions::of(vertices, limits) == Positions::InTwo;
     let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
@@ -140,7 +141,7 @@ mod tests {
         let parts = rings(&[0, 100, 200, 257, 300, 500], &binding(1024)).unwrap();
         let part = |vertices, entries| RingPart { vertices, entries };
         assert_eq!(parts, [part(0..2, 0..200), part(2..4, 192..300), part(4..5, 256..500)]);
-        // Nobody is left out, whatever the size of a binding.
+        // No vertex is left out, whatever the size of a binding.
         let start: Vec<u32> = (0..1000u32).map(|v| 6 * v + v % 5).collect();
         for size in [512, 1000, 1028, 4096] {
             let parts = rings(&start, &binding(size)).unwrap();

@@ -36,7 +36,7 @@ pub(crate) struct Dispatches {
     uniforms: Uniforms,
 }
 
-/// What the dispatches are for, and the uniforms that say so: those of sweeps by step, then by color and part; then
+/// The steps and ranges of all dispatches, one uniform each: first those of sweeps, by step, then by color and part; then
 /// those of the triangles; then those of the free vertices.
 struct Uniforms {
     /// Every different step of the run.
@@ -100,7 +100,7 @@ impl Uniforms {
         bytes
     }
 
-    /// Where the uniforms of a step begin, if it is one of the run's.
+    /// The number of the first uniform of a step, if it is one of the run's.
     fn of_step(&self, step: &Step) -> Option<usize> {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
@@ -115,8 +115,8 @@ impl Uniforms {
 }
 
 impl Dispatches {
-    /// Makes the pipelines and buffers of a plan whose sweeps are among `steps`. Without `keep_best` the state of
-    /// interest is always the last.
+    /// Makes the pipelines and buffers of a plan whose sweeps are among `steps`. With `keep_best`, an evaluation keeps a
+    /// copy of the best positions.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
@@ -196,7 +196,7 @@ impl Dispatches {
         })
     }
 
-    /// One sweep over all colors, as one of the run's steps says.
+    /// Encodes one sweep over all colors by one of the run's steps.
     pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &Step) {
         let key = (step.metric, step.derivatives);
         let pipeline = self.sweeps.iter().find(|known| (known.0, known.1) == key);
@@ -213,7 +213,8 @@ impl Dispatches {
         }
     }
 
-    /// Evaluates the objectives, judges, and keeps the positions if they are the best.
+    /// Encodes the evaluation of the objectives, the decision whether the run ends, and the copy of the positions if
+    /// they are the best so far.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
         for part in 0..self.uniforms.triangles.len() {
             passes.run(&self.objective, None, |pass| {

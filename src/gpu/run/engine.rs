@@ -25,7 +25,7 @@ pub(crate) struct GpuEngine<'a> {
     mesh: MeshBuffers,
     dispatches: Dispatches,
     levels: Option<Levels>,
-    /// What the levels were made from.
+    /// The hierarchy that the levels were made from.
     hierarchy: Option<Hierarchy>,
     waiting: Waiting,
     /// Evaluations read back so far.
@@ -33,9 +33,9 @@ pub(crate) struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order)
-    /// and makes the pipelines of `steps`, all that a run by the plan may take. The plan's stop rule is what the
-    /// device ends [`Engine::sweeps`] by.
+    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order) and makes the pipelines
+    /// of `steps`, which are all that a run by the plan may take. The device ends [`Engine::sweeps`] by the plan's stop
+    /// rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or what the device refuses.
@@ -70,7 +70,7 @@ impl<'a> GpuEngine<'a> {
         control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
     }
 
-    /// Submits sweeps, the first evaluation in front if there was none yet, and adds what the device made of them.
+    /// Submits sweeps, with an evaluation in front if there was none yet, and adds the device's results to the history.
     async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
         self.submit(|passes| {
             if self.evaluated == 0 {
@@ -101,8 +101,8 @@ impl<'a> GpuEngine<'a> {
         values
     }
 
-    /// All positions, given those of the free vertices on the device. Fixed vertices have not moved, and a free one that
-    /// has not keeps all its bits, which the device's pairs of floats do not hold.
+    /// All positions, given those of the free vertices on the device. A vertex that has not moved keeps the bits that it
+    /// had at the start, of which the device's pairs of floats do not hold all.
     fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
         let mut positions = self.start.to_vec();
         for (position, now) in positions.iter_mut().zip(free) {
@@ -173,7 +173,7 @@ impl Engine for GpuEngine<'_> {
     }
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
-        // Two at once would be more than the mesh itself.
+        // The old levels go first: both at once would take more memory than the mesh itself.
         self.levels = None;
         let Self { gpu, problem, mesh, dispatches, .. } = self;
         self.levels = Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy)?);

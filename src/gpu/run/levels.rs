@@ -25,7 +25,7 @@ pub(crate) struct Levels {
     ops: wgpu::Buffer,
     /// Bytes from one uniform to the next.
     stride: u32,
-    /// From the positions to the correction.
+    /// What computes the correction from the positions.
     correction: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
@@ -36,9 +36,9 @@ pub(crate) struct Levels {
 struct Dispatch {
     pipeline: Pipeline,
     op: LevelOp,
-    /// Which uniform it is.
+    /// The number of its uniform.
     number: u32,
-    /// Which bind group it sees.
+    /// The number of its bind group.
     bind_group: usize,
     groups: Groups,
 }
@@ -48,7 +48,7 @@ enum Groups {
     Just(u32),
 }
 
-/// What a dispatch sees: a part of the mesh, pages of the structure and the values.
+/// What a dispatch binds: a part of the mesh, pages of the structure and the values.
 #[derive(Clone, Copy, PartialEq)]
 enum Bound {
     Fine { part: usize },
@@ -56,12 +56,12 @@ enum Bound {
     Coarse { structure: usize, values: usize },
 }
 
-/// Places in `vectors`: the totals first, so that they can be read back, then the partial sums; vectors of coarse
-/// levels after them.
+/// The place of the four totals in `vectors`: the start, from where they are read back.
 const TOTALS: u32 = 0;
+/// The place of the partial sums in `vectors`. The vectors of the coarse levels follow.
 const SUMS: u32 = 4;
 
-/// What is written to the arrays of the kernels while the dispatches are listed.
+/// The content of the kernels' arrays, collected while the dispatches are listed.
 struct Layout<'g> {
     gpu: &'g Gpu,
     positions: Positions,
@@ -79,7 +79,7 @@ impl Layout<'_> {
         at
     }
 
-    /// Places a matrix and the reciprocals of its diagonal, where they are needed.
+    /// Places a matrix and the reciprocals of its diagonal, which may be empty.
     fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, LevelOp), GpuError> {
         let (structure, [starts, columns]) =
             self.structure.place([matrix.starts(), matrix.columns()])?;
@@ -107,7 +107,8 @@ impl Layout<'_> {
         Ok(Dispatch { pipeline, op, number, bind_group, groups })
     }
 
-    /// Lists one V-cycle over the levels, from the right-hand side to the solution, whose place is returned.
+    /// Lists the dispatches of one V-cycle over the levels. `right` is the place of the right-hand side; the place of the
+    /// solution is returned.
     fn solve(
         &mut self,
         levels: &[Level],
@@ -127,7 +128,7 @@ impl Layout<'_> {
         let (other, step) = (self.vector(rows), self.vector(rows));
         let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
         let smoother = LevelOp { right, step, ..operator };
-        // Two steps from the first vector (or zero) over the second to the third.
+        // Two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, one on to `to`.
         let smooth = |layout: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
             let [first, again, now] = CHEBYSHEV;
             let one = LevelOp { x: from, out: over, b: first, ..smoother };
@@ -162,7 +163,7 @@ impl Layout<'_> {
         self.step(Kernel::MatrixVector, bound, Groups::ForRows, op)
     }
 
-    /// The buffers, and the bind groups for what was listed. `params` are those of the run on `mesh`.
+    /// Makes the buffers, and the bind groups of the dispatches listed. `params` are those of the run on `mesh`.
     fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
         let gpu = self.gpu;
         let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
@@ -249,7 +250,7 @@ impl Levels {
         let right = layout.vector(aggregates as usize);
         let free = problem.free_count() as u32;
         let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
-        // A step on the free vertices, by what one-rings are bound at once.
+        // Lists a step on the free vertices, a dispatch for each part of the one-rings.
         let by_rings = |layout: &mut Layout<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
             for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
                 let rows = vertices.end - vertices.start;
@@ -313,23 +314,23 @@ impl Levels {
         Ok(Self { bind_groups, ops, stride, correction, objective, sum, movement, vectors })
     }
 
-    /// From the positions to the correction.
+    /// Encodes the computation of the correction from the positions.
     pub(crate) fn encode_correction(&self, passes: &mut Passes<'_>) {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Evaluates the objective along the correction; the totals are then at the start of `vectors`.
+    /// Encodes the objective along the correction. The totals are then at the start of `vectors`.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
         self.encode(passes, &self.sum);
     }
 
-    /// Moves the vertices along the correction.
+    /// Encodes the movement of the vertices along the correction.
     pub(crate) fn encode_movement(&self, passes: &mut Passes<'_>) {
         self.encode(passes, &self.movement);
     }
 
-    /// Sets how far the next submission goes along the correction.
+    /// Sets how far the next submission goes along the correction, as a multiple of it.
     pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) {
         for step in self.objective.iter().chain([&self.movement]) {
             let op = LevelOp { a: length, ..step.op };

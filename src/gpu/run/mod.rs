@@ -1,4 +1,4 @@
-//! Where a run computes on a device: the dispatches of its sweeps and corrections.
+//! A run on a device: the dispatches of its sweeps and corrections.
 
 mod dispatches;
 mod engine;

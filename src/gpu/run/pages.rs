@@ -16,14 +16,14 @@ pub(crate) struct Pages<T> {
 }
 
 impl<T: bytemuck::NoUninit> Pages<T> {
-    /// None yet. `what` they hold is for labels and errors.
+    /// No arrays yet. `what` names their content in labels and errors.
     pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
         let limits = gpu.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         Self { what, most, pages: vec![Vec::new()] }
     }
 
-    /// Places arrays that a kernel sees together: the page, and where in it each begins.
+    /// Places arrays that a kernel binds together. Returns their page, and where in it each of them starts.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if they do not fit one page.

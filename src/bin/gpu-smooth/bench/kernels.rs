@@ -3,8 +3,9 @@
 use gpu_smooth::gpu::{Kernel, Timestamps};
 use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, SmoothError, Sweeps, wgpu};
 
-/// Sweeps before those that are timed, and these.
+/// Sweeps before those that are timed.
 const BEFORE: u32 = 6;
+/// Sweeps that are timed.
 const TIMED: u32 = 5;
 
 /// What one kernel takes of a sweep.

@@ -17,14 +17,14 @@ use crate::tell;
 use crate::{engine, explain};
 use report::{KernelRow, Row};
 
-/// An engine, and the bytes a second it reads and writes in copying.
+/// An engine, and how many bytes a second it reads and writes when it copies.
 struct Place {
     gpu: Option<Gpu>,
     name: String,
     copy_rate: f64,
 }
 
-/// Tells an error in the user's terms.
+/// Words an error in the user's terms.
 type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
@@ -74,7 +74,7 @@ fn measure_all(
                 }
                 rows.push(row);
             }
-            // What one adapter cannot do need not keep the rest from being measured.
+            // Where one adapter fails, the rest are measured all the same.
             Err(SmoothError::Gpu(error)) if places.len() > 1 || !rows.is_empty() => {
                 tell::note(false, &format!("{}: {error}", place.name));
             }

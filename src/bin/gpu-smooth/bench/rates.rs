@@ -1,4 +1,4 @@
-//! How fast memory is copied, for what is measured to be compared with.
+//! How fast memory is copied, the rate that sweeps are compared with.
 
 use std::time::{Duration, Instant};
 
@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 /// Bytes copied at once: more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// Copies of which the fastest counts, and copies in one submission.
+/// How often copying is timed; the fastest time counts.
 const REPEATS: u32 = 5;
+/// Copies in one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
 /// Bytes read and written per second by all cores together.
@@ -65,13 +66,13 @@ pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
             pass.dispatch_workgroups(groups, 1, 1);
         }
         gpu.queue().submit([encoder.finish()]);
-        // A device that is lost copies nothing, and what is measured after this says so.
+        // A device that is lost copies nothing; the measurements after this one report it.
         device.poll(wgpu::PollType::wait_indefinitely()).ok();
     };
     fastest(SUBMITTED, copy) * bytes as f64 / BYTES as f64
 }
 
-/// Bytes per second of the fastest of some calls, each of which copies so often.
+/// Bytes read and written per second by the fastest of some calls, each of which makes `copies` copies.
 fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
     let time = || {
         let start = Instant::now();

@@ -18,13 +18,13 @@ pub(super) struct Row {
     pub(super) triangles: usize,
     pub(super) free: usize,
     pub(super) colors: usize,
-    /// Of a sweep with the objective after it, as for all below.
+    /// The time of a sweep with the objective after it, from which the rates below follow.
     pub(super) seconds_per_sweep: f64,
     pub(super) vertex_updates_per_second: f64,
-    /// The least that has to be read and written, over the time.
+    /// The least bytes that have to be read and written, over the time.
     pub(super) bytes_per_second: f64,
     pub(super) share_of_copy_rate: f64,
-    /// By the device's clock, if it has one.
+    /// The time of each kernel by the device's clock, if it has one.
     pub(super) kernels: Option<Vec<KernelRow>>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct KernelRow {
 }
 
 impl KernelRow {
-    /// Of a kernel that has to read and write so many bytes, if they are many.
+    /// The row of a kernel. `bytes` is the least that it has to read and write, given only where that is much.
     pub(super) fn new(time: &KernelTime, bytes: Option<u64>, copy_rate: f64) -> Self {
         let rate = bytes.map(|bytes| bytes as f64 / time.seconds);
         Self {
@@ -52,7 +52,7 @@ impl KernelRow {
     }
 }
 
-/// What stands above the rows.
+/// The head of the table.
 pub(super) fn head(args: &BenchArgs, places: &[Place]) -> String {
     let mut text = String::new();
     for place in places {
@@ -93,7 +93,7 @@ impl Row {
     }
 }
 
-/// The kernels of all rows that have any.
+/// The tables of kernels, one for each row that has them.
 pub(super) fn kernels(rows: &[Row]) -> String {
     let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
     let mut text = String::new();

@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 use gpu_smooth::SmoothError;
 use gpu_smooth::internal::{Problem, Stepwise};
 
-/// Sweeps before the clock starts: kernels are compiled, caches warm, over-relaxation begun.
+/// Sweeps before the clock starts. After them kernels are compiled, caches warm and sweeps over-relaxed.
 const BEFORE: u32 = 6;
-/// Sweeps timed at once take about this long,
+/// About how long a batch of sweeps, which are timed together, takes.
 const BATCH: Duration = Duration::from_millis(100);
-/// and of so many such times the median counts, within the seconds the user gives.
+/// The most batches, whose median counts; fewer if the seconds that the user gives end before.
 const BATCHES: usize = 15;
 
-/// Bytes of a position, in double precision or as two floats a coordinate.
+/// Bytes of a position: of its coordinates in double precision, or as two floats each.
 const POSITION: u64 = 16;
 
 /// Bytes that a sweep reads and writes if it touches everything once and nothing twice: all positions, the
@@ -23,7 +23,7 @@ pub(crate) fn sweep_bytes(problem: &Problem) -> u64 {
     POSITION * (vertices + free) + rings
 }
 
-/// The same for the objective: all positions and triangles.
+/// Bytes that an evaluation of the objective reads if it reads everything once: all positions and triangles.
 pub(crate) fn objective_bytes(problem: &Problem) -> u64 {
     POSITION * problem.positions().len() as u64 + 12 * problem.triangles().len() as u64
 }
