@@ -1,4 +1,4 @@
-//! Root mean square edge length.
+//! The metric RMS, the root mean square of the edge lengths.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -21,12 +21,13 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("rms.wgsl"),
 };
 
-/// q² - 1, with q² = (excess + area) / mean.
+/// q² - 1 for q² = (excess + area) / mean.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (t.excess + t.area) * (1.0 / t.mean) - 1.0
 }
 
+/// Value and derivatives of [`value`] by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let zero = t.area.constant(0.0);

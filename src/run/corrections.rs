@@ -15,12 +15,12 @@ use crate::run::yielding::yield_now;
 /// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
 /// a few bad triangles would force every correction to be short.
 const SWEEPS_PAY: f64 = 0.1;
-/// Over-relaxation of sweeps before corrections begin, except the first sweep. The best in measurements from strongly
+/// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
 /// perturbed and smoothly distorted meshes of 2,000 to a million vertices.
 const OMEGA_BEFORE: f64 = 1.5;
-/// Over-relaxation of sweeps that are followed by corrections. Measured like [`OMEGA_BEFORE`].
+/// Over-relaxation of sweeps that are followed by corrections. Chosen by the same measurements as [`OMEGA_BEFORE`].
 const OMEGA_BETWEEN: f64 = 1.3;
-/// Number of corrections after which the levels are fitted to the sizes of elements again, if these have changed.
+/// Number of corrections tried after which the levels are fitted to the sizes of elements again, if these have changed.
 const RESIZE_AFTER: u32 = 2;
 /// Sizes of elements are taken to have changed if the excess of f has dropped by more than this share since corrections
 /// began.
