@@ -1,4 +1,4 @@
-//! Corrections from coarser levels, on the CPU.
+//! The V-cycle that computes corrections from coarser levels, on the CPU.
 
 use glam::Vec2;
 
@@ -6,11 +6,11 @@ use crate::layout::Problem;
 use crate::parallel::for_each_chunk;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
-/// Rows that are not worth splitting among threads.
+/// Number of rows of one task.
 const GRAIN: usize = 512;
 
-/// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
-/// descent.
+/// The correction -P M⁻¹ Pᵀ g, given the gradient g of Σ q² at the free vertices. P is the prolongation from the
+/// aggregates of the free vertices, M⁻¹ one V-cycle over the coarse levels. The correction is a direction of descent.
 pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
@@ -19,7 +19,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let root = hierarchy.roots();
-    // The values are those of the neighbors times their roots.
+    // `values` are already multiplied by the roots of their vertices.
     let around = |v: usize, values: &[Vec2]| -> Vec2 {
         root[v] * ring(v).fold(Vec2::ZERO, |sum, k| sum + values[k])
     };
@@ -46,7 +46,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
     })
 }
 
-/// One V-cycle over the levels, from zero.
+/// One V-cycle over the coarse levels, starting from zero.
 fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
     let Some((level, below)) = levels.split_first() else { return Vec::new() };
     let n = right.len();
@@ -75,7 +75,7 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
     rows(right.len(), |i| right[i] - times(&level.operator, i, x))
 }
 
-/// Two steps of Chebyshev's iteration from `x`, or from zero.
+/// Two steps of the Chebyshev iteration, starting from `x` or from zero.
 fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {

@@ -77,7 +77,7 @@ impl Topology<'_> {
     }
 
     /// The boundary edge after another. Goes around the vertex where that edge ends, from triangle to triangle, to the
-    /// other end of the fan. Fast, as the fans of a vertex share no triangle.
+    /// other end of the fan. The fans of a vertex share no triangle, so each triangle is visited once per corner.
     fn next_on_boundary(&self, side: Side) -> Option<Side> {
         let [mut before, pivot] = self.ends(side);
         let mut triangle = side.triangle;

@@ -11,8 +11,8 @@ use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::winding::{NONE, are_positive, neighbors, wind};
 
-/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if these are all
-/// counter-clockwise.
+/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
+/// consistent and counter-clockwise already.
 #[derive(Clone, Debug)]
 pub struct Topology<'m> {
     triangles: Cow<'m, [[u32; 3]]>,
