@@ -1,5 +1,5 @@
-//! Derivatives by forward differences, as Mesquite computes them. Only there to test the cost model of Park & Shontz. Not
-//! inlined, so compiled without the processor's special instructions: that saves compile time, and makes them slow.
+//! Derivatives by forward differences, as Mesquite computes them. Only there to test the cost model of Park & Shontz.
+//! Not inlined, so compiled without the processor's special instructions: that saves compile time, and makes them slow.
 
 use fearless_simd::prelude::*;
 

@@ -87,8 +87,8 @@ fn newton_step<S: Simd>(
 }
 
 /// The Newton direction d = -H⁻¹g, the slope g·d, and the vertices where d descends. H is made positive definite:
-/// eigenvalues become absolute, and at least `floor` times the largest. There is no descent where the objective is flat or
-/// not finite.
+/// eigenvalues become absolute, and at least `floor` times the largest. There is no descent where the objective is flat
+/// or not finite.
 #[inline(always)]
 fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Mask<S>) {
     let [xx, xy, yy] = at.hessian;

@@ -32,8 +32,8 @@ pub(crate) struct Along<'a> {
     pub(crate) length: f64,
 }
 
-/// The mean of q² - ideal² at moved positions. `None` if the move inverts or flattens a triangle, or makes an inverse mean
-/// ratio worse that is then above `guard`.
+/// The mean of q² - ideal² at moved positions. `None` if the move inverts or flattens a triangle, or makes an inverse
+/// mean ratio worse that is then above `guard`.
 pub(crate) fn mean_excess_along(
     metric: Metric,
     problem: &Problem,

@@ -19,8 +19,8 @@ const COPY: usize = 1 << 14;
 
 /// The result of a visit at a vertex: the new position, or the gradient.
 trait Found: Send {
-    /// Whether the visit takes Newton steps; if not, it finds the gradient. A constant, so that for each type only one of
-    /// the two is compiled.
+    /// Whether the visit takes Newton steps; if not, it finds the gradient. A constant, so that for each type only one
+    /// of the two is compiled.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }

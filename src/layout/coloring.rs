@@ -38,8 +38,8 @@ impl Coloring {
         Self::in_blocks(topology, &numbering, BLOCK)
     }
 
-    /// Colors the free vertices as [`Self::new`] does, in blocks along a curve that contains all of them. Faster if most
-    /// neighbors are near each other on the curve.
+    /// Colors the free vertices as [`Self::new`] does, in blocks along a curve that contains all of them. Faster if
+    /// most neighbors are near each other on the curve.
     pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
         match curve.len() {
             // A single block does not need the curve, and `new` colors it by the numbering alone.
@@ -336,8 +336,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         color
     }
 
-    /// Gives a vertex the lower color of a neighbor, if no other neighbor has it and that neighbor can take another color
-    /// below the vertex's own.
+    /// Gives a vertex the lower color of a neighbor, if no other neighbor has it and that neighbor can take another
+    /// color below the vertex's own.
     fn lower(&self, v: u32, colors: &mut [u32]) {
         let color = colors[v as usize];
         // The colors of neighbors, and the colors that several neighbors share.

@@ -138,8 +138,8 @@ impl Problem {
         (self.center, self.scale)
     }
 
-    /// Converts the normalized positions of all vertices, fixed ones included, to the mesh's units. Returns each with the
-    /// number that its vertex has in the mesh.
+    /// Converts the normalized positions of all vertices, fixed ones included, to the mesh's units. Returns each with
+    /// the number that its vertex has in the mesh.
     pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
         let point = |&now: &DVec2| (self.center + now / self.scale).to_array();
         self.vertices.iter().copied().zip(positions.iter().map(point))
@@ -202,8 +202,8 @@ fn rings(
     let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
-    // Along the curve, where most triangles around a vertex are also around the vertices before it and so are cached. No
-    // two tasks write one entry; entries are atomic only because the rows of a task are scattered.
+    // Along the curve, where most triangles around a vertex are also around the vertices before it and so are cached.
+    // No two tasks write one entry; entries are atomic only because the rows of a task are scattered.
     for_each_part(curve.chunks(CHUNK), |_, chunk| {
         for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
@@ -215,8 +215,8 @@ fn rings(
     (start, plain(ring))
 }
 
-/// All triangles by the new numbers of their `vertices` vertices, sorted by least corner. So they follow the curve of the
-/// vertices, which keeps reads for the objective cached, and their order does not depend on that of the mesh.
+/// All triangles by the new numbers of their `vertices` vertices, sorted by least corner. So they follow the curve of
+/// the vertices, which keeps reads for the objective cached, and their order does not depend on that of the mesh.
 fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);

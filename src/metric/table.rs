@@ -92,8 +92,8 @@ pub(crate) enum AnyFormulas {
     Invariants(OfInvariants),
 }
 
-/// Evaluates an expression with `$f` bound to the [`Formulas`] of a metric. The expression is compiled for each variant of
-/// [`AnyFormulas`].
+/// Evaluates an expression with `$f` bound to the [`Formulas`] of a metric. The expression is compiled for each variant
+/// of [`AnyFormulas`].
 macro_rules! with_formulas {
     ($metric:expr, $f:ident => $body:expr) => {
         match $metric.formulas() {

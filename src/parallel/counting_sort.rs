@@ -59,8 +59,8 @@ impl Groups {
     }
 }
 
-/// Groups the numbers below `items` by their keys without storing them: calls `put(number, place)` for each place that a
-/// number gets, from any thread. Returns where each group starts, and one past the end of the last.
+/// Groups the numbers below `items` by their keys without storing them: calls `put(number, place)` for each place that
+/// a number gets, from any thread. Returns where each group starts, and one past the end of the last.
 pub(crate) fn place<const N: usize>(
     items: usize,
     groups: usize,

@@ -1,7 +1,7 @@
 //! Tasks on all threads, all by the same rayon loop.
 //!
-//! Rayon compiles its machinery for every loop and every type in it: about forty loops made two thirds of this library's
-//! compile time. Here only small functions are generic; the loop over tasks is compiled once.
+//! Rayon compiles its machinery for every loop and every type in it: about forty loops made two thirds of this
+//! library's compile time. Here only small functions are generic; the loop over tasks is compiled once.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -50,8 +50,8 @@ pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<us
     (0..count).step_by(size.max(1)).map(move |start| start..count.min(start + size))
 }
 
-/// Calls `task` with ranges of `size` numbers below `count`; the last may be shorter. Returns the results in the order of
-/// the ranges.
+/// Calls `task` with ranges of `size` numbers below `count`; the last may be shorter. Returns the results in the order
+/// of the ranges.
 pub(crate) fn map_ranges<T: Send>(
     count: usize,
     size: usize,

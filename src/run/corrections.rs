@@ -153,8 +153,8 @@ impl<'a> Corrections<'a> {
         engine.objectives().await
     }
 
-    /// Builds the levels, or fits them to new sizes if `proposed` is not 0, and hands them to the engine. Returns whether
-    /// it has room for them.
+    /// Builds the levels, or fits them to new sizes if `proposed` is not 0, and hands them to the engine. Returns
+    /// whether it has room for them.
     async fn build_levels(
         &mut self,
         engine: &mut impl Engine,

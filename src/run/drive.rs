@@ -93,8 +93,8 @@ pub(crate) struct End {
     pub(crate) stop: Stop,
 }
 
-/// Sweeps on an engine until the run ends. `done` is the number of sweeps before this run, for the observer. If `must` is
-/// set, it is an error that the engine has no room for the coarser levels.
+/// Sweeps on an engine until the run ends. `done` is the number of sweeps before this run, for the observer. If `must`
+/// is set, it is an error that the engine has no room for the coarser levels.
 pub(crate) async fn drive(
     mut engine: impl Engine,
     plan: &Plan,

@@ -34,8 +34,8 @@ impl History {
         }
     }
 
-    /// Adds the objectives before the first sweep or after the next one, without applying the stop rule. Returns whether
-    /// the base objective is the least so far.
+    /// Adds the objectives before the first sweep or after the next one, without applying the stop rule. Returns
+    /// whether the base objective is the least so far.
     pub(crate) fn add(&mut self, objectives: Objectives) -> bool {
         let evaluation = self.f.len();
         let f = objectives.of(self.base).unwrap_or(f64::NAN);

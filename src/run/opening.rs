@@ -17,7 +17,8 @@ use crate::run::plan::Plan;
 use crate::run::sweeps;
 use crate::run::yielding::yield_now;
 
-/// The largest inverse mean ratio that is left to a device. A tenth of the ratio at which rounding may invert a triangle.
+/// The largest inverse mean ratio that is left to a device. A tenth of the ratio at which rounding may invert a
+/// triangle.
 const TOO_FLAT: f64 = 1e5;
 
 /// Number of sweeps after which opening is given up.

@@ -22,8 +22,8 @@ pub enum Method {
     Sweeps,
 }
 
-/// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of f
-/// is left to gain.
+/// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of
+/// f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The metric, or several metrics in turn. The first one judges convergence.

@@ -24,8 +24,8 @@ pub struct Plan {
     pub stop: StopRule,
     /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
-    /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above this,
-    /// unless its patch already had a worse one. If the metric's own
+    /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above
+    /// this, unless its patch already had a worse one. If the metric's own
     /// [`shape_guard`](crate::Properties::shape_guard) is smaller, it is used instead.
     pub shape_guard: f64,
 }

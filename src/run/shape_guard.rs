@@ -7,8 +7,8 @@ use crate::metric::{Corner, Scheme};
 use crate::parallel::map_parts;
 
 /// The shape guard of a run: the largest inverse mean ratio among the triangles with a free vertex. No step may leave a
-/// triangle worse than that, so metrics that do not measure shape cannot flatten a good mesh. Infinite if every metric of
-/// the scheme has a barrier.
+/// triangle worse than that, so metrics that do not measure shape cannot flatten a good mesh. Infinite if every metric
+/// of the scheme has a barrier.
 pub(crate) fn shape_guard(problem: &Problem, positions: &[DVec2], scheme: &Scheme) -> f64 {
     if scheme.metrics().iter().all(|metric| metric.properties().shape_guard.is_infinite()) {
         return f64::INFINITY;

@@ -3,7 +3,8 @@
 use std::future::poll_fn;
 use std::task::Poll;
 
-/// Lets the executor run other tasks before this future goes on. If the caller blocks on the future, it goes on at once.
+/// Lets the executor run other tasks before this future goes on. If the caller blocks on the future, it goes on at
+/// once.
 pub(crate) async fn yield_now() {
     let mut yielded = false;
     poll_fn(|context| {

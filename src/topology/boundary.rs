@@ -97,8 +97,9 @@ impl Topology<'_> {
     }
 }
 
-/// The area within a loop of vertices, in the square of the unit of `points`: positive if the loop is counter-clockwise,
-/// negative if it is clockwise, as around a hole. Not exact. Vertices that `points` does not have are skipped.
+/// The area within a loop of vertices, in the square of the unit of `points`: positive if the loop is
+/// counter-clockwise, negative if it is clockwise, as around a hole. Not exact. Vertices that `points` does not have
+/// are skipped.
 pub fn signed_area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
     let mut corners = vertices.iter().filter_map(|&v| points.get(v as usize));
     let Some(&[x, y]) = corners.next() else { return 0.0 };

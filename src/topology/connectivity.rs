@@ -106,8 +106,8 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// The indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order, starting with
-    /// the least. Empty for a vertex that the mesh does not have.
+    /// The indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order, starting
+    /// with the least. Empty for a vertex that the mesh does not have.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {
             Some(_) => self.stars().of(vertex as usize),
@@ -132,9 +132,9 @@ impl<'m> Topology<'m> {
         stars
     }
 
-    /// The one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner after the
-    /// vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically.
-    /// Empty for a vertex that is not free, or that the mesh does not have.
+    /// The one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner after
+    /// the vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically. Empty
+    /// for a vertex that is not free, or that the mesh does not have.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }

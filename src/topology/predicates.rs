@@ -21,8 +21,8 @@ pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     orientation > 0.0 && orientation < f64::INFINITY
 }
 
-/// The indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat, or have a
-/// coordinate that is not a finite number. In ascending order.
+/// The indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat, or have
+/// a coordinate that is not a finite number. In ascending order.
 ///
 /// # Errors
 /// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have,

@@ -24,9 +24,9 @@ pub(crate) fn others_at_edge<'a>(
     star.iter().copied().filter(is_other)
 }
 
-/// Writes to `closed` around which vertices the triangles form one cycle, and sorts their stars in its order. Returns false
-/// if two triangles have an edge in the same direction: windings are then inconsistent, or more than
-/// two triangles share the edge, and `closed` is not valid.
+/// Writes to `closed` around which vertices the triangles form one cycle, and sorts their stars in its order. Returns
+/// false if two triangles have an edge in the same direction: windings are then inconsistent, or more than two
+/// triangles share the edge, and `closed` is not valid.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
     let parts = stars.chunks_mut(CHUNK).into_iter().zip(closed.chunks_mut(CHUNK));
@@ -78,8 +78,8 @@ fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Ve
     }));
 }
 
-/// Sorts edges into one cycle of three or more, in which each starts where the one before it ends. Returns false if they
-/// do not form one.
+/// Sorts edges into one cycle of three or more, in which each starts where the one before it ends. Returns false if
+/// they do not form one.
 fn chain(edges: &mut [OuterEdge]) -> bool {
     match edges.len() {
         0..3 => false,

@@ -15,9 +15,9 @@ const DIRECT: usize = 96;
 /// Damping factor of the Jacobi step that smooths the prolongation.
 pub(crate) const SMOOTHING: f32 = 0.9;
 
-/// Factors of two steps of the Chebyshev iteration for D⁻¹A, over [0.45, 1.8]: the upper three quarters of its spectrum,
-/// which is assumed to end at 1.8. In order: the factor of D⁻¹r in the first step d, then the factors of d and of D⁻¹r
-/// in the second step.
+/// Factors of two steps of the Chebyshev iteration for D⁻¹A, over [0.45, 1.8]: the upper three quarters of its
+/// spectrum, which is assumed to end at 1.8. In order: the factor of D⁻¹r in the first step d, then the factors of d
+/// and of D⁻¹r in the second step.
 pub(crate) const CHEBYSHEV: [f32; 3] = {
     let (center, radius) = (0.625 * 1.8, 0.375 * 1.8);
     let (first, second) = (radius / center, 1.0 / (2.0 * center / radius - radius / center));
@@ -81,8 +81,8 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fits the levels to the sizes of elements at `positions`. Aggregates stay, and couplings between them are scaled by
-    /// the average change of their members. Sizes change by nearly the same factors in neighboring aggregates, so
+    /// Fits the levels to the sizes of elements at `positions`. Aggregates stay, and couplings between them are scaled
+    /// by the average change of their members. Sizes change by nearly the same factors in neighboring aggregates, so
     /// this is close to the Galerkin operator at a small part of the work.
     pub(crate) fn resized(
         mut self,
@@ -127,9 +127,9 @@ impl Hierarchy {
         let of = &self.aggregates.of;
         let free_neighbors =
             |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
-        // The weight of an edge is the product of two roots, so A = R (E - N) R with R the diagonal matrix of the roots, E
-        // diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix between is E - N, with
-        // entries -1 off the diagonal.
+        // The weight of an edge is the product of two roots, so A = R (E - N) R with R the diagonal matrix of the
+        // roots, E diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix between is E -
+        // N, with entries -1 off the diagonal.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {

@@ -16,7 +16,8 @@ impl Sparse {
         Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
     }
 
-    /// The Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` adds `factor` times row `i` of A to
+    /// The Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` adds `factor` times row `i` of A
+    /// to
     /// `sum`.
     pub(crate) fn galerkin(
         prolongation: &Self,
@@ -101,8 +102,8 @@ impl Sparse {
         (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
     }
 
-    /// Multiplies each entry off the diagonal by the factors of its row and its column. Sets the diagonal such that each
-    /// row sum is multiplied by the square of the row's factor.
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. Sets the diagonal such that
+    /// each row sum is multiplied by the square of the row's factor.
     pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
         for row in 0..self.rows() {
             let range = self.start[row] as usize..self.start[row + 1] as usize;
