@@ -162,7 +162,7 @@ mod tests {
         for kind in ["integrated GPU", "virtual GPU", "other"] {
             assert_eq!(pays_from(kind, 2, 20.0), Some(620_000));
         }
-        // The more cores, the later, until the CPU is as fast as the GPU.
+        // The threshold rises with the number of cores, until the CPU is as fast as the GPU.
         assert_eq!(pays_from("discrete GPU", 16, 20.0), Some(5_200_000));
         assert_eq!(pays_from("integrated GPU", 10, 20.0), None);
         assert_eq!(pays_from("discrete GPU", 63, 20.0), None);

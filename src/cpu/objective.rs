@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
-        // Six triangles around a vertex: four side by side, and two.
+        // Six triangles around a vertex: four in the lanes, and two one by one.
         let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
         let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
         points.push([0.1, 0.2]);
@@ -166,7 +166,7 @@ mod tests {
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
             let there = mean_excess(metric, &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
-            // Out of the hexagon through each of its sides, and nowhere.
+            // Out of the hexagon through each of its sides, then along a direction that is NaN.
             for k in 0..6 {
                 let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
                 assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");

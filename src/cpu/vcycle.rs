@@ -144,7 +144,7 @@ mod tests {
         Hierarchy::new(problem, problem.positions(), stiffness)
     }
 
-    /// The same, made for elements up to thirty times smaller and fitted to these.
+    /// A hierarchy built for the mesh with stretched positions, then fitted to its own.
     fn resized(problem: &Problem) -> Hierarchy {
         let positions = problem.positions();
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -154,7 +154,7 @@ mod tests {
         Hierarchy::new(problem, &stretched, stiffness).resized(problem, positions, stiffness)
     }
 
-    /// Something that looks like noise.
+    /// Vectors that look random.
     fn noise(count: usize, seed: f64) -> Vec<Vec2> {
         let at =
             |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos()).as_vec2();
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn smooth_errors_are_corrected_nearly_whole() {
-        // A wave over the whole square, which sweeps alone would take thousands for.
+        // A wave over the whole square. Sweeps alone would take thousands to remove it.
         let problem = square();
         assert_corrects_a_wave(&problem, &hierarchy(&problem));
         assert_corrects_a_wave(&problem, &resized(&problem));
@@ -216,7 +216,7 @@ mod tests {
         let free = problem.free_count();
         let gradient: Vec<Vec2> = (0..free).map(|v| laplacian(v).as_vec2()).collect();
         let step = correction(hierarchy, problem, &gradient);
-        // As far along the step as a line search would go.
+        // The step length at which least of the wave is left.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
         let along: f64 = wave.iter().zip(&step).map(|(w, s)| w.dot(s.as_dvec2())).sum();
         let length = -along / squared;

@@ -394,7 +394,7 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// Squares with their diagonals one way or the other, so that vertices have 4 to 8 neighbors.
+    /// A grid of squares, each cut by one of its diagonals, so that vertices have 4 to 8 neighbors.
     fn squares(side: u32) -> Topology<'static> {
         let points = (0..(side + 1).pow(2)).map(|v| [v % (side + 1), v / (side + 1)]);
         let triangles = (0..side * side).flat_map(|square| {

@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn all_vertices_in_use_stand_along_the_curve() {
-        // Strips of triangles: one with points all over, one in a corner, and vertices of no triangle.
+        // A third of the points all over the plane, the others in a corner. The last 300 are of no triangle.
         let mut points: Vec<[f64; 2]> = Vec::new();
         for k in 0..3000 {
             let [x, y] = [k * 7919 % 3001, k * 104_729 % 2999].map(f64::from);

@@ -13,7 +13,7 @@ use crate::run::step::Step;
 /// Computes a run, on the CPU or a device: sweeps, objectives, and corrections from coarser levels. Positions are
 /// normalized and in the order of the [`Problem`](crate::layout::Problem).
 ///
-/// An engine does not decide which sweep comes next. All its calls fail if the device does, and the run is then lost.
+/// An engine does not decide which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
     /// Does one sweep.
     fn sweep(&mut self, step: &Step) -> impl Future<Output = Result<(), GpuError>> + Send;

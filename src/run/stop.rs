@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_fast_start_is_not_taken_for_convergence() {
-        // A steep drop, then a slow decay: what a strongly perturbed mesh does.
+        // A steep drop, then a slow decay, as from a strongly perturbed mesh.
         let slow = |k: i32| 1.0 + 100.0 * 0.1f64.powi(k) + 1e-2 * 0.99f64.powi(k);
         let history: Vec<f64> = (0..30).map(slow).collect();
         assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], n - 1, 8).is_none()));

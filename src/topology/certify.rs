@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn an_inverting_vertex_goes_back_and_others_stay() {
-        // A strip of two squares' fans; one center is thrown outside, the other moved properly.
+        // Two squares with their centers. One center is moved out of its square, the other stays inside.
         let mesh = Mesh {
             points: vec![
                 [0.0, 0.0],

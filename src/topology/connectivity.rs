@@ -215,7 +215,7 @@ fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
 mod tests {
     use super::*;
 
-    /// A square with its center, counter-clockwise but for the third triangle.
+    /// A square with its center. All triangles are counter-clockwise except the third.
     fn fan() -> Mesh {
         Mesh {
             points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],

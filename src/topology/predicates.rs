@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_flip_below_rounding_is_seen() {
-        // 0.1 + 0.2 lies above 0.3 by one rounding; the naive determinant is not to be trusted.
+        // 0.1 + 0.2 is above 0.3 by a rounding error, which a plain determinant may not see.
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
         assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
         assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));

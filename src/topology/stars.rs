@@ -193,7 +193,7 @@ mod tests {
         assert!(chained.iter().map(|e| (e.from, e.to)).eq((0..20).map(|i| (i, (i + 1) % 20))));
         assert!(chained.iter().all(|e| cycle[e.triangle as usize] == (e.from, e.to)));
 
-        // What is no cycle keeps its edges, whatever their order.
+        // Edges that are not a cycle are kept, in any order.
         let mut open = cycle.clone();
         open.retain(|edge| edge.0 != 7);
         let mut two = cycle.clone();

@@ -128,8 +128,8 @@ impl Hierarchy {
         let free_neighbors =
             |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
         // The weight of an edge is the product of two roots, so A = R (E - N) R with R the diagonal matrix of the
-        // roots, E diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix between is E -
-        // N, with entries -1 off the diagonal.
+        // roots, E diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix in the
+        // product is E - N, with entries -1 off the diagonal.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {

@@ -17,8 +17,7 @@ impl Sparse {
     }
 
     /// The Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` adds `factor` times row `i` of A
-    /// to
-    /// `sum`.
+    /// to `sum`.
     pub(crate) fn galerkin(
         prolongation: &Self,
         restriction: &Self,
@@ -265,7 +264,7 @@ mod tests {
         let matrix = sample();
         let values = dense(&matrix, 70);
         assert_eq!((matrix.rows(), matrix.row(10).count()), (1000, 0));
-        // Of row 13: k = 0, 1, 2, the first of them in the column of the second part.
+        // Row 13 has k = 0, 1, 2. The entry for k = 0 is in the column that the second part adds to.
         assert_eq!(matrix.row(13).count(), 3);
         assert_eq!(values[13][13 * 7 % 70], 1.0 + 3.0 * 13.0);
         assert_eq!(values[13][(13 * 7 + 26) % 70], 3.0);
