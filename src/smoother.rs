@@ -40,9 +40,9 @@ pub struct Smoother<'a> {
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric. If f of these
-    /// values is not lower than before by more than rounding (1e-9 of f), the positions are those of the mesh before
-    /// the run. No triangle is inverted or flat, by exact predicates on these values.
+    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
+    /// the run if f of that state is not lower by more than rounding (1e-9 of f). No triangle is inverted or flat, by
+    /// exact predicates on these values.
     pub points: Vec<[f64; 2]>,
     /// Why the run ended.
     pub stop: Stop,
@@ -142,7 +142,8 @@ impl<'a> Smoother<'a> {
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
-    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) before anything is done.
+    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
+    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
     pub fn run(
         &self,
         options: &Options,

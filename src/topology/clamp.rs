@@ -16,8 +16,8 @@ impl Topology<'_> {
     /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed vertices and those of the
     /// boundary can be moved too. If a vertex is listed twice, its last position counts.
     ///
-    /// No triangle inverts or becomes flat on the way. At the end none is, by exact predicates on the values in
-    /// `points`. No triangle gets an inverse mean ratio above `worst_imr`; a triangle that already has a larger one
+    /// No triangle inverts or becomes flat, neither on the way nor, by exact predicates on the values in `points`, at
+    /// the end. No triangle gets an inverse mean ratio above `worst_imr`; a triangle that already has a larger one
     /// does not get worse. With [`f64::INFINITY`] triangles may become nearly flat; a bound of about 8 leaves room for
     /// sweeps, and for rounding `points` to single precision. Triangles that are inverted or flat beforehand do not
     /// limit the move.
@@ -80,8 +80,7 @@ impl Topology<'_> {
         let gives_way =
             |(corners, limit): &([u32; 3], f64)| ways.gives_way(points, corners, *limit);
         let mut share = limited.iter().map(gives_way).fold(1.0, f64::min);
-        // The share and the points are rounded, so a triangle may exceed its limit. The share is lowered until none
-        // does.
+        // The share and the points are rounded, so a triangle may exceed its limit: lowers the share until none does.
         let mut less = f64::EPSILON;
         loop {
             ways.go(points, share);
@@ -137,8 +136,8 @@ impl Ways {
     }
 
     /// The share of the ways at which a triangle's inverse mean ratio reaches `limit`. With L the sum of the squared
-    /// lengths and D the doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic D - L
-    /// / (2√3 limit).
+    /// lengths and D the doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic
+    /// D - L / (2√3 limit).
     fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
         let [p, q, r] = corners.map(|v| points[v as usize]);
         let [dp, dq, dr] = corners.map(|v| self.of(v));
