@@ -7,47 +7,51 @@ use crate::gpu::{AdapterSummary, Gpu, MeshSize, ranked_adapters};
 use crate::run::Options;
 use crate::smoother::Backend;
 
-/// Vertex updates per second and core of the CPU engine, measured on two cores by imr (`docs/performance.md`).
+/// Vertex updates per second and core of the CPU engine, measured with imr on two cores (`docs/performance.md`).
 const CPU_UPDATES_PER_CORE: f64 = 16e6;
-/// Seconds that a GPU's driver, device and kernels take to start. An assumption on the safe side: no graphics card has
-/// been measured yet; Mesa's software driver takes 0.06 to 0.25.
+/// Seconds that a GPU's driver, device and kernels take to start. A cautious assumption, as no graphics card has been
+/// measured yet; Mesa's software driver takes 0.06 to 0.25.
 const GPU_START: f64 = 0.3;
-/// Vertex updates per second of a graphics card of its own. An assumption on the safe side, as is the next.
+/// Vertex updates per second of a discrete GPU. A cautious assumption, not measured.
 const DISCRETE_UPDATES: f64 = 1e9;
-/// Vertex updates per second of a GPU that shares the CPU's memory, or of a kind that is not known.
+/// Vertex updates per second of a GPU that shares the CPU's memory, or of an unknown kind. A cautious assumption, not
+/// measured.
 const INTEGRATED_UPDATES: f64 = 150e6;
-/// The work of a run with corrections from coarser levels, in sweeps: some 12 sweeps, and 5 corrections that take 1.5 sweeps each.
+/// The work of a run with corrections from coarser levels, in sweeps: about 12 sweeps, and 5 corrections that take as
+/// long as 1.5 sweeps each.
 const CORRECTED_SWEEPS: f64 = 20.0;
-/// Sweeps of a run without corrections: what over-relaxed imr takes to come within 1e-6 of its limit.
+/// Sweeps of a run without corrections: those that over-relaxed imr takes to come within 1e-6 of its limit.
 const PLAIN_SWEEPS: f64 = 130.0;
 
-/// Why [`Backend::auto`] has chosen as it did. Displays as a phrase in English.
+/// Why [`Backend::auto`] chose its backend. Displays as an English phrase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The CPU is estimated to be done before a GPU.
+    /// The CPU is estimated to finish before a GPU.
     CpuIsFaster {
-        /// The GPU that was found. `None` if none was looked for, as none could be faster.
+        /// The GPU that was found. `None` if none was looked for because none could be faster.
         adapter: Option<AdapterSummary>,
-        /// From how many vertices on the GPU is estimated to be faster, if it is for any number.
+        /// The number of vertices from which the GPU is estimated to be faster. `None` if it never is.
         pays_from: Option<usize>,
     },
-    /// The only adapter is a driver that itself computes on the CPU, which the CPU engine does faster.
+    /// The only adapter is a driver that computes on the CPU. The CPU engine is faster.
     OnlySoftware(AdapterSummary),
     /// There is no GPU, or it cannot do the run.
     GpuFails(GpuError),
-    /// The GPU is estimated to be done before the CPU.
+    /// The GPU is estimated to finish before the CPU.
     GpuIsFaster {
-        /// From how many vertices on that is so.
+        /// The number of vertices from which the GPU is estimated to be faster.
         pays_from: usize,
     },
 }
 
 impl Backend {
-    /// The backend on which a run is estimated to end soonest, the start of the GPU's driver included, and why.
+    /// Returns the backend on which a run is estimated to end soonest, and why. The estimate includes the start of the
+    /// GPU's driver.
     ///
-    /// A software adapter is never chosen; [`Gpu::open`] opens it. Where the mesh is too small for any GPU to pay, no driver is started. The
-    /// estimate is cautious about GPUs, of which none has been measured yet: `gpu-smooth bench` tells what is fastest.
+    /// If the mesh is too small for any GPU to be faster, no driver is started. A software adapter is never chosen;
+    /// [`Gpu::open`] opens one. The estimate assumes slow GPUs, as none has been measured yet: `gpu-smooth bench`
+    /// measures which backend is fastest.
     pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
         let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
         let best = pays_from(FASTEST, cores, sweeps);
@@ -100,11 +104,11 @@ impl fmt::Display for Reason {
     }
 }
 
-/// The kind of adapter for which the fewest vertices pay.
+/// The kind of adapter that is assumed to be fastest.
 const FASTEST: &str = "discrete GPU";
 
-/// Vertex updates per second of an adapter of this kind, as [`AdapterSummary`] names it; none of a
-/// software adapter, which the CPU engine always outdoes.
+/// Vertex updates per second of an adapter of this kind, as [`AdapterSummary`] names it. `None` for a
+/// software adapter, as the CPU engine is always faster.
 fn gpu_updates(kind: &str) -> Option<f64> {
     match kind {
         "discrete GPU" => Some(DISCRETE_UPDATES),
@@ -113,13 +117,14 @@ fn gpu_updates(kind: &str) -> Option<f64> {
     }
 }
 
-/// How many sweeps a run is likely to take, with corrections counted as sweeps.
+/// The work that a run is likely to take, in sweeps, corrections included.
 fn expected_sweeps(options: &Options) -> f64 {
     let usual = if options.is_multilevel() { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
     usual.min(options.max_sweeps.into())
 }
 
-/// The least number of vertices, rounded up to two digits, for which an adapter of this kind is done before the CPU.
+/// The least number of vertices, rounded up to two digits, for which an adapter of this kind finishes before the CPU.
+/// `None` if it never does.
 fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
     let cpu_updates = CPU_UPDATES_PER_CORE * cores as f64;
     let saved = sweeps * (1.0 / cpu_updates - 1.0 / gpu_updates(kind)?);
@@ -131,7 +136,7 @@ fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
     Some(((least / unit).ceil() * unit) as usize)
 }
 
-/// A number with a comma before every three digits.
+/// Writes a number with commas between groups of three digits.
 fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -157,7 +162,7 @@ mod tests {
         for kind in ["integrated GPU", "virtual GPU", "other"] {
             assert_eq!(pays_from(kind, 2, 20.0), Some(620_000));
         }
-        // The more cores, the later, until the CPU is as fast as the GPU.
+        // The threshold rises with the number of cores, until the CPU is as fast as the GPU.
         assert_eq!(pays_from("discrete GPU", 16, 20.0), Some(5_200_000));
         assert_eq!(pays_from("integrated GPU", 10, 20.0), None);
         assert_eq!(pays_from("discrete GPU", 63, 20.0), None);

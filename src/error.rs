@@ -1,14 +1,14 @@
-//! What can go wrong, one enum per operation.
+//! Errors, one enum for each kind of operation.
 
 use std::path::PathBuf;
 use std::{fmt, io};
 
-/// Where in a file something stands. Displayed to follow the file's name: `:18`, or `, byte 4711`.
+/// A place in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
-    /// One-based line of a text.
+    /// One-based line of a text file.
     Line(usize),
-    /// How many bytes of a binary file stand before it.
+    /// Offset in a binary file, in bytes.
     Byte(usize),
 }
 
@@ -34,19 +34,19 @@ pub enum ReadError {
         /// What the user can do about it.
         remedy: String,
     },
-    /// The content is not what the format asks for.
+    /// The content does not follow the format.
     #[error("{}{location}: {problem}. {remedy}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
-        /// Where the offence stands.
+        /// Where the error is.
         location: Location,
         /// What is wrong there.
         problem: String,
         /// What the user can do about it.
         remedy: String,
     },
-    /// The file is readable, but in no format this program knows.
+    /// The file can be read, but its format is not known.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
         /// The file.
@@ -58,7 +58,7 @@ pub enum ReadError {
     },
 }
 
-/// A file could not be written. Whatever stood at its place before still stands there.
+/// A file could not be written. A file that was there before is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The operating system refused.
@@ -71,7 +71,7 @@ pub enum WriteError {
         /// What the user can do about it.
         remedy: String,
     },
-    /// The name asks for another format than the mesh was read in.
+    /// The name has the ending of another format than the one the mesh was read in.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
         /// The file.
@@ -81,23 +81,24 @@ pub enum WriteError {
         /// What the user can do about it.
         remedy: String,
     },
-    /// The points given do not make a mesh. A mistake of the caller, not of the user.
+    /// The points do not fit the mesh: a mistake in the calling program, not of its user.
     #[error("{}: not written: {problem}", path.display())]
     Points {
         /// The file.
         path: PathBuf,
-        /// What is wrong with them.
+        /// What is wrong with the points.
         problem: String,
     },
 }
 
-/// A mesh that cannot be smoothed as it is. Indices are zero-based, as in [`Mesh`](crate::Mesh).
+/// A mesh cannot be smoothed as it is, or arguments do not fit it. Indices are zero-based, as in
+/// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// There is no triangle at all.
+    /// The mesh has no triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// Vertices or triangle corners do not fit 32-bit indices.
+    /// There are more vertices or triangle corners than 32-bit indices can number.
     #[error(
         "{vertices} vertices and {triangles} triangles are more than 32-bit indices can number"
     )]
@@ -110,22 +111,22 @@ pub enum MeshError {
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} has a coordinate that is not a finite number")]
     NotFinite {
-        /// The first such vertex.
+        /// The first vertex with such a coordinate.
         vertex: u32,
     },
     /// A coordinate is so large, or the whole mesh so small, that products of lengths leave the range
     /// of double precision and exact predicates would not be exact.
     #[error("the coordinates are of size {size:e}, outside of 1e-100 to 1e100")]
     OutOfRange {
-        /// The largest coordinate.
+        /// The largest absolute value of a coordinate, among the vertices that triangles use.
         size: f64,
     },
-    /// A triangle or the list of fixed vertices names a vertex that does not exist.
+    /// A triangle, or a list of vertices to fix or to move, names a vertex that does not exist.
     #[error("vertex {vertex} is used, but there are only {vertices}")]
     IndexOutOfRange {
-        /// The triangle, or `None` if it is the list of fixed vertices.
+        /// The triangle, or `None` if it is a list of vertices that names the vertex.
         triangle: Option<usize>,
-        /// The vertex it names.
+        /// The vertex that does not exist.
         vertex: u32,
         /// How many vertices there are.
         vertices: usize,
@@ -135,24 +136,24 @@ pub enum MeshError {
     RepeatedVertex {
         /// The triangle.
         triangle: usize,
-        /// The vertex.
+        /// The vertex that it names twice.
         vertex: u32,
     },
-    /// Three or more triangles share an edge: not a 2D mesh.
+    /// Three or more triangles share an edge, so this is not a 2D mesh.
     #[error("the edge between vertices {} and {} belongs to {} triangles", edge[0], edge[1], triangles.len())]
     EdgeOfThree {
         /// The edge's vertices.
         edge: [u32; 2],
-        /// Every triangle at the edge.
+        /// All triangles at the edge, ascending.
         triangles: Vec<usize>,
     },
-    /// Some triangles are inverted against their neighbors, or flat.
+    /// Some triangles are inverted or flat.
     #[error("{}", listed(triangles))]
     Infeasible {
-        /// All of them, ascending.
+        /// All inverted or flat triangles, in ascending order.
         triangles: Vec<BadTriangle>,
     },
-    /// A list of positions has not one for each vertex of the mesh.
+    /// A list of positions does not have exactly one for each vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {
         /// How many vertices the mesh has.
@@ -166,7 +167,8 @@ pub enum MeshError {
         "the bound on the inverse mean ratio is NaN: it must be a number, or infinite for no bound"
     )]
     BoundNotANumber,
-    /// Every vertex is on the boundary, on a constraint line or unused.
+    /// No vertex is free: each is on the boundary, is listed in [`Mesh::fixed`](crate::Mesh::fixed), is used by no
+    /// triangle, or joins two fans of triangles.
     #[error("none of the {vertices} vertices is free to move")]
     NothingFree {
         /// Number of vertices.
@@ -177,22 +179,22 @@ pub enum MeshError {
 /// A triangle that is inverted or flat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadTriangle {
-    /// Its index in [`Mesh::triangles`](crate::Mesh::triangles).
+    /// The triangle's index in [`Mesh::triangles`](crate::Mesh::triangles).
     pub triangle: usize,
-    /// Its vertices, in the order in which a sound triangle goes around counter-clockwise.
+    /// The triangle's vertices, in the order that would be counter-clockwise if it were not inverted.
     pub vertices: [u32; 3],
-    /// Whether its area is zero; otherwise it is inverted.
+    /// Whether the triangle's area is zero. If not, the triangle is inverted.
     pub flat: bool,
 }
 
 impl BadTriangle {
-    /// What is wrong with it: `"inverted"` or `"flat"`.
+    /// What is wrong with the triangle: `"inverted"` or `"flat"`.
     pub fn problem(&self) -> &'static str {
         if self.flat { "flat" } else { "inverted" }
     }
 }
 
-/// How many triangles are bad, and the first ten of them.
+/// The message of [`MeshError::Infeasible`]: the number of bad triangles, and the first ten.
 fn listed(triangles: &[BadTriangle]) -> String {
     let one = |bad: &BadTriangle| format!("{} ({})", bad.triangle, bad.problem());
     let first: Vec<String> = triangles.iter().take(10).map(one).collect();
@@ -204,10 +206,10 @@ fn listed(triangles: &[BadTriangle]) -> String {
     format!("{} triangle{s} {are} inverted or flat: {}{more}", triangles.len(), first.join(", "))
 }
 
-/// A run could not be done.
+/// A run failed, or could not start.
 #[derive(Debug, thiserror::Error)]
 pub enum SmoothError {
-    /// The mesh is not one that can be smoothed.
+    /// The mesh cannot be smoothed.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// An option is out of its range.
@@ -215,28 +217,28 @@ pub enum SmoothError {
     Option {
         /// The field of [`Options`](crate::Options).
         option: &'static str,
-        /// Its value.
+        /// The option's value.
         value: String,
-        /// What it should be.
+        /// What the value should be.
         remedy: &'static str,
     },
-    /// The GPU cannot start or go on.
+    /// The GPU engine failed.
     #[error(transparent)]
     Gpu(#[from] crate::error::GpuError),
 }
 
-/// The GPU engine cannot start or go on.
+/// The GPU engine cannot start, or failed during a run.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter, or none of that name.
+    /// There is no adapter, or none with the wanted name.
     #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
     NoAdapter {
         /// The name that was asked for.
         wanted: Option<String>,
-        /// The names there are, separated by commas.
+        /// The names of the available adapters, separated by commas.
         available: String,
     },
-    /// The adapter would not give a device.
+    /// The adapter refused to create a device.
     #[error("the adapter {adapter} gave no device: {message}")]
     NoDevice {
         /// The adapter.
@@ -244,16 +246,16 @@ pub enum GpuError {
         /// What wgpu said.
         message: String,
     },
-    /// A limit of the device is too low for this mesh.
+    /// A limit of the device is too low.
     #[error("{what} needs {needed}, but the device's {limit} is {available}")]
     Limit {
         /// What does not fit.
         what: String,
-        /// How much it needs.
+        /// The value of the limit that is needed.
         needed: u64,
         /// The limit's name in wgpu.
         limit: &'static str,
-        /// Its value on this device.
+        /// The value of the limit on this device.
         available: u64,
     },
     /// The mesh has more vertices or triangles than the kernels can number.
@@ -265,13 +267,13 @@ pub enum GpuError {
         vertices: usize,
         /// Number of triangles.
         triangles: usize,
-        /// The most vertices.
+        /// The most vertices that the kernels can number.
         most_vertices: usize,
-        /// The most triangles.
+        /// The most triangles that the kernels can number.
         most_triangles: usize,
     },
-    /// The compiler of the adapter reorders or drops operations that the kernels rely on, so that results would be
-    /// wrong without notice. Found by a trial, see [`Gpu::check_arithmetic`](crate::Gpu::check_arithmetic).
+    /// The adapter's compiler reorders or drops operations that the kernels rely on, so results would be silently
+    /// wrong. Found by [`Gpu::check_arithmetic`](crate::Gpu::check_arithmetic).
     #[error(
         "the adapter {adapter} cannot be used: {operation}. Use another adapter or the CPU (--engine cpu)"
     )]
@@ -281,28 +283,29 @@ pub enum GpuError {
         /// Which operation failed, and how.
         operation: &'static str,
     },
-    /// A feature that this takes was not asked for when the device was made.
+    /// The device was made without a feature that is needed.
     #[error("{what} needs a device made with the feature {feature}")]
     Feature {
-        /// What takes it.
+        /// What needs the feature.
         what: &'static str,
-        /// Its name in wgpu.
+        /// The feature's name in wgpu.
         feature: &'static str,
     },
-    /// The device has no memory left.
+    /// The device is out of memory.
     #[error("the device is out of memory: {0}")]
     OutOfMemory(String),
-    /// A buffer of the application cannot be used as asked.
+    /// A buffer of the application does not have the size, usage or layout that is needed.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
-    /// wgpu refused a call: a bug in this library, or a device made with other limits.
+    /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),
-    /// The device was lost or destroyed; the run is lost with it.
+    /// The device was lost or destroyed, and the run with it.
     #[error("the device was lost: {0}")]
     Lost(String),
 }
 
+/// The end of the message of [`GpuError::NoAdapter`].
 fn lacking(wanted: Option<&str>, available: &str) -> String {
     match wanted {
         None => " was found".into(),

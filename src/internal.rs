@@ -1,4 +1,4 @@
-//! What benchmarks, experiments and this library's own tests drive by hand. It changes without notice.
+//! For benchmarks, experiments and this library's own tests. It changes without notice.
 
 use glam::DVec2;
 
@@ -12,16 +12,15 @@ pub use crate::metric::{Dual, Invariants, Real, Slopes};
 pub use crate::run::{Plan, Step, Stepwise, StopRule};
 use crate::{Gpu, GpuError};
 
-/// A run of sweeps on the CPU, from `positions`, normalized and in the problem's order.
+/// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.
 pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> impl Stepwise + 'a {
     StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), &plan), plan)
 }
 
-/// A run of sweeps on a device, from `positions`, normalized and in the problem's order.
+/// Starts a run of sweeps on a device from `positions`, which are normalized and in the problem's order.
 ///
 /// # Errors
-/// [`GpuError::Limit`] if the mesh is too large for the device, or what the device
-/// refuses.
+/// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
 pub fn run_on_gpu<'a>(
     gpu: &'a Gpu,
     problem: &'a Problem,

@@ -1,6 +1,6 @@
 //! Moves the interior vertices of 2D triangle meshes until the elements are as good as they can be,
-//! without ever inverting one: local feasible Newton sweeps over the vertices of one color at a time,
-//! in wgpu compute shaders or on the CPU.
+//! without ever inverting one. It sweeps over the vertices, one color at a time, with feasible Newton
+//! steps, in wgpu compute shaders or on the CPU.
 //!
 //! The method is that of J. Park and S. M. Shontz, *An Alternating Mesh Quality Metric Scheme for
 //! Efficient Mesh Quality Improvement*, Procedia Computer Science 4 (2011) 292-301: the objective
@@ -26,16 +26,16 @@
 //! # Ok::<(), gpu_smooth::SmoothError>(())
 //! ```
 //!
-//! By lifetime: a [`Gpu`] lives as long as the program and serves every mesh; a [`Smoother`] is one
-//! mesh prepared, as long as its triangles stay; a run is one call of [`Smoother::run`] with its
-//! [`Options`], and leaves an [`Outcome`]. Files are read and written by [`MeshFile`].
+//! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
+//! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
+//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files.
 //!
 //! # Inside an application
 //!
-//! A [`Gpu`] can be made of the application's own device. A [`DeviceMesh`] then stays there as long as its
-//! triangles do, and [`Sweeps`] are encoded into the application's own command buffers: nothing is
-//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from. What can fail, compiles or
-//! makes a resource is done once; a frame only encodes.
+//! A [`Gpu`] can be made from the application's own device. A [`DeviceMesh`] then stays on the device as long as its
+//! triangles stay the same, and [`Sweeps`] are encoded into the application's own command buffers: nothing is
+//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from. Everything that can fail,
+//! compile or allocate is done once; a frame only encodes.
 //!
 //! ```no_run
 //! # use gpu_smooth::*;
@@ -64,19 +64,22 @@
 //! # }
 //! ```
 //!
-//! What a user drags is best stopped before a triangle gives way: [`Topology::move_clamped`]; what bounds the mesh,
-//! and where its holes are, [`Topology::boundary_loops`] and [`signed_area`] tell. How long each kernel takes, [`Timestamps`] say. An application that changes
-//! schemes as it runs compiles them ahead by [`Gpu::prepare`].
+//! - [`Topology::move_clamped`] moves vertices that a user drags and stops before a triangle inverts.
+//! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
+//! - [`Timestamps`] measure how long each kernel takes.
+//! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
+//! - [`Smoother::run_async`] does a whole run, with its stop rule, without blocking the thread.
 //!
-//! `examples/embed` and `examples/moving_boundary` are complete. To have a whole run with its stop rule
-//! without blocking the thread, there is [`Smoother::run_async`].
+//! `examples/embed` and `examples/moving_boundary` are complete applications.
 //!
 //! # Limits
 //!
-//! Triangles only (vertices of other elements are to be listed in [`Mesh::fixed`]), fewer than
-//! 2³² vertices. On a GPU, buffers that are larger than a device binds at once are bound part by part, which
-//! changes no bit of the result; but positions, which every kernel sees whole, take two bindings at the most: where
-//! 128 MiB are the limit, 16 million vertices. [`Gpu::check_size`] tells before anything is done.
+//! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
+//! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles.
+//!
+//! On a GPU, buffers that are larger than a device can bind at once are bound part by part, which
+//! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
+//! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
 mod choice;
 mod cpu;
@@ -92,17 +95,17 @@ mod run;
 mod smoother;
 mod topology;
 
-/// Exact predicates on plain lists of points and triangles.
+/// Exact checks for inverted and flat triangles.
 pub mod validity {
     pub use crate::topology::{certify, infeasible};
 }
 
-/// Writing files as [`MeshFile`] does, for what an application writes beside a mesh.
+/// The safe file writing of [`MeshFile`], for other files that an application writes.
 pub mod output {
     pub use crate::file::{check, replace, same_file};
 }
 
-/// What benchmarks, experiments and this library's own tests drive by hand. It changes without notice.
+/// For benchmarks, experiments and this library's own tests. It changes without notice.
 #[doc(hidden)]
 pub mod internal;
 

@@ -1,4 +1,4 @@
-//! How good a mesh is, in numbers.
+//! Quality statistics of a mesh.
 
 use crate::error::MeshError;
 use crate::metric::{Corner, Metric};
@@ -6,32 +6,34 @@ use crate::parallel::map_parts;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
-/// Statistics of a mesh in double precision, inversions counted by exact predicates.
+/// Quality statistics of a mesh, in double precision. Exact predicates decide which triangles are inverted or flat.
 ///
 /// A triangle with a coordinate that is not a finite number counts as inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     f: [f64; Metric::ALL.len()],
-    /// Smallest angle of any triangle, in degrees; of an inverted one as if mirrored.
+    /// Smallest angle of any triangle, in degrees. An inverted triangle counts as its mirror image.
     pub min_angle: f64,
-    /// Largest angle of any triangle, in degrees.
+    /// Largest angle of any triangle, in degrees. An inverted triangle counts as its mirror image.
     pub max_angle: f64,
-    /// Largest inverse mean ratio, infinite if a triangle is inverted or flat.
+    /// Largest inverse mean ratio: 1 at best, infinite if a triangle is inverted or flat.
     pub worst_imr: f64,
-    /// The triangle that has it.
+    /// Index of the triangle with the largest inverse mean ratio.
     pub worst_triangle: usize,
-    /// Largest inverse mean ratio among triangles with a free vertex: what smoothing can mend.
+    /// Largest inverse mean ratio among the triangles with a free vertex, which smoothing can improve; 0 if there is no
+    /// free vertex.
     pub worst_movable_imr: f64,
     /// Number of triangles that are inverted or flat.
     pub inverted: usize,
 }
 
-/// What one pass over some triangles gathers.
+/// Sums and extremes over some triangles.
 #[derive(Clone)]
 struct Tally {
     sums: [f64; Metric::ALL.len()],
-    /// Cotangents: they fall as angles grow, and need no arc functions.
+    /// Least and largest cotangent of an angle. A cotangent falls as the angle grows, and needs no arc function.
     cotangents: [f64; 2],
+    /// Largest inverse mean ratio, and its triangle.
     worst: (f64, usize),
     worst_movable: f64,
     inverted: usize,
@@ -62,14 +64,14 @@ impl Tally {
 }
 
 impl Quality {
-    /// Measures `points` with the triangles of `topology`.
+    /// Measures the triangles of `topology` with their vertices at `points`, one for each vertex of the mesh.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
     pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
-        // Each taken positive: where large triangles are inverted, the signed areas may cancel.
+        // Absolute areas: where large triangles are inverted, signed ones may cancel.
         let area = |t: &[u32; 3]| 0.5 * predicates::orientation(points, t).abs();
         let areas =
             map_parts(triangles.chunks(1024), |_, chunk| chunk.iter().map(area).sum::<f64>());
@@ -98,12 +100,14 @@ impl Quality {
         })
     }
 
-    /// The objective f = (1/n) Σ q² of a metric (Park & Shontz, equation 1).
+    /// The objective f = (1/n) Σ q² over all n triangles (Park & Shontz, equation 1). Infinite if a triangle is
+    /// inverted or flat and the metric has a barrier.
     pub fn f(&self, metric: Metric) -> f64 {
         self.f[metric as usize]
     }
 }
 
+/// The tally of a single triangle.
 fn one(
     points: &[[f64; 2]],
     corners: &[u32; 3],
@@ -114,7 +118,7 @@ fn one(
     let is_positive = predicates::is_positive(points, corners);
     let Edges { a, b, c, unit } = Edges::of(points, corners);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
-    // The exact predicate has the last word over rounded areas; without it only a true zero makes a ratio infinite.
+    // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
     let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
         (true, false) => f64::INFINITY,
         (true, true) => metric.quality(&corner).min(f64::MAX.sqrt()),
@@ -140,13 +144,15 @@ fn one(
     }
 }
 
-/// The edges of a triangle: from its first corner to the second and to the third, and from the second to the third.
-/// They are in a unit of its own, a power of two, in which no product of them overflows and the longest does not
-/// vanish.
+/// The edges of a triangle, divided by `unit` so that no product of them overflows and the longest does not vanish.
 struct Edges {
+    /// From the first corner to the second.
     a: [f64; 2],
+    /// From the first corner to the third.
     b: [f64; 2],
+    /// From the second corner to the third.
     c: [f64; 2],
+    /// A power of two near the size of the triangle.
     unit: f64,
 }
 
@@ -164,8 +170,8 @@ impl Edges {
         if (exact > 0.0) == (rounded > 0.0) {
             return Self { a, b, c, unit };
         }
-        // Rounding has turned it over. In coordinates along the first edge and across it, the sign of the area is that
-        // of a single number.
+        // Rounding has changed the sign of the area. In coordinates along and across the first edge, that sign is the
+        // sign of a single coordinate, which takes the exact one.
         let length = a[0].hypot(a[1]);
         let turned = |edge: [f64; 2]| [(a[0] * edge[0] + a[1] * edge[1]) / length, exact / length];
         Self { a: [length, 0.0], b: turned(b), c: turned(c), unit }

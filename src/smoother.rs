@@ -1,4 +1,4 @@
-//! A mesh made ready, and what a run makes of it.
+//! A prepared mesh, and the outcome of a run.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -21,15 +21,15 @@ use crate::run::{
 };
 use crate::topology::{Topology, certify};
 
-/// Where sweeps are done.
+/// The processor that does the sweeps.
 pub enum Backend {
-    /// On all cores of the CPU, in double precision.
+    /// All cores of the CPU, in double precision.
     Cpu,
-    /// On a wgpu device.
+    /// A wgpu device.
     Gpu(Gpu),
 }
 
-/// A mesh made ready for smoothing: topology, coloring and layout. Serves any number of runs.
+/// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
     mesh: &'a Mesh,
     topology: Topology<'a>,
@@ -37,50 +37,51 @@ pub struct Smoother<'a> {
     prepare: Duration,
 }
 
-/// What a run made of the mesh.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh as it was
-    /// where f of that state, on these very values, is not lower by more than rounding.
-    /// Every triangle is feasible by exact predicates on these values.
+    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
+    /// the run if f of that state is not lower by more than rounding (1e-9 of f). No triangle is inverted or flat, by
+    /// exact predicates on these values.
     pub points: Vec<[f64; 2]>,
     /// Why the run ended.
     pub stop: Stop,
-    /// Sweeps done.
+    /// Number of sweeps done.
     pub sweeps: u32,
-    /// Corrections from coarser levels taken after sweeps; see [`Method::Multilevel`](crate::Method).
+    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
-    /// Sweeps that were done on the CPU, in double precision, though a device was asked for: the first ones, where triangles
-    /// are too flat for single precision.
+    /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat for single
+    /// precision: the first sweeps, or all if the first ones did not open every triangle.
     pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`](crate::Method) did without these corrections, as the device does not bind what the
-    /// coarser levels of the mesh take.
+    /// Whether [`Method::Auto`](crate::Method::Auto) did without corrections because the coarser levels do not fit the
+    /// device's limits.
     pub levels_left_out: bool,
-    /// The sweep after which the returned state was had; 0 is the mesh as it was.
+    /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
     pub history: Vec<Objectives>,
-    /// The share of f that is estimated to be left to gain at the end, from the decay of the last sweeps; `None` where
-    /// that says nothing.
+    /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
+    /// if they do not decay or are too few.
     pub remaining: Option<f64>,
-    /// How the goal was met, if there was one.
+    /// How far the run went toward its goal, if it had one.
     pub goal: Option<GoalOutcome>,
-    /// Vertices that went back where they were, because rounding had inverted a triangle.
+    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
     pub returned: usize,
-    /// Time spent on sweeps and what belongs to them.
+    /// Time spent in the run, the search for a desired objective included.
     pub smooth: Duration,
 }
 
-/// What became of a [`Goal`].
+/// How far a run went toward its [`Goal`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalOutcome {
-    /// The share of the way that was asked for.
+    /// The share that [`Goal::fraction`] asked for.
     pub fraction: f64,
     /// The desired objective.
     pub desired: f64,
-    /// How the desired objective was had: "given", or the run that found it.
+    /// Where the desired objective comes from: "given", or a description of the runs that found it.
     pub origin: String,
-    /// The largest share of the way that was gone.
+    /// The share of the way from the initial to the desired objective that [`Outcome::points`] have gone; 1 if both
+    /// were equal from the start.
     pub best_fraction: f64,
 }
 
@@ -88,11 +89,11 @@ impl<'a> Smoother<'a> {
     /// Prepares a mesh.
     ///
     /// # Errors
-    /// [`MeshError`] if the mesh is not one that can be smoothed.
+    /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
         let (mut topology, problem) = prepare(mesh)?;
-        // What runs are given is the problem. Only a vertex that goes back needs its star again.
+        // Runs need the problem alone. Stars are found again if a vertex has to be set back.
         topology.forget_stars();
         Ok(Self { mesh, topology, problem, prepare: start.elapsed() })
     }
@@ -102,7 +103,7 @@ impl<'a> Smoother<'a> {
         &self.topology
     }
 
-    /// Number of colors of the free vertices.
+    /// Number of colors that the free vertices have.
     pub fn colors(&self) -> usize {
         self.problem.colors().len()
     }
@@ -112,13 +113,13 @@ impl<'a> Smoother<'a> {
         self.prepare
     }
 
-    /// How large the mesh is, less the vertices that no triangle uses.
+    /// Number of triangles, and of vertices that some triangle uses.
     pub fn size(&self) -> MeshSize {
         let triangles = self.problem.triangles().len();
         MeshSize { vertices: self.problem.positions().len(), triangles }
     }
 
-    /// Statistics of the mesh with its vertices at `points`.
+    /// Quality statistics of the mesh with its vertices at `points`.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -126,8 +127,8 @@ impl<'a> Smoother<'a> {
         Quality::of(points, &self.topology)
     }
 
-    /// Sends vertices of inverted or flat triangles back to where the mesh had them, in place, and
-    /// returns how many; see [`validity::certify`](crate::validity::certify). To be called when `points` were rounded
+    /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and
+    /// returns how many; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
     /// again after [`Self::run`].
     ///
     /// # Errors
@@ -136,12 +137,13 @@ impl<'a> Smoother<'a> {
         certify(&self.topology, &self.mesh.points, points)
     }
 
-    /// Smooths the mesh. Blocks until the run ends; `observe` is called every few sweeps and may end
-    /// it, the best state so far being returned all the same.
+    /// Smooths the mesh. Blocks until the run ends. `observe` is called every few sweeps and can end the run;
+    /// the best state so far is then returned.
     ///
     /// # Errors
-    /// [`SmoothError`] if an option makes no sense or the device fails; [`GpuError::Limit`](crate::GpuError::Limit) before anything is done if the
-    /// mesh does not fit it.
+    /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
+    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
+    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
     pub fn run(
         &self,
         options: &Options,
@@ -157,12 +159,12 @@ impl<'a> Smoother<'a> {
 
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
-    /// The future completes only if somebody polls the device meanwhile, as an application does that
-    /// draws frames (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run, as
-    /// `observe` can, which then returns the best state so far. The future is `Send` if `observe` is.
+    /// The future completes only if the application polls the device meanwhile, as one that draws frames does
+    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result; if
+    /// `observe` ends the run, the best state so far is returned. The future is `Send` if `observe` is.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// The same as those of [`run`](Self::run).
     pub async fn run_async(
         &self,
         options: &Options,
@@ -206,8 +208,8 @@ impl<'a> Smoother<'a> {
         };
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
         let mut returned = self.certify(&mut points)?;
-        // Judged as they will stand: rounding, and vertices that went back, may have cost more than was gained, and a
-        // device moves vertices of an optimal mesh by its own rounding.
+        // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
+        // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
         let written = self.objective(base, &self.problem.normalized(&points, end.positions));
         let gains = initial - written > NOISE * initial;
         if !gains {
@@ -217,7 +219,7 @@ impl<'a> Smoother<'a> {
         let best = if gains { written } else { initial };
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
-            // Nothing to go is all the way gone.
+            // 0 / 0: the initial objective was the desired one.
             GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
         });
         Ok(Outcome {
@@ -236,11 +238,12 @@ impl<'a> Smoother<'a> {
         })
     }
 
+    /// The objective by a metric at normalized positions.
     fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
         metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
     }
 
-    /// Finds what a goal is measured by.
+    /// Determines the desired objective of a goal, by runs to convergence if it is not given.
     async fn aim(
         &self,
         goal: Goal,
@@ -283,14 +286,14 @@ impl<'a> Smoother<'a> {
     }
 }
 
-/// Sweeps from some positions to the end, on the CPU or a device.
+/// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
 struct Run<'s> {
     problem: &'s Problem,
     device: Option<(&'s Gpu, Waiting)>,
     phase: Phase,
 }
 
-/// What a run leaves, the sweeps that opened it included.
+/// The result of a [`Run`], including the sweeps that opened flat triangles.
 struct Ran {
     history: Vec<Objectives>,
     positions: Vec<DVec2>,
@@ -302,6 +305,7 @@ struct Ran {
 }
 
 impl Run<'_> {
+    /// Sweeps from some positions until the run ends.
     async fn sweep(
         &self,
         options: &Options,
@@ -327,7 +331,7 @@ impl Run<'_> {
             }
             Some((gpu, waiting)) => {
                 let steps = Strategy::steps(&plan, corrected);
-                // A run with corrections is judged by the host: on the device it never ends.
+                // The host judges a run with corrections, so the device must not end it.
                 let judged = if corrected { plan.clone().endless() } else { plan.clone() };
                 let engine = GpuEngine::new(gpu, problem, from, judged, steps, waiting)?;
                 drive(engine, &plan, strategy, must, at, observe).await?
@@ -353,8 +357,9 @@ impl Run<'_> {
         })
     }
 
-    /// Where to compute, and what came before it: where a triangle is too flat for a device's single precision, sweeps on
-    /// the CPU that open it; or all of the run, if they cannot.
+    /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these
+    /// sweeps, if there were any. If they do not open every triangle, there is no device: the whole run is done on the
+    /// CPU.
     async fn opened(
         &self,
         plan: &Plan,
@@ -371,11 +376,11 @@ impl Run<'_> {
     }
 }
 
-/// Smooths a mesh given as plain slices, in one blocking call: positions in any unit, and vertex triples,
-/// zero-based, in either winding. The boundary stays. Returns the positions in the same order.
+/// Smooths a mesh given as slices, in one blocking call. `points` are positions in any unit, `triangles` zero-based
+/// vertex triples in either winding. The boundary stays fixed. Returns the positions in the order of `points`.
 ///
 /// # Errors
-/// As [`Smoother::new`] and [`Smoother::run`].
+/// Those of [`Smoother::new`] and [`Smoother::run`].
 pub fn smooth(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],

@@ -1,5 +1,5 @@
-//! Derivatives by forward differences, as Mesquite takes them. Here to test the cost model of Park & Shontz: slow, so
-//! compiled once, for no particular instructions.
+//! Derivatives by forward differences, as Mesquite computes them. Only there to test the cost model of Park & Shontz.
+//! Not inlined, so compiled without the processor's special instructions: that saves compile time, and makes them slow.
 
 use fearless_simd::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::cpu::patch::Patches;
 use crate::metric::{Corner, Dual, Formulas, Real};
 use crate::run::line_search;
 
-/// The patches' objectives with their derivatives, by forward differences.
+/// The objectives of four patches with their derivatives, by forward differences.
 pub(crate) fn derivatives<S: Simd>(
     patches: &Patches<'_, S>,
     formulas: impl Formulas,
@@ -25,7 +25,7 @@ pub(crate) fn derivatives<S: Simd>(
     sum
 }
 
-/// The least distance of each vertex from the line through a ring edge.
+/// The least distance of each vertex from a line through an edge of its one-ring.
 fn least_height<S: Simd>(patches: &Patches<'_, S>, at: Points<S>) -> Lanes<S> {
     let mut least = at[0].constant(f64::INFINITY);
     for i in 0..patches.degree() {
@@ -52,7 +52,7 @@ fn differences<S: Simd>(
         let b = [corner.b[0] - x, corner.b[1] - y];
         values[k] = formulas.model(&Corner { a, b, ..*corner }, sharpness);
     }
-    // Gradients here and one step along x and y, each from a value and its forward neighbors.
+    // Gradients at the vertex and one step along x and y, each by forward differences.
     let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];
     let [right_x, right_y] = [(values[5] - values[4]) / h, (values[6] - values[4]) / h];
     let [up_x, up_y] = [(values[9] - values[8]) / h, (values[10] - values[8]) / h];

@@ -1,6 +1,6 @@
-//! The f64 engine: the reference for tests, and what runs where there is no adapter.
+//! The engine on the CPU, in double precision. Also the reference for tests.
 //!
-//! Same colors, same steps and same stopping as the GPU engine, on all cores.
+//! It uses the same colors, steps and stop rule as the GPU engine.
 
 use std::borrow::Cow;
 
@@ -15,29 +15,29 @@ use crate::parallel::{for_each_chunk, map_parts};
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, History, Objectives, Plan, Proposal, Step};
 
-/// Vertices that one task moves.
+/// Number of vertices of one task.
 const CHUNK: usize = 1 << 12;
 
-/// A mesh that is swept on the CPU, in double precision.
+/// The state of a run on the CPU.
 pub(crate) struct CpuEngine<'a> {
     problem: &'a Problem,
     base: Metric,
     tracked: Vec<Metric>,
-    /// The step whose shape guard and exponent corrections go by.
+    /// The base metric's step. Corrections use its shape guard and its exponent.
     step: Step,
     positions: Vec<DVec2>,
-    /// The best state; `None` if that is always the last.
+    /// The positions of the best state; `None` if every sweep improves the mesh, so that the last state is the best.
     best: Option<Vec<DVec2>>,
-    /// Room for a sweep to work in.
+    /// Scratch memory for sweeps.
     moved: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
-    /// The last correction.
+    /// The last correction, at each free vertex.
     direction: Vec<Vec2>,
 }
 
 impl<'a> CpuEngine<'a> {
-    /// The mesh at `positions`, normalized and in the problem's order.
+    /// Starts at `positions`, which are normalized and in the problem's order.
     pub(crate) fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
         let best = (!plan.is_monotone()).then(|| positions.clone());
         Self {
@@ -67,6 +67,7 @@ impl<'a> CpuEngine<'a> {
         values
     }
 
+    /// Records the objectives, and keeps the positions if they are the best so far.
     fn record(&mut self, history: &mut History) {
         if history.record(self.objectives_now())
             && let Some(best) = &mut self.best
@@ -75,6 +76,7 @@ impl<'a> CpuEngine<'a> {
         }
     }
 
+    /// The mean excess at a length of the correction; see [`Engine::excess_along`].
     fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
@@ -87,7 +89,7 @@ impl<'a> CpuEngine<'a> {
         let dot = |_, (g, d): (&[Vec2], &[Vec2])| -> f64 {
             g.iter().zip(d).map(|(g, d)| g.as_dvec2().dot(d.as_dvec2())).sum()
         };
-        // Added up in order, whatever the threads.
+        // Summed in order, so that the result does not depend on the number of threads.
         map_parts(parts, dot).iter().sum::<f64>() / self.problem.triangles().len() as f64
     }
 }
@@ -137,7 +139,7 @@ impl Engine for CpuEngine<'_> {
         self.sweep_now(step);
         let Self { base, problem, positions, gradient, .. } = self;
         sweep::gradient(*base, problem, positions, self.step.sharpness, gradient);
-        // Room for a direction is taken anew: that of the last goes first.
+        // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
         self.direction = match &self.hierarchy {
             Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),

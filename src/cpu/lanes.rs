@@ -1,15 +1,15 @@
-//! Four numbers that are computed with at once, whatever the processor has for it.
+//! SIMD lanes: four numbers at once, on any processor.
 //!
-//! Every operation rounds as that of `f64` does and none are fused, so results do not depend on
-//! the processor, nor on which numbers stand beside each other.
+//! Every operation rounds as that of `f64` does and none are fused, so results depend neither on
+//! the processor nor on which numbers share a vector.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x4, mask64x4};
 
 use crate::metric::Real;
 
-/// Evaluates an expression with `$simd` bound to the widest instructions that are worth compiling for: on x86 those of
-/// AVX2 where the processor has them. A body is compiled for each kind, which takes long.
+/// Evaluates an expression with `$simd` bound to the best instructions that the code is compiled for: on x86 those of
+/// AVX2 if the processor has them. The expression is compiled for each instruction set, so there are only two on x86.
 macro_rules! with_lanes {
     ($simd:ident => $body:expr) => {{
         let level = fearless_simd::Level::new();
@@ -31,14 +31,14 @@ macro_rules! with_lanes {
 }
 pub(crate) use with_lanes;
 
-/// Numbers side by side.
+/// Number of lanes.
 pub(crate) const LANES: usize = 4;
 
-/// Four numbers, for the instructions that `S` says the processor has.
+/// Four numbers, computed with the instruction set `S`.
 pub(crate) type Lanes<S> = f64x4<S>;
 /// Four truth values.
 pub(crate) type Mask<S> = mask64x4<S>;
-/// Four vectors of the plane.
+/// Four points or vectors of the plane, as x and y.
 pub(crate) type Points<S> = [Lanes<S>; 2];
 
 impl<S: Simd> Real for Lanes<S> {

@@ -1,4 +1,4 @@
-//! Where a run computes on the CPU: all cores, in double precision, four vertices at a time.
+//! The CPU engine: all cores, in double precision, four vertices at a time.
 
 mod differences;
 mod engine;

@@ -1,4 +1,4 @@
-//! Visits of free vertices: safeguarded Newton steps on their patches, four at a time.
+//! Visits of free vertices: safeguarded Newton steps on their patches, four vertices at a time.
 
 use fearless_simd::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::cpu::patch::Patches;
 use crate::metric::{Dual, Formulas, Real};
 use crate::run::{Derivatives, Step, line_search};
 
-/// Where the vertices go from `at`.
+/// Visits four vertices at `at`. Returns their new positions.
 #[inline(always)]
 pub(crate) fn visit<S: Simd>(
     formulas: impl Formulas,
@@ -30,7 +30,7 @@ pub(crate) fn visit<S: Simd>(
     at
 }
 
-/// Which vertices took a step too short to be followed by another.
+/// The vertices whose step was so short that their visit ends.
 #[inline(always)]
 fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mask<S> {
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
@@ -38,8 +38,8 @@ fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mas
     (x * x + y * y).simd_lt(patches.squared_edge(from) * least)
 }
 
-/// One Newton step with its line search by those of the vertices that are `going`: where they are
-/// then, and which of them found a step that improves their patch.
+/// One Newton step with its line search, for the vertices in `going`. Returns the new positions, and
+/// which vertices took a step.
 #[inline(always)]
 fn newton_step<S: Simd>(
     formulas: impl Formulas,
@@ -86,8 +86,9 @@ fn newton_step<S: Simd>(
     (end, found)
 }
 
-/// The direction -H⁻¹g, H made positive definite by absolute eigenvalues with a floor, the slope g·d
-/// along it, and where there is a descent: not where the objective is flat or not finite.
+/// The Newton direction d = -H⁻¹g, the slope g·d, and the vertices where d descends. H is made positive definite:
+/// eigenvalues become absolute, and at least `floor` times the largest. There is no descent where the objective is flat
+/// or not finite.
 #[inline(always)]
 fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Mask<S>) {
     let [xx, xy, yy] = at.hessian;
@@ -102,7 +103,7 @@ fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Ma
     let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
     let least = Real::max(high, low) * floor;
     let (high, low) = (one / Real::max(high, least), one / Real::max(low, least));
-    // H = mean + R, R² = radius²: the projector on the upper eigenvector is (1 + R/radius)/2.
+    // H = mean + R with R² = radius², so the projector on the upper eigenvector is (1 + R/radius)/2.
     let split = radius.simd_gt(0.0);
     let inverse = split.select(one / radius, radius);
     let ux = split.select((gx + (half * gx + xy * gy) * inverse) * 0.5, gx);

@@ -9,10 +9,10 @@ use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, with_formulas};
 use crate::parallel::map_parts;
 
-/// Triangles of one task.
+/// Number of triangles of one task.
 const CHUNK: usize = 1024;
 
-/// Mean of q² - ideal² over all triangles, in an order of summation that does not depend on the
+/// The mean of q² - ideal² over all triangles, summed in an order that does not depend on the
 /// number of threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
@@ -24,16 +24,16 @@ pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]
     sums.iter().sum::<f64>() / problem.triangles().len() as f64
 }
 
-/// The free vertices some way along a direction.
+/// Positions with the free vertices moved by `length` times `direction`.
 pub(crate) struct Along<'a> {
     pub(crate) positions: &'a [DVec2],
-    /// Of each free vertex.
+    /// The direction of each free vertex.
     pub(crate) direction: &'a [Vec2],
     pub(crate) length: f64,
 }
 
-/// The mean of q² - ideal² there, or `None` where a triangle is inverted or flat, or has an inverse mean ratio above
-/// `guard` and above what it has without the step.
+/// The mean of q² - ideal² at moved positions. `None` if the move inverts or flattens a triangle, or makes an inverse
+/// mean ratio worse that is then above `guard`.
 pub(crate) fn mean_excess_along(
     metric: Metric,
     problem: &Problem,
@@ -52,7 +52,7 @@ pub(crate) fn mean_excess_along(
     sum.map(|sum| sum / problem.triangles().len() as f64)
 }
 
-/// The sum over some triangles with a step, if all of them bear it.
+/// The sum of q² - ideal² over some triangles at moved positions. `None` as in [`mean_excess_along`].
 #[inline(always)]
 fn excess_along<S: Simd>(
     simd: S,
@@ -99,7 +99,7 @@ fn corner<S: Simd>(p: Points<S>, q: Points<S>, r: Points<S>, mean_area: f64) -> 
 }
 
 impl Along<'_> {
-    /// Where some vertices are, and where they go.
+    /// The positions of some vertices, before and after the move.
     #[inline(always)]
     fn points<S: Simd>(&self, simd: S, vertices: [u32; LANES]) -> (Points<S>, Points<S>) {
         let [x, y] = points(simd, self.positions, vertices);
@@ -110,14 +110,14 @@ impl Along<'_> {
         ([x, y], [x + dx * self.length, y + dy * self.length])
     }
 
-    /// The direction of a vertex: none, if it is fixed.
+    /// The direction of a vertex; zero if it is fixed.
     #[inline(always)]
     fn step(&self, vertex: u32) -> DVec2 {
         self.direction.get(vertex as usize).map_or(DVec2::ZERO, |step| step.as_dvec2())
     }
 }
 
-/// The sum over some triangles.
+/// The sum of q² - ideal² over some triangles.
 #[inline(always)]
 fn excess<S: Simd>(
     simd: S,
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
-        // Six triangles around a vertex: four side by side, and two.
+        // Six triangles around a vertex: four in the lanes, and two one by one.
         let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
         let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
         points.push([0.1, 0.2]);
@@ -166,7 +166,7 @@ mod tests {
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
             let there = mean_excess(metric, &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
-            // Out of the hexagon through each of its sides, and nowhere.
+            // Out of the hexagon through each of its sides, then along a direction that is NaN.
             for k in 0..6 {
                 let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
                 assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");

@@ -1,4 +1,4 @@
-//! Four free vertices with their one-rings, side by side, and sums over their patches.
+//! Four free vertices with their one-rings, one in each lane, and sums over their patches.
 
 use fearless_simd::prelude::*;
 use glam::DVec2;
@@ -11,7 +11,7 @@ use crate::metric::{Dual, Real};
 /// The one-rings of four free vertices with the same number of neighbors.
 #[derive(Clone, Copy)]
 pub(crate) struct Patches<'a, S: Simd> {
-    /// Positions of the neighbors, counter-clockwise, the first again at the end.
+    /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
     ring: &'a [Points<S>],
     /// Mean area of the mesh's triangles.
     mean_area: f64,
@@ -41,12 +41,12 @@ impl<'a, S: Simd> Patches<'a, S> {
         Self { ring, mean_area: problem.mean_area() }
     }
 
-    /// The neighbors of each vertex.
+    /// The number of neighbors of each vertex.
     pub(crate) fn degree(&self) -> usize {
         self.ring.len() - 1
     }
 
-    /// The squared length of an edge at each vertex.
+    /// The squared length of one edge at each vertex.
     #[inline(always)]
     pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
         let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
@@ -61,7 +61,7 @@ impl<'a, S: Simd> Patches<'a, S> {
         Corner { a, b, mean_area: self.mean_area }
     }
 
-    /// The patches' objectives with their derivatives.
+    /// The objectives of the patches with their derivatives.
     #[inline(always)]
     pub(crate) fn derivatives(
         &self,
@@ -91,8 +91,8 @@ impl<'a, S: Simd> Patches<'a, S> {
         worst
     }
 
-    /// The patches' objectives, and which have no triangle that is inverted or, if there is a `limit`, has an
-    /// inverse mean ratio above it.
+    /// The objectives of the patches, and which patches are feasible: no triangle is inverted or flat or, if there is a
+    /// `limit`, has an inverse mean ratio above it.
     #[inline(always)]
     pub(crate) fn objective(
         &self,
@@ -115,7 +115,7 @@ impl<'a, S: Simd> Patches<'a, S> {
     }
 }
 
-/// The positions of some vertices, side by side.
+/// The positions of some vertices, one in each lane.
 #[inline(always)]
 pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
     let [a, b, c, d] = vertices;
@@ -124,7 +124,7 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
     [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
 }
 
-/// The inverse mean ratio where the area is positive, for the shape guard.
+/// The inverse mean ratio for the shape guard. Valid only if the area is positive.
 #[inline(always)]
 pub(crate) fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
     corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()

@@ -1,4 +1,4 @@
-//! What is done at every free vertex: a sweep, and the gradient.
+//! Loops over all free vertices: sweeps, and the gradient.
 
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
@@ -11,15 +11,16 @@ use crate::metric::{Formulas, Metric, with_formulas};
 use crate::parallel::for_each_chunk;
 use crate::run::{Derivatives, Step};
 
-/// Vertices of one task.
+/// Number of vertices of one task.
 const CHUNK: usize = Problem::BLOCK;
 
-/// Positions that one task copies: fewer are not worth a second thread.
+/// Number of positions that one task copies. Fewer are not worth a second thread.
 const COPY: usize = 1 << 14;
 
-/// What a visit leaves at a vertex.
+/// The result of a visit at a vertex: the new position, or the gradient.
 trait Found: Send {
-    /// Whether the visit steps, or finds the gradient: known to the compiler, as each takes a minute to compile.
+    /// Whether the visit takes Newton steps; if not, it finds the gradient. A constant, so that for each type only one
+    /// of the two is compiled.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
@@ -40,7 +41,7 @@ impl Found for Vec2 {
     }
 }
 
-/// One visit of every free vertex, color by color. `moved` is room to work in.
+/// Visits every free vertex once, color by color. `moved` is scratch memory.
 pub(crate) fn sweep(
     problem: &Problem,
     positions: &mut [DVec2],
@@ -50,7 +51,7 @@ pub(crate) fn sweep(
     for color in problem.colors() {
         let first = color.start as usize;
         moved.resize(color.len(), DVec2::ZERO);
-        // Vertices of one color read each other's neighbors only, never each other.
+        // Vertices of one color are not neighbors, so none reads the position of another.
         visit(problem, positions, first, step, moved);
         for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
             to.copy_from_slice(&moved[at..][..to.len()]);
@@ -58,7 +59,7 @@ pub(crate) fn sweep(
     }
 }
 
-/// The gradient of Σ q² at each free vertex, into `found`. Single precision does for finding a direction.
+/// Writes the gradient of Σ q² at each free vertex to `found`. Single precision is enough for a direction.
 pub(crate) fn gradient(
     metric: Metric,
     problem: &Problem,
@@ -75,13 +76,14 @@ pub(crate) fn gradient(
         derivatives: Derivatives::Analytic,
         shape_guard: f64::INFINITY,
     };
-    // Vertices of one degree stand together within a color.
+    // Color by color, as vertices with equally many neighbors are together within a color.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
         visit(problem, positions, color.start as usize, &step, found);
     }
 }
 
+/// Visits the vertices from `first` on, in parallel, and writes the results to `found`.
 fn visit<T: Found>(
     problem: &Problem,
     positions: &[DVec2],
@@ -97,7 +99,7 @@ fn visit<T: Found>(
     });
 }
 
-/// Visits the vertices from `first` on and writes where they go, or the gradient there.
+/// Visits the vertices from `first` on, and writes their new positions or gradients to `found`.
 #[inline(always)]
 fn visit_all<S: Simd, T: Found>(
     simd: S,
@@ -118,7 +120,7 @@ fn visit_all<S: Simd, T: Found>(
         while count < most && problem.ring_of(v + count).len() == degree {
             count += 1;
         }
-        // Lanes too many visit the last vertex again.
+        // Lanes that are left over visit the last vertex again.
         let last = v + count - 1;
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
         let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);

@@ -1,4 +1,4 @@
-//! Corrections from coarser levels, on the CPU.
+//! The V-cycle that computes corrections from coarser levels, on the CPU.
 
 use glam::Vec2;
 
@@ -6,11 +6,11 @@ use crate::layout::Problem;
 use crate::parallel::for_each_chunk;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
-/// Rows that are not worth splitting among threads.
+/// Number of rows of one task.
 const GRAIN: usize = 512;
 
-/// The correction −P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices, M⁻¹ one V-cycle: a direction of
-/// descent.
+/// The correction -P M⁻¹ Pᵀ g, given the gradient g of Σ q² at the free vertices. P is the prolongation from the
+/// aggregates of the free vertices, M⁻¹ one V-cycle over the coarse levels. The correction is a direction of descent.
 pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
@@ -19,7 +19,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let root = hierarchy.roots();
-    // The values are those of the neighbors times their roots.
+    // `values` are already multiplied by the roots of their vertices.
     let around = |v: usize, values: &[Vec2]| -> Vec2 {
         root[v] * ring(v).fold(Vec2::ZERO, |sum, k| sum + values[k])
     };
@@ -46,7 +46,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
     })
 }
 
-/// One V-cycle over the levels, from zero.
+/// One V-cycle over the coarse levels, starting from zero.
 fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
     let Some((level, below)) = levels.split_first() else { return Vec::new() };
     let n = right.len();
@@ -75,7 +75,7 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
     rows(right.len(), |i| right[i] - times(&level.operator, i, x))
 }
 
-/// Two steps of Chebyshev's iteration from `x`, or from zero.
+/// Two steps of the Chebyshev iteration, starting from `x` or from zero.
 fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {
@@ -144,7 +144,7 @@ mod tests {
         Hierarchy::new(problem, problem.positions(), stiffness)
     }
 
-    /// The same, made for elements up to thirty times smaller and fitted to these.
+    /// A hierarchy built for the mesh with stretched positions, then fitted to its own.
     fn resized(problem: &Problem) -> Hierarchy {
         let positions = problem.positions();
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -154,7 +154,7 @@ mod tests {
         Hierarchy::new(problem, &stretched, stiffness).resized(problem, positions, stiffness)
     }
 
-    /// Something that looks like noise.
+    /// Vectors that look random.
     fn noise(count: usize, seed: f64) -> Vec<Vec2> {
         let at =
             |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos()).as_vec2();
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn smooth_errors_are_corrected_nearly_whole() {
-        // A wave over the whole square, which sweeps alone would take thousands for.
+        // A wave over the whole square. Sweeps alone would take thousands to remove it.
         let problem = square();
         assert_corrects_a_wave(&problem, &hierarchy(&problem));
         assert_corrects_a_wave(&problem, &resized(&problem));
@@ -216,7 +216,7 @@ mod tests {
         let free = problem.free_count();
         let gradient: Vec<Vec2> = (0..free).map(|v| laplacian(v).as_vec2()).collect();
         let step = correction(hierarchy, problem, &gradient);
-        // As far along the step as a line search would go.
+        // The step length at which least of the wave is left.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
         let along: f64 = wave.iter().zip(&step).map(|(w, s)| w.dot(s.as_dvec2())).sum();
         let length = -along / squared;

@@ -1,4 +1,4 @@
-//! Graph coloring: free vertices that may move at the same time.
+//! Graph coloring: free vertices of one color can move at the same time.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
@@ -7,8 +7,8 @@ use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
 
-/// Independent sets of free vertices: no two of one color share a triangle, so a color can be
-/// swept in parallel with the result of any serial order.
+/// A coloring of the free vertices: no two of one color share a triangle, so the vertices of a color can be
+/// visited in parallel, with the same result as in any serial order.
 #[derive(Clone, Debug)]
 pub struct Coloring {
     colors: Vec<u32>,
@@ -18,36 +18,37 @@ pub struct Coloring {
 /// The color of a vertex that is not free.
 pub const UNCOLORED: u32 = u32::MAX;
 
-/// Vertices in a row along a curve that are colored by themselves. Their numbers within fit 16 bits.
+/// Number of consecutive vertices along the curve that make a block. Numbers within a block fit 16 bits.
 const BLOCK: usize = 1 << 15;
 
-/// Blocks help if no more than this part of the vertices lies between them.
+/// Blocks are used only if at most one in this many vertices lies between them.
 const MOST_BETWEEN: usize = 4;
 
-/// Colors that smallest-last order takes on a planar graph at most.
+/// The most colors that smallest-last order takes on a planar graph.
 const PLANAR: u32 = 6;
 
 impl Coloring {
-    /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983):
-    /// a planar graph then takes 6 colors at most.
+    /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983),
+    /// which takes at most 6 colors on a planar graph.
     ///
-    /// Vertices far apart in the mesh's numbering are colored independently, with those between
-    /// them colored first.
+    /// Blocks of vertices with consecutive numbers in the mesh are colored in parallel, after the vertices that have
+    /// neighbors in several blocks.
     pub fn new(topology: &Topology<'_>) -> Self {
         let numbering: Vec<u32> = (0..topology.free().len() as u32).collect();
         Self::in_blocks(topology, &numbering, BLOCK)
     }
 
-    /// The same along a curve that all free vertices are on: the more of a vertex's neighbors are near it on the
-    /// curve, the faster.
+    /// Colors the free vertices as [`Self::new`] does, in blocks along a curve that contains all of them. Faster if
+    /// most neighbors are near each other on the curve.
     pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
         match curve.len() {
-            // What is one block takes its colors from the numbering alone.
+            // A single block does not need the curve, and `new` colors it by the numbering alone.
             0..=BLOCK => Self::new(topology),
             _ => Self::in_blocks(topology, curve, BLOCK),
         }
     }
 
+    /// Colors the free vertices along a curve, in blocks of `block` vertices.
     fn in_blocks(topology: &Topology<'_>, curve: &[u32], block: usize) -> Self {
         let places = Places::new(topology, curve);
         let (colors, count) = match curve.len() <= block {
@@ -64,12 +65,12 @@ impl Coloring {
         self.count
     }
 
-    /// Color of each vertex, [`UNCOLORED`] if it is not free.
+    /// Color of each vertex of the mesh, [`UNCOLORED`] if the vertex is not free.
     pub fn colors(&self) -> &[u32] {
         &self.colors
     }
 
-    /// Whether every free vertex, and no other, has a color unlike those of its neighbors.
+    /// Whether every free vertex has a color that differs from its neighbors' colors, and no other vertex has a color.
     pub fn is_proper(&self, topology: &Topology<'_>) -> bool {
         let differs = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.colors[v as usize]);
@@ -77,17 +78,17 @@ impl Coloring {
             !same(a, b) && !same(b, c) && !same(c, a)
         };
         let is_complete = |(&color, &free): (&u32, &bool)| free == (color < self.count);
-        // A coloring of another mesh has other lengths.
+        // A coloring of another mesh may have another length.
         self.colors.len() == topology.free().len()
             && self.colors.iter().zip(topology.free()).all(is_complete)
             && topology.triangles().iter().all(differs)
     }
 }
 
-/// The place of a vertex that is not free.
+/// Stands for no place on the curve, at a vertex that is not free.
 const NOWHERE: u32 = u32::MAX;
 
-/// The free vertices by their places on a curve.
+/// The free vertices by their places on a curve. A place is an index in `curve`.
 struct Places<'a> {
     topology: &'a Topology<'a>,
     curve: &'a [u32],
@@ -120,7 +121,7 @@ impl<'a> Places<'a> {
         ring.map(|v| self.of[v as usize]).filter(|&place| place != NOWHERE)
     }
 
-    /// The same in the order of the triangles.
+    /// The places of the free neighbors, in the order of the triangles' numbers.
     fn sorted_neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let vertex = self.curve[place as usize];
         let mut ring: Vec<(u32, u32)> =
@@ -129,7 +130,7 @@ impl<'a> Places<'a> {
         ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NOWHERE)
     }
 
-    /// Colors what lies between blocks, then the blocks: the colors by place, and their number.
+    /// Colors the vertices between blocks, then the blocks. Returns the colors by place, and their number.
     fn color(&self, block: usize) -> (Vec<u32>, u32) {
         let blocks = map_ranges(self.curve.len(), block, |places| {
             Block::new(self, places, &mut Degrees::default())
@@ -148,7 +149,7 @@ impl<'a> Places<'a> {
             block.graph.save_colors(&block.order, count, colors)
         });
         let count = count.max(counts.into_iter().max().unwrap_or(0));
-        // The first vertices of a block may have more than five neighbors between the blocks.
+        // A vertex of a block may have more than five neighbors that are colored already, as they lie between blocks.
         if count <= PLANAR {
             return (colors, count);
         }
@@ -156,13 +157,13 @@ impl<'a> Places<'a> {
         if serial_count < count { (serial, serial_count) } else { (colors, count) }
     }
 
-    /// Colors all in one.
+    /// Colors all free vertices as one graph. Returns the colors by place, and their number.
     fn color_serially(&self) -> (Vec<u32>, u32) {
         let all: Vec<u32> = (0..self.curve.len() as u32).filter(|&p| self.is_free(p)).collect();
         self.color_alone(&all)
     }
 
-    /// Colors the vertices at some places as if there were no others.
+    /// Colors the vertices at some places as if there were no others. Returns the colors by place, and their number.
     fn color_alone(&self, places: &[u32]) -> (Vec<u32>, u32) {
         let mut index = vec![0u32; self.curve.len()];
         for (i, &place) in (1u32..).zip(places) {
@@ -186,11 +187,11 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Vertices in a row along a curve, numbered from the first of them.
+/// Consecutive vertices along a curve, numbered from 0.
 struct Block {
-    /// The neighbors of vertices inside: those that have all their neighbors in the block.
+    /// The neighbors of the inner vertices, those with all neighbors in the block.
     graph: Graph<u16>,
-    /// The vertices inside, smallest last.
+    /// The inner vertices, in the order of removal; see [`Graph::smallest_last_order`].
     order: Vec<u32>,
     /// The other free vertices.
     border: Vec<u32>,
@@ -227,7 +228,7 @@ impl Block {
     }
 }
 
-/// The neighbors of vertices, as compressed rows.
+/// The neighbors of vertices, in compressed rows.
 struct Graph<I> {
     start: Vec<u32>,
     neighbors: Vec<I>,
@@ -240,12 +241,13 @@ impl<I: Copy + Into<u32>> Graph<I> {
         Self { start, neighbors: Vec::with_capacity(6 * vertices) }
     }
 
+    /// Adds a vertex with its neighbors.
     fn push(&mut self, neighbors: impl Iterator<Item = I>) {
         self.neighbors.extend(neighbors);
         self.start.push(self.neighbors.len() as u32);
     }
 
-    /// Takes the last vertex's neighbors away.
+    /// Removes the last vertex's neighbors.
     fn clear_last(&mut self) {
         self.start.pop();
         self.neighbors.truncate(self.start.last().map_or(0, |&start| start as usize));
@@ -256,7 +258,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         &self.neighbors[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
     }
 
-    /// Removes a vertex of least remaining degree again and again; the order of removal. Takes the degrees.
+    /// Removes a vertex of least remaining degree until none is left. Returns the order of removal, and empties
+    /// `degrees`.
     fn smallest_last_order(&self, degrees: &mut Degrees) -> Vec<u32> {
         let Degrees { of, buckets } = degrees;
         for (v, &degree) in of.iter().enumerate().rev().filter(|(_, degree)| **degree != STAYS) {
@@ -272,7 +275,7 @@ impl<I: Copy + Into<u32>> Graph<I> {
                 least += 1;
                 continue;
             };
-            // A vertex stands in one bucket per degree it has had; only the last entry counts.
+            // A vertex is in one bucket for each degree it has had. Only the entry for its present degree counts.
             if of[v as usize] as usize != least {
                 continue;
             }
@@ -292,7 +295,7 @@ impl<I: Copy + Into<u32>> Graph<I> {
         order
     }
 
-    /// Gives vertices their least possible colors, the last of the order first, and returns the number of colors.
+    /// Gives each vertex the least possible color, in the reverse of `order`. Returns the number of colors.
     fn color(&self, order: &[u32], colors: &mut [u32]) -> u32 {
         let mut count = 0;
         for &v in order.iter().rev() {
@@ -302,8 +305,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         count
     }
 
-    /// Colors that hardly any vertex has mostly are not needed: takes them off again, one vertex at a time, and returns
-    /// the number of colors.
+    /// Tries to do without colors above the first four, which few vertices have, by recoloring one vertex at a time.
+    /// Returns the number of colors.
     fn save_colors(&self, order: &[u32], count: u32, colors: &mut [u32]) -> u32 {
         for color in (FOUR..count).rev() {
             for &v in order {
@@ -319,24 +322,25 @@ impl<I: Copy + Into<u32>> Graph<I> {
         self.row(v).iter().map(|&u| colors[u.into() as usize])
     }
 
-    /// The least color that no neighbor of a vertex has, other than `but`.
+    /// The least color, other than `but`, that no neighbor of a vertex has.
     #[inline]
     fn least_color(&self, v: u32, but: u32, colors: &[u32]) -> u32 {
         let taken = self.colors_around(v, colors).chain([but]);
         let taken = taken.filter(|&c| c < 64).fold(0u64, |set, c| set | 1 << c);
         let mut color = (!taken).trailing_zeros();
-        // Smallest-last needs at most 6 on a planar graph; a mesh that overlaps itself may need
-        // more, but 64 would take a vertex of degree 64 in a core of such vertices.
+        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but 64 only if every
+        // vertex of some part of it has 64 neighbors.
         while color >= 64 && self.colors_around(v, colors).chain([but]).any(|c| c == color) {
             color += 1;
         }
         color
     }
 
-    /// Gives a vertex the color of a neighbor, if no other neighbor has it and this one can do with another.
+    /// Gives a vertex the lower color of a neighbor, if no other neighbor has it and that neighbor can take another
+    /// color below the vertex's own.
     fn lower(&self, v: u32, colors: &mut [u32]) {
         let color = colors[v as usize];
-        // The colors that neighbors have, and those that several have.
+        // The colors of neighbors, and the colors that several neighbors share.
         let (mut taken, mut shared) = (0u64, 0u64);
         for c in self.colors_around(v, colors).filter(|&c| c < 64) {
             shared |= taken & 1 << c;
@@ -345,8 +349,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         for &u in self.row(v) {
             let u = u.into();
             let wanted = colors[u as usize];
-            // Of neighbors that lie between the blocks not all neighbors are known. One with many neighbors would be
-            // asked by each of them, and looks at all of them each time.
+            // Vertices between blocks have no row in the graph and keep their colors. Those with many neighbors keep
+            // theirs too: each neighbor might try them, which takes time proportional to the number of neighbors.
             if wanted < color.min(64)
                 && shared & 1 << wanted == 0
                 && (1..=MANY).contains(&self.row(u).len())
@@ -362,16 +366,16 @@ impl<I: Copy + Into<u32>> Graph<I> {
     }
 }
 
-/// Colors that suffice for a planar graph, hard as they may be to find.
+/// Every planar graph can be colored with this many colors, though they may be hard to find.
 const FOUR: u32 = 4;
 
-/// A vertex with more neighbors keeps its color when others do without theirs.
+/// A vertex with more neighbors than this is not recolored.
 const MANY: usize = 64;
 
-/// The degree of a vertex that is not to be removed, or was.
+/// Stands for the degree of a vertex that is removed already, or is not to be removed.
 const STAYS: u32 = u32::MAX;
 
-/// Vertices by the number of their neighbors that are left.
+/// Vertices by degree, the number of their neighbors that are not removed yet.
 #[derive(Default)]
 struct Degrees {
     of: Vec<u32>,
@@ -379,7 +383,7 @@ struct Degrees {
 }
 
 impl Degrees {
-    /// Adds a vertex: its degree, or none if it stays.
+    /// Adds a vertex with its degree, or `None` if the vertex is not to be removed.
     fn put(&mut self, degree: Option<u32>) {
         self.of.push(degree.unwrap_or(STAYS));
     }
@@ -390,7 +394,7 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// Squares with their diagonals one way or the other, so that vertices have 4 to 8 neighbors.
+    /// A grid of squares, each cut by one of its diagonals, so that vertices have 4 to 8 neighbors.
     fn squares(side: u32) -> Topology<'static> {
         let points = (0..(side + 1).pow(2)).map(|v| [v % (side + 1), v / (side + 1)]);
         let triangles = (0..side * side).flat_map(|square| {

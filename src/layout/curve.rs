@@ -1,4 +1,4 @@
-//! Vertices along a space-filling curve: those that are near each other are mostly near in this order.
+//! Vertices along a space-filling curve: most vertices that are near each other are also near in this order.
 
 use glam::DVec2;
 use rayon::slice::ParallelSliceMut;
@@ -8,14 +8,16 @@ use crate::parallel::counting_sort::Groups;
 use crate::parallel::{for_each_part, map_ranges};
 use crate::topology::Topology;
 
-/// Vertices that a cell of the first sorting has on average.
+/// Average number of vertices in a cell of the first sorting.
 const PER_CELL: usize = 8;
 
-/// Cells that one task sorts, and vertices of a cell that are worth several threads.
+/// Number of cells that one task sorts.
 const CELLS: usize = 1 << 8;
+
+/// A cell of this many vertices is sorted by several threads.
 const CROWD: usize = 1 << 14;
 
-/// The vertices that some triangle uses, along the Z-order curve of their positions.
+/// The vertices that some triangle uses, in the order of their positions along a Z-order curve.
 pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
     let (low, high) = bounds(mesh, topology);
     let scale = f64::from(u32::MAX) / (high - low).max_element();
@@ -23,7 +25,7 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
         let cell = (DVec2::from(mesh.points[v as usize]) - low) * scale;
         z_order(cell.x as u32, cell.y as u32)
     };
-    // Into cells of the plane first, then cell by cell.
+    // First into cells of the plane, then within each cell.
     let bits = (mesh.points.len() / PER_CELL).max(2).ilog2().min(22);
     let unused = 1 << bits;
     let mut cells = Groups::new(mesh.points.len(), unused + 1, |v| {
@@ -43,7 +45,7 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
     vertices
 }
 
-/// Sorts vertices by key, those of one key by number. `keyed` is room to work in.
+/// Sorts vertices by key, and those of equal keys by number. `keyed` is scratch memory.
 fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(u64, u32)>) {
     keyed.clear();
     keyed.extend(vertices.iter().map(|&v| (key(v), v)));
@@ -56,7 +58,7 @@ fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(
     }
 }
 
-/// The bounding box of the vertices in use.
+/// The bounding box of the vertices that some triangle uses: its lower and upper corner.
 pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
@@ -87,7 +89,7 @@ mod tests {
 
     #[test]
     fn all_vertices_in_use_stand_along_the_curve() {
-        // Strips of triangles: one with points all over, one in a corner, and vertices of no triangle.
+        // A third of the points all over the plane, the others in a corner. The last 300 are of no triangle.
         let mut points: Vec<[f64; 2]> = Vec::new();
         for k in 0..3000 {
             let [x, y] = [k * 7919 % 3001, k * 104_729 % 2999].map(f64::from);

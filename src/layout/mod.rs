@@ -1,4 +1,4 @@
-//! From a mesh to what the engines are given: free vertices colored, numbered anew and normalized.
+//! From a mesh to the [`Problem`] of the engines: free vertices are colored and renumbered, positions normalized.
 
 mod coloring;
 mod curve;

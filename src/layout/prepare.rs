@@ -1,4 +1,4 @@
-//! From a mesh to what the engines are given.
+//! Preparing a mesh for the engines.
 
 use crate::error::MeshError;
 use crate::layout::Coloring;
@@ -7,11 +7,11 @@ use crate::layout::curve::along_curve;
 use crate::mesh::Mesh;
 use crate::topology::Topology;
 
-/// Checks a mesh, colors and lays it out: what [`Smoother::new`](crate::Smoother::new) does, for those who drive an
-/// [`Engine`](crate::Engine) themselves.
+/// Checks a mesh, colors it and lays it out, as [`Smoother::new`](crate::Smoother::new) does, for code that drives runs
+/// itself.
 ///
 /// # Errors
-/// [`MeshError`] for a mesh that cannot be smoothed.
+/// [`MeshError`] if the mesh cannot be smoothed.
 pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;

@@ -1,4 +1,4 @@
-//! What both engines are given: normalized positions and one-rings, numbered color by color.
+//! The input of the engines: normalized positions and one-rings, numbered color by color.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
@@ -13,17 +13,19 @@ use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ran
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// Vertices or triangles that one task goes through, and those of a task that takes note of each.
+/// Number of vertices or triangles of one task.
 const CHUNK: usize = 1 << 12;
+/// Number of vertices of one task when they are sorted by color. Longer than [`CHUNK`], as every task has a counter for
+/// each color.
 const LONG: usize = 1 << 14;
 
-/// A mesh laid out for sweeping. Vertices are numbered anew: free ones first, color by color, in
-/// blocks along a space-filling curve within a color and by the number of their neighbors within a
-/// block, then those fixed ones that some triangle uses.
+/// A mesh laid out for sweeping. Vertices are renumbered: first the free ones, color by color, then the fixed ones that
+/// some triangle uses. Within a color they are in blocks along a space-filling curve, and within a block by the number
+/// of their neighbors.
 ///
-/// Positions are centered and scaled by a power of two (which rounds nothing) such that the mean
-/// triangle has an area in [0.5, 2): then single precision serves meshes of any size at any place,
-/// and areas of triangles far smaller or larger than the mean neither vanish nor overflow.
+/// Positions are centered and scaled by a power of two (which rounds nothing) such that the mean area of the triangles
+/// is in [0.5, 2]. So single precision serves meshes of any size at any place,
+/// and areas far below or above the mean neither vanish nor overflow.
 #[derive(Clone, Debug)]
 pub struct Problem {
     positions: Vec<DVec2>,
@@ -38,8 +40,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Vertices of a color that are sorted by the number of their neighbors, so that those visited at
-    /// once have equally many: enough for few exceptions, and few enough to stay close together.
+    /// Number of vertices in a block. Blocks are sorted by the number of neighbors, so that vertices visited at
+    /// once have equally many. Larger blocks have fewer exceptions; smaller ones keep vertices closer together.
     pub(crate) const BLOCK: usize = 512;
 
     /// Lays out a mesh with its topology and coloring.
@@ -47,7 +49,7 @@ impl Problem {
         Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
     }
 
-    /// The same, given the vertices in use along a curve.
+    /// Lays out a mesh as [`Self::new`] does, given the vertices that some triangle uses in the order of a curve.
     pub(crate) fn along(
         mesh: &Mesh,
         topology: &Topology<'_>,
@@ -76,7 +78,7 @@ impl Problem {
             let [p, q, r] = t.map(|v| positions[v as usize]);
             0.5 * (q - p).perp_dot(r - p)
         };
-        // Where triangles are as thin as rounding, their rounded areas may come to nothing.
+        // The rounded areas of very thin triangles may add up to zero.
         let mean_area = match sum(&triangles, area) / triangles.len() as f64 {
             mean if mean > 0.0 => mean,
             _ => exact_mean,
@@ -89,27 +91,27 @@ impl Problem {
         &self.positions
     }
 
-    /// The free vertices of each color.
+    /// The range of free vertices that each color has.
     pub fn colors(&self) -> &[Range<u32>] {
         &self.colors
     }
 
-    /// Number of free vertices; they come first.
+    /// Number of free vertices. They are the first vertices.
     pub fn free_count(&self) -> usize {
         self.ring_start.len() - 1
     }
 
-    /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last.
+    /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last neighbor.
     pub fn ring_start(&self) -> &[u32] {
         &self.ring_start
     }
 
-    /// The neighbors of the free vertices, counter-clockwise, vertex by vertex.
+    /// The neighbors of all free vertices, vertex by vertex, in counter-clockwise order around each.
     pub fn ring(&self) -> &[u32] {
         &self.ring
     }
 
-    /// The neighbors of one free vertex.
+    /// The neighbors of one free vertex, counter-clockwise.
     #[inline]
     pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
         let vertex = vertex as usize;
@@ -126,24 +128,24 @@ impl Problem {
         self.mean_area
     }
 
-    /// The mesh's number of each vertex.
+    /// The number that each vertex has in the mesh.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
 
-    /// The center that positions are relative to, and the scale: normalized is (x - center) · scale.
+    /// The center and the scale of the normalization: normalized positions are (x - center) · scale.
     pub fn normalization(&self) -> (DVec2, f64) {
         (self.center, self.scale)
     }
 
-    /// Brings the normalized positions of all vertices, fixed ones too, back into the mesh's units, each with the
-    /// mesh's number of the vertex.
+    /// Converts the normalized positions of all vertices, fixed ones included, to the mesh's units. Returns each with
+    /// the number that its vertex has in the mesh.
     pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
         let point = |&now: &DVec2| (self.center + now / self.scale).to_array();
         self.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
-    /// Normalized positions of a mesh's points, in the memory of `room`.
+    /// The normalized positions of points in the mesh's order and units. Uses the memory of `room`.
     pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
         room.resize(self.vertices.len(), DVec2::ZERO);
         for_each_chunk(&mut room, CHUNK, |first, positions| {
@@ -154,8 +156,8 @@ impl Problem {
         room
     }
 
-    /// Puts normalized positions back in the mesh's order and units. A vertex that is fixed or did
-    /// not move keeps its bits.
+    /// Converts normalized positions to the mesh's order and units. A vertex that is fixed or did
+    /// not move keeps exactly its position in the mesh.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();
         let free = self.vertices[..self.free_count()].iter();
@@ -168,12 +170,13 @@ impl Problem {
     }
 }
 
-/// Center of the bounding box, the power of two that brings the mean area into [0.5, 2), and that area.
+/// The center of the bounding box, the power of two that brings the mean area into [0.5, 2], and the mean area after
+/// scaling by it.
 fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let (low, high) = bounds(mesh, topology);
-    // Halved before they are added: the sum of two large coordinates may overflow.
+    // Halved before adding, as the sum of two large coordinates may overflow.
     let center = low * 0.5 + high * 0.5;
-    // Of the points as they are, and in units of the bounding box, where their sum cannot overflow.
+    // Areas of the original points, in units of the bounding box, where their sum cannot overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
     let mean = sum(topology.triangles(), relative) / topology.triangles().len() as f64;
@@ -182,13 +185,13 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     (center, scale, (length * scale).powi(2))
 }
 
-/// The sum of a number of each triangle, in an order that does not depend on the number of threads.
+/// The sum of `of` over triangles, in an order that does not depend on the number of threads.
 fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
     let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
     sums.iter().sum()
 }
 
-/// The rings of the free `vertices`, by new numbers: where each starts, and all of them.
+/// The one-rings of the free `vertices`, by new numbers: where each starts, with one past the last, and all neighbors.
 fn rings(
     topology: &Topology<'_>,
     vertices: &[u32],
@@ -199,8 +202,8 @@ fn rings(
     let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
-    // Along the curve, where the triangles around a vertex are mostly those around the vertices before it. Each
-    // writes its own row; they are atomic only because rows lie anywhere.
+    // Along the curve, where most triangles around a vertex are also around the vertices before it and so are cached.
+    // No two tasks write one entry; entries are atomic only because the rows of a task are scattered.
     for_each_part(curve.chunks(CHUNK), |_, chunk| {
         for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
@@ -212,8 +215,8 @@ fn rings(
     (start, plain(ring))
 }
 
-/// All triangles by new numbers, of `vertices` vertices. Their order decides how well the objective's reads
-/// are cached: by the least corner it follows the vertices' curve, and is the same whatever the input's order.
+/// All triangles by the new numbers of their `vertices` vertices, sorted by least corner. So they follow the curve of
+/// the vertices, which keeps reads for the objective cached, and their order does not depend on that of the mesh.
 fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
@@ -226,7 +229,7 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
         }
     });
     let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
-    // Runs of equal least corners, cut where chunks would begin inside one.
+    // Chunks for sorting triangles of equal least corners. None ends among triangles with the same one.
     let mut rest = &mut all[..];
     let runs = std::iter::from_fn(|| {
         let mut end = rest.len().min(CHUNK);
@@ -241,7 +244,7 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
     all
 }
 
-/// The vertices in the order [`Problem`] promises, and the range of each color.
+/// The vertices in the order that [`Problem`] documents, and the range of each color.
 fn order(
     topology: &Topology<'_>,
     coloring: &Coloring,
@@ -258,7 +261,7 @@ fn order(
         curve[range].iter().for_each(|&v| counts[slot(v)] += 1);
         counts
     });
-    // What each chunk has of a color goes behind what the chunk before it has.
+    // Within a color, the vertices of each chunk follow those of the chunk before.
     let mut vertices = vec![0; curve.len()];
     let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
     let mut targets: Vec<Vec<&mut [u32]>> = counts.iter().map(|_| Vec::new()).collect();

@@ -1,4 +1,4 @@
-//! Aspect ratio.
+//! The metric AR, the aspect ratio.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -21,13 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("ar.wgsl"),
 };
 
-/// q = s / area with s = excess + area, √3/6 times the sum of the squared lengths.
+/// q² - 1 for q = (excess + area) / area. The numerator is √3/6 times the sum of the squared edge lengths.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let q = (t.excess + t.area) / t.area;
     (q - 1.0) * (q + 1.0)
 }
 
+/// Value and derivatives of [`value`] by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let unit = t.area.constant(1.0) / t.area;

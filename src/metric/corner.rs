@@ -1,16 +1,16 @@
-//! A triangle as metrics see it: its edges from one vertex, and its invariants.
+//! The arguments of metrics: the edges of a triangle from one vertex, and its invariants.
 
 use crate::metric::dual::{Dual, Real};
 
-/// A triangle as its metric sees it: the edge vectors from one vertex to the other two, in
-/// counter-clockwise order, and what is constant over the mesh.
+/// A triangle seen from one vertex: the edge vectors to the other two, in counter-clockwise order, and the mean area
+/// of the mesh. The argument of a [`Metric`](crate::Metric).
 #[derive(Clone, Copy, Debug)]
 pub struct Corner<T> {
     /// Edge vector to the next vertex, counter-clockwise.
     pub a: [T; 2],
-    /// Edge vector to the vertex after that.
+    /// Edge vector to the third vertex.
     pub b: [T; 2],
-    /// Mean area of the mesh's triangles, in the square of the edges' unit.
+    /// Mean area of the mesh's triangles, in the square of the unit of `a` and `b`.
     pub mean_area: f64,
 }
 
@@ -26,6 +26,7 @@ impl<T: Real> Corner<T> {
         [ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy]
     }
 
+    /// Sum of the squared edge lengths.
     #[inline(always)]
     pub(crate) fn squared_length_sum(&self) -> T {
         let [a, b, c] = self.squared_lengths();
@@ -38,7 +39,7 @@ impl<T: Real> Corner<T> {
         self.a[0] * self.b[1] - self.a[1] * self.b[0]
     }
 
-    /// The entries T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of their squares is
+    /// T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of their squares is
     /// |T|² - 2 det T, without the cancellation of that difference.
     #[inline(always)]
     fn distortion(&self) -> [T; 2] {
@@ -46,7 +47,7 @@ impl<T: Real> Corner<T> {
         [ax - (by * 2.0 - ay) * W, (bx * 2.0 - ax) * W + ay]
     }
 
-    /// What all metrics but EDGE are functions of.
+    /// The invariants of the triangle. All metrics except EDGE are functions of them.
     #[inline(always)]
     pub fn invariants(&self) -> Invariants<T> {
         let [u, v] = self.distortion();
@@ -89,7 +90,7 @@ impl<T: Real> Corner<T> {
 }
 
 impl Corner<f64> {
-    /// The inverse mean ratio, 1 for the equilateral triangle; infinite for one without area.
+    /// The inverse mean ratio: 1 if the triangle is equilateral, infinite if it is flat or inverted.
     pub fn inverse_mean_ratio(&self) -> f64 {
         let area = self.doubled_area();
         if area > 0.0 {
@@ -100,13 +101,14 @@ impl Corner<f64> {
     }
 }
 
-/// Numbers of a triangle that no rotation changes. Metrics but EDGE are functions of them: the squared
-/// Frobenius norm of T = A W⁻¹, W equilateral of the mean area, is 2 (excess + area) / mean, and its determinant
-/// area / mean.
+/// Quantities of a triangle that do not change when it is rotated. All metrics except EDGE are functions of them.
+///
+/// For T = A W⁻¹, with A the edges of the triangle and W those of the equilateral triangle of mean area, the squared
+/// Frobenius norm is 2 (excess + area) / mean, and the determinant area / mean.
 #[derive(Clone, Copy, Debug)]
 pub struct Invariants<T> {
-    /// √3/6 times the sum of the squared edge lengths, less the doubled area: 0 for an equilateral
-    /// triangle and above 0 for every other. Computed as a sum of squares.
+    /// √3/6 times the sum of the squared edge lengths, minus the doubled area: 0 for an equilateral
+    /// triangle and positive for every other. Computed as a sum of squares.
     pub excess: T,
     /// Twice the signed area.
     pub area: T,

@@ -1,15 +1,15 @@
-//! Numbers that carry their first and second derivatives.
+//! Dual numbers, which carry their first and second derivatives.
 //!
-//! They differentiate a metric's *value formula*: the oracle for every hand-written derivative, in
-//! WGSL and on the CPU alike, and what the CPU engine takes where a metric has none.
+//! Tests use them to differentiate a metric's *value formula*, and check every hand-written derivative against the
+//! result, both in WGSL and in Rust. The engines use the hand-written derivatives; [`Dual`] holds their values.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// What a metric's formulas may do with their arguments: `f64` and SIMD vectors of it for values,
+/// The arithmetic of a metric's formulas. Implemented by `f64` and SIMD vectors of it for values, and by
 /// [`Dual`] for derivatives.
 ///
-/// Formulas go without closures and iterators over such numbers: what the standard library calls is
-/// not compiled for the instructions of the vectors, which makes it several times slower.
+/// Formulas avoid closures and iterators over such numbers: calls through the standard library are
+/// not compiled for SIMD instructions, which makes them several times slower.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -20,11 +20,11 @@ pub trait Real:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// The constant `value`.
+    /// The constant `value`, with as many lanes as `self`.
     fn constant(self, value: f64) -> Self;
-    /// The same value, taken for a constant.
+    /// The value of `self` as a constant: its derivatives are zero.
     fn fixed(self) -> Self;
-    /// The square root; the derivative at zero is infinite.
+    /// The square root. Its derivative at zero is infinite.
     fn sqrt(self) -> Self;
     /// The smaller of two numbers.
     fn min(self, other: Self) -> Self;
@@ -70,7 +70,7 @@ impl<T: Real> Dual<T> {
         dual
     }
 
-    /// A constant.
+    /// The constant `value`.
     #[inline(always)]
     fn of(value: T) -> Self {
         let zero = value.constant(0.0);
@@ -175,7 +175,7 @@ impl<T: Real> Mul<f64> for Dual<T> {
     }
 }
 
-/// `min` and `max` are values only: their derivatives would jump from one argument's to the other's.
+/// `min` and `max` return constants: their derivatives would be discontinuous.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn constant(self, value: f64) -> Self {

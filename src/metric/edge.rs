@@ -1,4 +1,4 @@
-//! Edge ratio.
+//! The metric EDGE, the ratio of the longest to the shortest edge.
 
 use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
@@ -21,7 +21,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("edge.wgsl"),
 };
 
-/// q² - 1.
+/// q² - 1 for q = Lmax / Lmin.
 #[inline(always)]
 pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
     let [a, b, c] = t.squared_lengths();
@@ -29,12 +29,12 @@ pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
     (most - least) / least
 }
 
-/// What Newton minimizes in place of q² - 1, which is not smooth: the p-norm with k = 2^`sharpness`.
+/// The smooth model of q² - 1 that Newton's method minimizes: a p-norm with exponent k = 2^`sharpness`.
 #[inline(always)]
 pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
-    // The p-norm of the edge pairs: (max/min) [mean A mean B]^(1/k) with A = (L/max)^k and
-    // B = (min/L)^k, both from ratios below one. Scaling by max and min changes nothing,
-    // so they may enter as constants.
+    // The p-norm over pairs of edges: (max/min) [mean A · mean B]^(1/k) with A = (L/max)^k and
+    // B = (min/L)^k, over squared lengths L. Powers of ratios below 1 cannot overflow. The value does not
+    // depend on the scaling by max and min, so they enter as constants.
     let [la, lb, lc] = t.squared_lengths();
     let most = la.max(lb).max(lc).fixed();
     let least = la.min(lb).min(lc).fixed();
@@ -73,7 +73,7 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, sharpness: u32) -> Dual<T> {
     }
     let q = root * (most * (least.constant(1.0) / least));
 
-    // Shares of the two edges that move in both sums, and u = ∇L/L of these edges.
+    // Shares of the two moving edges in both sums, and u, v = ∇L/L of these edges.
     let shares = one / (a * b);
     let (wa, wb) = (b * shares, a * shares);
     let (wa0, wa1, wb0, wb1) = (a0 * wa, a1 * wa, b0 * wb, b1 * wb);

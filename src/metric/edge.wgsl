@@ -1,6 +1,6 @@
-// Edge ratio q = Lmax/Lmin. Newton works on the p-norm of the edge pairs, k = 2^sharpness:
+// Edge ratio q = Lmax/Lmin. Newton's method minimizes the p-norm over pairs of edges, k = 2^sharpness:
 // q² ≈ (max/min) [mean A · mean B]^(1/k), A = (L/max)^k, B = (min/L)^k over squared lengths L.
-// By squarings and square roots of ratios below one: nothing overflows, whatever k.
+// Powers are squarings and square roots of ratios below 1, so nothing overflows, whatever k is.
 
 struct EdgePowers {
     lengths: vec3<f32>,

@@ -1,4 +1,4 @@
-//! Inverse mean ratio.
+//! The metric IMR, the inverse mean ratio.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -21,13 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("imr.wgsl"),
 };
 
-/// q² - 1 = m (m + 2) for q = 1 + m, m = excess / area: no cancellation on good triangles.
+/// q² - 1 for q = 1 + m, m = excess / area, as m (m + 2): no cancellation on good triangles.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let m = t.excess / t.area;
     m * (m + 2.0)
 }
 
+/// Value and derivatives of [`value`] by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let unit = t.area.constant(1.0) / t.area;

@@ -1,46 +1,47 @@
-//! What a metric's row says.
+//! The constants of a metric.
 
-/// Constants of a metric: what is known about it, and how its Newton step is safeguarded.
+/// Constants of a metric q: a description, and parameters of its Newton steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Properties {
-    /// The name on the command line, and with `_` for `-` that of the metric's files.
+    /// The name on the command line. The metric's files have the same name, with `_` for `-`.
     pub name: &'static str,
-    /// The formula, for people.
+    /// The formula, as text. L are edge lengths, S is the area.
     pub formula: &'static str,
-    /// Where the metric comes from.
+    /// The publication that the metric comes from.
     pub citation: &'static str,
-    /// What it is good for and what it does to shapes.
+    /// What the metric is good for, and what it does to shapes.
     pub purpose: &'static str,
     /// Whether q grows to infinity as a triangle's area goes to zero.
     pub barrier: bool,
-    /// q of an equilateral triangle of the mean area, the least value.
+    /// The least value of q, that of an equilateral triangle of the mean area.
     pub ideal: f64,
-    /// Whether q is the same for a similar triangle of another size.
+    /// Whether q does not depend on the size of the triangle.
     pub scale_invariant: bool,
-    /// Whether q is the inverse mean ratio, by whatever formula.
+    /// Whether q equals the inverse mean ratio.
     pub is_inverse_mean_ratio: bool,
-    /// Whether the objective is quadratic in one vertex, so that one Newton step is exact and its
+    /// Whether the objective is quadratic in the position of one vertex, so that one Newton step is exact and its
     /// decrease needs no test.
     pub quadratic: bool,
-    /// Eigenvalues of the patch Hessian are raised to this share of the largest.
+    /// Absolute eigenvalues of a patch's Hessian are raised to at least this share of the largest.
     pub eigenvalue_floor: f64,
     /// The largest inverse mean ratio that the shape guard lets a step leave, unless the patch had a worse one
-    /// before; see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite where the barrier does that work.
+    /// before; see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite if the metric has a barrier.
     pub shape_guard: f64,
-    /// The over-relaxation that suits it.
+    /// The default over-relaxation in runs by this metric alone; see [`Options::omega`](crate::Options::omega).
     pub omega: f64,
-    /// The graph Laplacian that stands in for the objective's Hessian in a coarse correction, if one does.
+    /// The graph Laplacian that approximates the objective's Hessian in corrections from coarser levels. `None` if the
+    /// metric has no corrections.
     pub stiffness: Option<Stiffness>,
-    /// The WGSL file's text.
+    /// The text of the metric's WGSL file.
     pub wgsl: &'static str,
 }
 
-/// The weight of an edge in the graph Laplacian that comes near the Hessian of Σ q² on a good mesh.
+/// The weight of an edge in the graph Laplacian that approximates the Hessian of Σ q² on a good mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
-    /// This over the mean doubled area of the triangles around.
+    /// This number divided by the mean doubled area of the triangles nearby.
     BySize(f64),
-    /// This over the mean doubled area of all triangles.
+    /// This number divided by the mean doubled area of all triangles.
     Uniform(f64),
 }
 

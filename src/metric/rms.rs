@@ -1,4 +1,4 @@
-//! Root mean square edge length.
+//! The metric RMS, the root mean square of the edge lengths.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -27,6 +27,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (t.excess + (t.area - t.mean)) * (1.0 / t.mean)
 }
 
+/// Value and derivatives of [`value`] by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let (zero, one) = (t.area.constant(0.0), t.area.constant(1.0));

@@ -1,5 +1,5 @@
 // Root mean square edge length over that of the equilateral triangle of mean area: q² = (excess + area) / mean.
-// Quadratic: its Newton step is the mean of the ring.
+// Quadratic: a Newton step moves the vertex to the mean of its one-ring.
 
 fn rms_value(t: Invariants) -> f32 {
     return (t.excess + (t.area - t.mean)) / t.mean;

@@ -1,18 +1,19 @@
-//! Alternation schemes: which metric each sweep uses.
+//! Schemes: which metric each sweep uses.
 
 use crate::metric::table::{Metric, UnknownMetric};
 
-/// A sequence of metrics, used in turn sweep by sweep; the first is the base metric, which alone
-/// judges convergence (Park & Shontz, Section 2.2). Written `edge+imr+imr`.
+/// A sequence of metrics, one for each sweep in turn. The first is the base metric, which alone
+/// judges convergence (Park & Shontz, Section 2.2). Parses from and displays as names joined by `+`, such as
+/// `edge+imr+imr`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Scheme(Vec<Metric>);
 
 impl Scheme {
-    /// The most metrics a scheme can have: the stop rule looks back over two periods and more, as far
-    /// as the device remembers.
+    /// The most metrics a scheme can have: the stop rule looks back over four periods or more, and a
+    /// device keeps 256 evaluations.
     pub const LONGEST: u32 = 60;
 
-    /// A scheme of the given metrics; `None` when there are none.
+    /// A scheme of the given metrics; `None` if there are none.
     pub fn new(metrics: impl Into<Vec<Metric>>) -> Option<Self> {
         let metrics = metrics.into();
         (!metrics.is_empty()).then_some(Self(metrics))
@@ -23,7 +24,7 @@ impl Scheme {
         self.0[0]
     }
 
-    /// The metric of a sweep; sweeps count from 1, and sweep 1 uses the base metric.
+    /// The metric of a sweep. Sweeps count from 1, and sweep 1 uses the base metric.
     pub fn metric(&self, sweep: u32) -> Metric {
         self.0[(sweep.max(1) as usize - 1) % self.0.len()]
     }
@@ -38,8 +39,8 @@ impl Scheme {
         &self.0
     }
 
-    /// Whether every sweep lowers the base objective itself, so that the last state is the best:
-    /// one metric only, and one whose Newton model is the metric.
+    /// Whether every sweep lowers the base objective, so that the last state is the best: true for
+    /// a single metric that is smooth.
     pub fn is_monotone(&self) -> bool {
         self.0.iter().all(|&m| m == self.base()) && self.base().is_smooth()
     }

@@ -1,4 +1,4 @@
-//! The quality metrics, one row each.
+//! The table of quality metrics.
 //!
 //! A metric is a row of the table below and two files, `NAME.rs` and `NAME.wgsl`; everything else (command line, help,
 //! shader composition, property tests, GPU-against-f64 tests, benchmarks) loops over [`Metric::ALL`].
@@ -15,11 +15,12 @@ macro_rules! metrics {
         $edge:ident = $edge_file:ident of edges;
         $($(#[$doc:meta])* $variant:ident = $file:ident of invariants;)*
     ) => {
-        /// A quality metric q of a triangle; smaller is better.
+        /// A quality metric q of a triangle. Smaller is better. The source of each is in
+        /// [`Properties::citation`](crate::Properties::citation).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Metric { $(#[$edge_doc])* $edge, $($(#[$doc])* $variant,)* }
 
-        /// The metrics that are functions of a triangle's [`Invariants`].
+        /// A metric that is a function of a triangle's [`Invariants`].
         #[derive(Clone, Copy, Debug)]
         pub(crate) enum OfInvariants { $($variant,)* }
 
@@ -35,7 +36,7 @@ macro_rules! metrics {
                 }
             }
 
-            /// The metric's formulas, by what they are functions of.
+            /// The metric's formulas.
             #[inline(always)]
             pub(crate) const fn formulas(self) -> AnyFormulas {
                 match self {
@@ -62,17 +63,20 @@ macro_rules! metrics {
 }
 
 metrics! {
-    /// Edge ratio Lmax/Lmin.
+    /// EDGE, the edge ratio Lmax/Lmin (Park & Shontz, Table 1, printed there as its inverse).
     Edge = edge of edges;
-    /// Relative deviation of the area from the mean.
+    /// AREA, the relative deviation |S - S_mean| / S_mean of the area S from the mean (Park & Shontz, Table 1).
     Area = area of invariants;
-    /// Root mean square of the edge lengths, over that of the equilateral triangle of mean area.
+    /// RMS, the root mean square of the edge lengths, divided by that of the equilateral triangle of mean area (Park &
+    /// Shontz, Table 1).
     Rms = rms of invariants;
-    /// Inverse mean ratio |A W⁻¹|² / (2 det(A W⁻¹)), W equilateral.
+    /// IMR, the inverse mean ratio |A W⁻¹|² / (2 det(A W⁻¹)), with A the edges of the triangle and W those of an
+    /// equilateral one (Munson, Math. Program. 110, 2007).
     Imr = imr of invariants;
-    /// Aspect ratio √3 (L12² + L23² + L13²) / (12 S).
+    /// AR, the aspect ratio √3 (L12² + L23² + L13²) / (12 S) with S the area (Park & Shontz, Table 1). Equal to IMR.
     Ar = ar of invariants;
-    /// Shape and size |T - T⁻ᵗ|, T = A W⁻¹, W equilateral of the mean area.
+    /// SHAPE-SIZE, |T - T⁻ᵗ| for T = A W⁻¹, with A the edges of the triangle and W those of the equilateral one of mean
+    /// area (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 7).
     ShapeSize = shape_size of invariants;
 }
 
@@ -80,15 +84,16 @@ metrics! {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfEdges;
 
-/// A metric's formulas, by what they are functions of. Hot loops are compiled for each of the two, and look up the
-/// metric of the invariants as they run: compiled for every metric, they would take minutes.
+/// The formulas of any metric. Hot loops are compiled for each of the two variants, and a metric of the invariants is
+/// looked up at run time: to compile them for every metric would take minutes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum AnyFormulas {
     Edges(OfEdges),
     Invariants(OfInvariants),
 }
 
-/// Evaluates an expression with `$f` bound to the [`Formulas`] of a metric, compiled for each kind of them.
+/// Evaluates an expression with `$f` bound to the [`Formulas`] of a metric. The expression is compiled for each variant
+/// of [`AnyFormulas`].
 macro_rules! with_formulas {
     ($metric:expr, $f:ident => $body:expr) => {
         match $metric.formulas() {
@@ -99,16 +104,16 @@ macro_rules! with_formulas {
 }
 pub(crate) use with_formulas;
 
-/// What is computed of a triangle by a metric.
+/// The functions of a metric that engines compute.
 pub(crate) trait Formulas: Copy + Sync {
-    /// q² less its ideal value, so that sums of it keep their digits on good meshes.
+    /// q² - ideal². Sums of it keep their digits on good meshes.
     fn excess<T: Real>(self, corner: &Corner<T>) -> T;
 
-    /// What Newton minimizes in place of [`Self::excess`]: the same where that is smooth.
+    /// The function that Newton's method minimizes: [`Self::excess`] if that is smooth, else a smooth model of it.
     fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T;
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex the edges of `corner` start
-    /// from, by the derivatives in the metric's file.
+    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start
+    /// from, by the hand-written derivatives.
     fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T>;
 }
 
@@ -152,36 +157,36 @@ impl Metric {
         self.properties().name
     }
 
-    /// q² of the ideal triangle: what [`Self::excess`] leaves out.
+    /// q² of the ideal triangle, which [`Self::excess`] subtracts.
     pub const fn ideal_squared(self) -> f64 {
         let ideal = self.properties().ideal;
         ideal * ideal
     }
 
-    /// Whether q is smooth, so that Newton's method minimizes it as it is.
+    /// Whether q² is smooth, so that Newton's method minimizes it directly. False for EDGE alone.
     pub const fn is_smooth(self) -> bool {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
 
-    /// q² less its ideal value, so that sums of it keep their digits on good meshes.
+    /// q² - ideal². Sums of it keep their digits on good meshes.
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {
         with_formulas!(self, f => f.excess(corner))
     }
 
-    /// What Newton minimizes in place of [`Self::excess`]: the same, but for EDGE, which is
-    /// not smooth. There it is the p-norm with k = 2^`sharpness`.
+    /// The function that Newton's method minimizes: [`Self::excess`], except for EDGE, which is
+    /// not smooth. For EDGE it is a p-norm with exponent k = 2^`sharpness`, minus 1.
     pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
         with_formulas!(self, f => f.model(corner, sharpness))
     }
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex the edges of `corner` start from,
-    /// by the derivatives in the metric's file, as the CPU engine takes them.
+    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start from,
+    /// by the hand-written derivatives that the CPU engine uses.
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         with_formulas!(self, f => f.expansion(corner, sharpness))
     }
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex the edges of
-    /// `corner` start from, by dual numbers: what the derivatives written by hand are held against.
+    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of
+    /// `corner` start from, by dual numbers. Tests check the hand-written derivatives against it.
     pub fn derivatives<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         // Moving the vertex by d changes both edges by -d.
         let ([ax, ay], [bx, by]) = (corner.a, corner.b);
@@ -191,7 +196,7 @@ impl Metric {
         self.model(&dual, sharpness)
     }
 
-    /// q itself, infinite for a triangle without area if the metric has a barrier.
+    /// q. Infinite for a flat or inverted triangle if the metric has a barrier.
     pub fn quality(self, corner: &Corner<f64>) -> f64 {
         if self.properties().barrier && !(corner.doubled_area() > 0.0) {
             return f64::INFINITY;
@@ -214,11 +219,12 @@ impl std::str::FromStr for Metric {
     }
 }
 
-/// No metric has this name.
+/// A name that is not the name of a metric.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no metric is called '{0}'; there are {names}", names = names())]
 pub struct UnknownMetric(pub String);
 
+/// The names of all metrics, for the error message.
 fn names() -> String {
     Metric::ALL.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }

@@ -1,4 +1,4 @@
-//! Numbers grouped by keys, as compressed rows: a counting sort on all cores.
+//! A counting sort on all cores: numbers grouped by keys, in compressed rows.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -6,13 +6,13 @@ use rayon::prelude::*;
 
 use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 
-/// Parts that are counted at once, at most: each has a counter of its own for every group.
+/// The most parts that are counted at once. Limited, as each part has its own counter for every group.
 const MOST_PARTS: usize = 8;
 
-/// Fewer numbers than this are not worth a part of their own.
+/// There is at most one part for this many numbers. Fewer are not worth another thread.
 const SMALL: usize = 1 << 14;
 
-/// Numbers group by group, ascending within each.
+/// Numbers in groups, ascending within each group.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
     start: Vec<u32>,
@@ -20,7 +20,7 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// Groups the numbers below `items`, each with `N` keys below `groups`.
+    /// Groups the numbers below `items`. Each is put in the `N` groups that `keys` returns, all below `groups`.
     pub(crate) fn new<const N: usize>(
         items: usize,
         groups: usize,
@@ -32,7 +32,7 @@ impl Groups {
         Self { start, items: plain(grouped) }
     }
 
-    /// Where each group starts, and one past the last.
+    /// Where each group starts, and one past the end of the last.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.start
     }
@@ -42,7 +42,8 @@ impl Groups {
         &self.items[self.start[group] as usize..self.start[group + 1] as usize]
     }
 
-    /// Every `chunk` groups: where each starts and the last ends, and their numbers.
+    /// The groups in chunks of `chunk` groups. Of each chunk: where its groups start, with the end of the last, and its
+    /// numbers.
     pub(crate) fn chunks_mut(&mut self, chunk: usize) -> Vec<(&[u32], &mut [u32])> {
         let Self { start, items } = self;
         let last = start.len() - 1;
@@ -52,14 +53,14 @@ impl Groups {
         bounds.zip(parts).collect()
     }
 
-    /// All numbers.
+    /// All numbers, group by group.
     pub(crate) fn into_items(self) -> Vec<u32> {
         self.items
     }
 }
 
-/// Says where each of the numbers below `items` stands once they are grouped by their keys, and returns where each
-/// group starts, and one past the last. `put` is called with a number and each place of it, from any thread.
+/// Groups the numbers below `items` by their keys without storing them: calls `put(number, place)` for each place that
+/// a number gets, from any thread. Returns where each group starts, and one past the end of the last.
 pub(crate) fn place<const N: usize>(
     items: usize,
     groups: usize,
@@ -68,8 +69,8 @@ pub(crate) fn place<const N: usize>(
 ) -> Vec<u32> {
     let parts = rayon::current_num_threads().min(MOST_PARTS).min(items.div_ceil(SMALL)).max(1);
     let part = |part: usize| part * items / parts..(part + 1) * items / parts;
-    // The counters of a group stand side by side, so that their running sum is where each part
-    // writes. They are atomic only because any part may meet any group: no two share a counter.
+    // The counters of a group, one for each part, are side by side, so that their running sum is where each part
+    // writes. No two parts share a counter; counters are atomic only because those of a part are scattered.
     let mut next = atomics(groups * parts, 0);
     for_each(parts, &|p| {
         for key in part(p).flat_map(&keys) {
@@ -93,13 +94,13 @@ pub(crate) fn place<const N: usize>(
     start
 }
 
-/// Parts of a slice, of the lengths given.
+/// Splits a slice into parts of the given lengths.
 pub(crate) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let take = |length| slice.split_off_mut(..length).unwrap_or_default();
     lengths.map(take).collect()
 }
 
-/// Replaces each number by the sum of those before it, and returns the sum of all.
+/// Replaces each number by the sum of the numbers before it. Returns the sum of all.
 pub(crate) fn running_sum<T: Send>(
     cells: &mut [T],
     number: impl Fn(&mut T) -> &mut u32 + Sync,
@@ -123,12 +124,12 @@ pub(crate) fn running_sum<T: Send>(
     sum
 }
 
-/// One number again and again, that several threads may overwrite.
+/// A list of `count` equal numbers that several threads can overwrite.
 pub(crate) fn atomics(count: usize, number: u32) -> Vec<AtomicU32> {
     (0..count).into_par_iter().map(|_| AtomicU32::new(number)).collect()
 }
 
-/// What was written.
+/// The plain numbers of a list made by [`atomics`].
 pub(crate) fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
     atomics.into_iter().map(AtomicU32::into_inner).collect()
 }

@@ -1,4 +1,4 @@
-//! Work on all cores that more than one room needs.
+//! Parallel loops and sorting, shared by several modules.
 
 pub(crate) mod counting_sort;
 mod tasks;

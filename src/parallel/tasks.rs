@@ -1,19 +1,19 @@
-//! Tasks on all threads, by one loop of rayon's.
+//! Tasks on all threads, all by the same rayon loop.
 //!
-//! Rayon compiles its machinery for every loop and every type in it: some forty loops made two thirds of this library's
-//! compile time. Here tasks are what is generic, and small; the loop over them is compiled once.
+//! Rayon compiles its machinery for every loop and every type in it: about forty loops made two thirds of this
+//! library's compile time. Here only small functions are generic; the loop over tasks is compiled once.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-/// Does a task for every number below `count`.
+/// Calls `task` for every number below `count`.
 pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(task);
 }
 
-/// Does a task with each of the parts, which it may own or borrow mutably, and its number.
+/// Calls `task` with the index of each part and the part, which may be owned or a mutable borrow.
 pub(crate) fn for_each_part<P: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) + Sync,
@@ -21,11 +21,11 @@ pub(crate) fn for_each_part<P: Send>(
     for_each_of(parts.into_iter().collect(), &task);
 }
 
-/// Compiled once for each type of part.
+/// [`for_each_part`], compiled once for each type of part.
 fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
     let parts: Vec<Mutex<Option<P>>> = parts.into_iter().map(|p| Mutex::new(Some(p))).collect();
     for_each(parts.len(), &|i| {
-        // Nobody else asks for this one.
+        // No other task takes this part.
         let part = parts[i].lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(part) = part {
             task(i, part);
@@ -33,7 +33,7 @@ fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
     });
 }
 
-/// Does a task with each of the parts, as [`for_each_part`], and returns what they make in the order of the parts.
+/// Calls `task` as [`for_each_part`] does. Returns the results in the order of the parts.
 pub(crate) fn map_parts<P: Send, T: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) -> T + Sync,
@@ -45,12 +45,13 @@ pub(crate) fn map_parts<P: Send, T: Send>(
     made.into_iter().flatten().collect()
 }
 
-/// The ranges of `size` numbers each, but for the last, that make up those below `count`.
+/// Splits the numbers below `count` into ranges of `size` numbers each; the last may be shorter.
 pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(size.max(1)).map(move |start| start..count.min(start + size))
 }
 
-/// What `task` makes of each range of `size` numbers below `count`, in their order.
+/// Calls `task` with ranges of `size` numbers below `count`; the last may be shorter. Returns the results in the order
+/// of the ranges.
 pub(crate) fn map_ranges<T: Send>(
     count: usize,
     size: usize,
@@ -59,7 +60,7 @@ pub(crate) fn map_ranges<T: Send>(
     map_parts(ranges(count, size), |_, range| task(range))
 }
 
-/// Does a task with each chunk of `size` items, and the number of the first of them.
+/// Calls `task` with the index of the first item of each chunk of `size` items, and the chunk. The last may be shorter.
 pub(crate) fn for_each_chunk<T: Send>(
     items: &mut [T],
     size: usize,
@@ -68,7 +69,7 @@ pub(crate) fn for_each_chunk<T: Send>(
     for_each_part(items.chunks_mut(size), |i, chunk| task(i * size, chunk));
 }
 
-/// What `make` makes of every number below `count`.
+/// Returns `make(i)` for every number `i` below `count`, in order.
 pub(crate) fn collect<T: Send + Copy + Default>(
     count: usize,
     make: impl Fn(usize) -> T + Sync,

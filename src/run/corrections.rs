@@ -1,4 +1,4 @@
-//! Runs whose sweeps are corrected from coarser levels.
+//! Runs with corrections from coarser levels: when corrections begin, pause and end.
 
 use crate::error::GpuError;
 use crate::layout::Problem;
@@ -12,53 +12,59 @@ use crate::run::step::Step;
 use crate::run::stop::StopRule;
 use crate::run::yielding::yield_now;
 
-/// Corrections begin when a sweep alone takes less than this share off what f has above its ideal
-/// value: before, a few bad triangles would hold every correction back.
+/// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
+/// a few bad triangles would force every correction to be short.
 const SWEEPS_PAY: f64 = 0.1;
-/// Over-relaxation of sweeps before the corrections, but for the first, and of those between them.
-/// Measured from strongly perturbed and smoothly distorted starts of 2,000 to a million vertices.
+/// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
+/// perturbed and smoothly distorted meshes of 2,000 to a million vertices.
 const OMEGA_BEFORE: f64 = 1.5;
+/// Over-relaxation of sweeps that are followed by corrections. Chosen by the same measurements as [`OMEGA_BEFORE`].
 const OMEGA_BETWEEN: f64 = 1.3;
-/// The hierarchy is fitted to the sizes of elements again after this many corrections, once, if meanwhile f has
-/// lost more than the share below of what it had above its ideal: then they have changed.
+/// Number of corrections tried after which the levels are fitted to the sizes of elements again, if these have changed.
 const RESIZE_AFTER: u32 = 2;
+/// Sizes of elements are taken to have changed if the excess of f has dropped by more than this share since corrections
+/// began.
 const RESIZE_IF: f64 = 0.15;
-/// A correction taken at a shorter length than this helps no more than one refused,
+/// A correction that is shorter than this counts as refused, though it is taken: it hardly helps.
 const SHORT: f64 = 0.05;
-/// and after so many of them in a row there are sweeps alone again, this many at least,
+/// After this many refused corrections in a row, the run goes back to sweeps alone.
 const MOST_REFUSED: u32 = 2;
+/// The least number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
-/// and after so many attempts for good.
+/// How many times corrections can begin. If they are refused the last time, the run ends with sweeps alone.
 const ATTEMPTS: u32 = 5;
 
-/// A window no history fills: the run is then not judged by its decay.
+/// A window longer than any history: turns off the tests of the stop rule that look at the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
-/// Sweeps with corrections from coarser levels: what comes next, and what has become of the corrections so far.
+/// The state of a run with corrections from coarser levels.
 pub(crate) struct Corrections<'a> {
     problem: &'a Problem,
     plan: &'a Plan,
     stiffness: Stiffness,
     stage: Stage,
-    /// How often corrections began.
+    /// How many times corrections have begun.
     attempts: u32,
+    /// Number of corrections taken.
     taken: u32,
-    /// Why there are no corrections, if the levels do not fit.
+    /// Why there are no corrections, if the engine has no room for the levels.
     left_out: Option<GpuError>,
 }
 
+/// The stage of a run. `since` and `until` are indices in the history.
 #[derive(Clone, Copy)]
 enum Stage {
-    /// Sweeps alone, as long as they pay and to this one at least.
+    /// Sweeps alone, at least up to `until`, and then as long as they pay.
     Before { until: usize },
-    /// Each sweep is followed by a correction.
+    /// Each sweep is followed by a correction. `length` is the last one taken, `proposed` the number of corrections
+    /// tried in this stage, `refused` how many of the latest were refused in a row.
     Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
-    /// Sweeps alone, as no correction helps.
+    /// Sweeps alone to the end, as corrections do not help or the engine has no room for the levels.
     Without { since: usize },
 }
 
 impl<'a> Corrections<'a> {
-    /// None taken yet. Of the plan, the base metric and the stop rule count; that metric has a stiffness.
+    /// The start of a run. All sweeps of `plan` are by its base metric, which must have a stiffness.
     pub(crate) fn new(problem: &'a Problem, plan: &'a Plan) -> Self {
         let properties = plan.scheme.base().properties();
         Self {
@@ -72,13 +78,13 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// Every different step that a run takes.
+    /// All distinct steps that a run can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
         let own = plan.scheme.base().properties().omega;
         [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, own].map(|omega| plan.base_step(omega)).to_vec()
     }
 
-    /// Does up to `sweeps` further sweeps; fewer when the run stops.
+    /// Does up to `sweeps` further sweeps; fewer if the run ends.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -106,12 +112,12 @@ impl<'a> Corrections<'a> {
         Ok(())
     }
 
-    /// Corrections taken so far.
+    /// Number of corrections taken so far.
     pub(crate) fn taken(&self) -> u32 {
         self.taken
     }
 
-    /// Why the run does without corrections, if the place where the mesh is does not hold the levels below it.
+    /// Why the run does without corrections, if the engine has no room for the levels.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         self.left_out.as_ref()
     }
@@ -120,6 +126,7 @@ impl<'a> Corrections<'a> {
         self.plan.scheme.base()
     }
 
+    /// One sweep before corrections. Decides whether they begin with the next.
     async fn sweep_before(
         &mut self,
         engine: &mut impl Engine,
@@ -139,20 +146,22 @@ impl<'a> Corrections<'a> {
         Ok(objectives)
     }
 
+    /// One sweep when corrections are over.
     async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
         let own = self.metric().properties().omega;
         engine.sweep(&self.plan.base_step(own)).await?;
         engine.objectives().await
     }
 
-    /// Builds the levels, or fits them to new sizes, and hands them to the engine. Says whether it holds them.
+    /// Builds the levels, or fits them to new sizes if `proposed` is not 0, and hands them to the engine. Returns
+    /// whether it has room for them.
     async fn build_levels(
         &mut self,
         engine: &mut impl Engine,
         proposed: u32,
     ) -> Result<bool, GpuError> {
         yield_now().await;
-        // What does not serve any more goes first.
+        // Levels that are not used again are freed before new ones are built.
         let before = engine.take_hierarchy().filter(|_| proposed > 0);
         let positions = engine.positions().await?;
         let hierarchy = match before {
@@ -170,6 +179,7 @@ impl<'a> Corrections<'a> {
         }
     }
 
+    /// One sweep with a correction after it, if one lowers the objective.
     async fn sweep_and_correct(
         &mut self,
         engine: &mut impl Engine,
@@ -217,18 +227,19 @@ impl<'a> Corrections<'a> {
         Ok(objectives)
     }
 
-    /// The base objective above its ideal value.
+    /// The excess of the base objective over its ideal value, at an index of the history.
     fn excess(&self, history: &History, evaluation: usize) -> f64 {
         history.f()[evaluation] - self.metric().ideal_squared()
     }
 
+    /// Records objectives and applies the stop rule to the present stage.
     fn record(&self, objectives: Objectives, history: &mut History) {
         history.add(objectives);
-        // The decay is extrapolated from what the present stage has done alone. Corrected sweeps leave no slow
-        // mode behind that only a longer window would see.
+        // The decay is extrapolated from the present stage alone. A window of one sweep is enough with corrections,
+        // as they leave no slow modes.
         let (since, window) = match self.stage {
             Stage::Before { .. } => (0, NO_ESTIMATE),
-            // A step that failed gains little, and says nothing on what is left.
+            // A refused correction gains little whatever is left to gain.
             Stage::Correcting { since, refused: 1.., .. } => (since, NO_ESTIMATE),
             Stage::Correcting { since, .. } => (since, 1),
             Stage::Without { since } => (since, StopRule::window(&self.metric().into()) as usize),

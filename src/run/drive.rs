@@ -1,4 +1,4 @@
-//! The loop over the sweeps of a run, wherever it computes.
+//! The loop over the sweeps of a run, the same for every engine.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -15,32 +15,32 @@ use crate::run::step::Step;
 use crate::run::stop::Stop;
 use crate::run::sweeps;
 
-/// Hears how far a run is, and may end it: any `FnMut(&Progress) -> ControlFlow<()>`.
+/// A callback that is told the progress of a run and can end it: any `FnMut(&Progress) -> ControlFlow<()>`.
 pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
 
 impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
-/// How far a run is, for a progress display.
+/// The progress of a run, for a display.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// What the sweeps are for.
+    /// The part of the run that is under way.
     pub phase: Phase,
-    /// Sweeps done in this phase.
+    /// Number of sweeps done. [`Phase::Reference`] is up to three runs, each counted from 0.
     pub sweep: u32,
-    /// The base objective.
+    /// The objective by the base metric of the scheme that is run.
     pub f: f64,
 }
 
 /// The part of a run that is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The optimum is sought that [`Desired::Auto`](crate::Desired::Auto) measures by.
+    /// The search for the optimum of [`Desired::Auto`](crate::Desired::Auto).
     Reference,
-    /// The mesh is smoothed.
+    /// The smoothing of the mesh.
     Smoothing,
 }
 
-/// How a run goes from sweep to sweep.
+/// Whether the sweeps of a run are corrected.
 pub(crate) enum Strategy<'a> {
     /// Sweeps alone.
     Sweeps,
@@ -56,11 +56,12 @@ impl<'a> Strategy<'a> {
         }
     }
 
-    /// Every different step that a run by `plan` takes.
+    /// All distinct steps that a run by `plan` can take.
     pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
         if corrected { Corrections::steps(plan) } else { plan.steps() }
     }
 
+    /// Does up to `sweeps` further sweeps; fewer if the run ends.
     async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -74,7 +75,7 @@ impl<'a> Strategy<'a> {
         }
     }
 
-    /// No correction raises the objective: the last state is the best.
+    /// The positions of the best state: with corrections the last one, as no correction raises the objective.
     async fn best_positions(&self, engine: &mut impl Engine) -> Result<Vec<DVec2>, GpuError> {
         match self {
             Strategy::Sweeps => engine.best_positions().await,
@@ -83,7 +84,7 @@ impl<'a> Strategy<'a> {
     }
 }
 
-/// What a run leaves.
+/// The result of [`drive`].
 pub(crate) struct End {
     pub(crate) history: History,
     pub(crate) positions: Vec<DVec2>,
@@ -92,8 +93,8 @@ pub(crate) struct End {
     pub(crate) stop: Stop,
 }
 
-/// Sweeps on an engine to the end. `done` are sweeps that came before, for the observer. Where levels are a `must`, it is
-/// an error that the engine does not hold them.
+/// Sweeps on an engine until the run ends. `done` is the number of sweeps before this run, for the observer. If `must`
+/// is set, it is an error that the engine has no room for the coarser levels.
 pub(crate) async fn drive(
     mut engine: impl Engine,
     plan: &Plan,
@@ -103,7 +104,7 @@ pub(crate) async fn drive(
     observe: &mut (impl Observer + ?Sized),
 ) -> Result<End, SmoothError> {
     let mut history = History::new(plan);
-    // One to begin with: how long a sweep takes nobody knows, and drivers end submissions of seconds.
+    // One sweep at first: its duration is not known yet, and drivers kill submissions that take seconds.
     let mut batch = 1;
     let stop = loop {
         let start = Instant::now();
@@ -130,7 +131,7 @@ pub(crate) async fn drive(
     Ok(End { history, positions, corrections, levels_left_out, stop })
 }
 
-/// How many sweeps to ask for next, so that the caller hears something about ten times a second.
+/// The number of sweeps to ask for next, such that the observer is called about ten times a second.
 /// Results do not depend on it.
 fn next_batch(batch: u32, took: Duration) -> u32 {
     let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);

@@ -1,4 +1,4 @@
-//! What a run asks of the place where it computes.
+//! The interface between the control of a run and the code that computes it.
 
 use glam::DVec2;
 use std::borrow::Cow;
@@ -10,67 +10,65 @@ use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
 use crate::run::step::Step;
 
-/// A mesh whose free vertices are swept, judged, and moved along corrections, somewhere. Positions are normalized
-/// and in the order of the [`Problem`](crate::layout::Problem).
+/// Computes a run, on the CPU or a device: sweeps, objectives, and corrections from coarser levels. Positions are
+/// normalized and in the order of the [`Problem`](crate::layout::Problem).
 ///
-/// Which sweep comes next, and when to stop, is not decided here.
+/// An engine does not decide which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
-    /// One sweep.
-    ///
-    /// # Errors
-    /// When the device fails; the run is then lost. So it is with all calls.
+    /// Does one sweep.
     fn sweep(&mut self, step: &Step) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// The objectives of the tracked metrics now.
+    /// Evaluates the tracked objectives at the current positions.
     fn objectives(&mut self) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
 
-    /// Some sweeps, the objectives recorded before the first if there are none yet, and after each; the best state is
-    /// remembered. Ends when the history says that the run is over.
+    /// Does sweeps until all `steps` are done or the history says that the run is over. Records the objectives after
+    /// each sweep, and before the first if the history is empty. Remembers the best state.
     ///
-    /// A device may do all in one submission, and judge by the rule itself.
+    /// A device may do all sweeps in one submission, and apply the stop rule itself.
     fn sweeps(
         &mut self,
         steps: &[Step],
         history: &mut History,
     ) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// All positions now.
+    /// The current positions of all vertices.
     fn positions(&mut self) -> impl Future<Output = Result<Cow<'_, [DVec2]>, GpuError>> + Send;
 
-    /// All positions of the best state that [`sweeps`](Self::sweeps) came through.
+    /// The positions of all vertices in the best state seen by [`sweeps`](Self::sweeps).
     fn best_positions(&mut self) -> impl Future<Output = Result<Vec<DVec2>, GpuError>> + Send;
 
-    /// Gives back the coarser levels it was given, if any.
+    /// Gives back the coarser levels, if the engine has any.
     fn take_hierarchy(&mut self) -> Option<Hierarchy>;
 
-    /// Takes the coarser levels, or fails with [`GpuError::Limit`] if there is no room for them.
+    /// Hands the coarser levels to the engine. Fails with [`GpuError::Limit`] if there is no room for them.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
-    /// One sweep, then the correction from the coarser levels, tried at `length`.
+    /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`.
     fn propose(
         &mut self,
         step: &Step,
         length: f64,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
-    /// The mean excess of the base metric with all free vertices moved `length` times along the correction;
-    /// `None` if a triangle is inverted there, or breaks the shape guard.
+    /// The mean excess of the base metric if all free vertices were moved by `length` times the correction;
+    /// `None` if that inverts a triangle or breaks the shape guard.
     fn excess_along(
         &mut self,
         length: f64,
     ) -> impl Future<Output = Result<Option<f64>, GpuError>> + Send;
 
-    /// Moves them there.
+    /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
 }
 
-/// A correction, before it is taken. Objectives are mean excesses: f less the metric's ideal value squared.
+/// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
-    /// The objective without it.
+    /// The objective without the correction.
     pub(crate) here: f64,
-    /// Its derivative along the correction.
+    /// The derivative of the objective along the correction.
     pub(crate) slope: f64,
-    /// The objective at the length asked for; `None` as in [`Engine::excess_along`].
+    /// The objective at the length that was tried. `None` if that inverts a triangle or breaks the shape guard. Not to
+    /// be read if `slope` is not negative.
     pub(crate) there: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! The objectives of a run, and what they say on whether it is over.
+//! The objectives of a run so far, and whether it is over.
 
 use crate::metric::Metric;
 use crate::run::objectives::Objectives;
@@ -12,7 +12,7 @@ pub(crate) struct History {
     base: Metric,
     window: usize,
     log: Vec<Objectives>,
-    /// The base objective of each.
+    /// The base objective of each entry of `log`.
     f: Vec<f64>,
     best: usize,
     stop: Option<Stop>,
@@ -20,7 +20,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// Nothing yet of a run by `plan`.
+    /// An empty history of a run by `plan`.
     pub(crate) fn new(plan: &Plan) -> Self {
         Self {
             rule: plan.stop,
@@ -34,8 +34,8 @@ impl History {
         }
     }
 
-    /// Adds the objectives after a further sweep, or before the first, without judging. Returns whether they are the
-    /// best so far.
+    /// Adds the objectives before the first sweep or after the next one, without applying the stop rule. Returns
+    /// whether the base objective is the least so far.
     pub(crate) fn add(&mut self, objectives: Objectives) -> bool {
         let evaluation = self.f.len();
         let f = objectives.of(self.base).unwrap_or(f64::NAN);
@@ -48,7 +48,7 @@ impl History {
         is_best
     }
 
-    /// As [`add`](Self::add), and judges by the run's rule.
+    /// Adds objectives as [`add`](Self::add) does, and applies the stop rule.
     pub(crate) fn record(&mut self, objectives: Objectives) -> bool {
         let is_best = self.add(objectives);
         self.stop = self.rule.judge(&self.f, self.best, self.window);
@@ -56,7 +56,8 @@ impl History {
         is_best
     }
 
-    /// Notes whether the run is over, and what share of f is estimated to be left, as judged elsewhere.
+    /// Sets why the run has ended, if it has, and the share of f that is estimated to be left, for callers that judge
+    /// themselves.
     pub(crate) fn end(&mut self, stop: Option<Stop>, remaining: Option<f64>) {
         self.stop = stop;
         self.remaining = remaining;
@@ -67,7 +68,7 @@ impl History {
         self.f.is_empty()
     }
 
-    /// Sweeps recorded.
+    /// Number of sweeps recorded.
     pub(crate) fn sweeps(&self) -> u32 {
         (self.f.len() as u32).saturating_sub(1)
     }
@@ -77,27 +78,27 @@ impl History {
         &self.f
     }
 
-    /// The base objective of the last evaluation.
+    /// The latest base objective; NaN if none is recorded.
     pub(crate) fn last(&self) -> f64 {
         self.f.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The least base objective.
+    /// The least base objective; NaN if none is recorded.
     pub(crate) fn least(&self) -> f64 {
         self.f.get(self.best).copied().unwrap_or(f64::NAN)
     }
 
-    /// All objectives.
+    /// All objectives, before the first sweep and after each.
     pub(crate) fn log(&self) -> &[Objectives] {
         &self.log
     }
 
-    /// All objectives, for good.
+    /// Returns all objectives and drops the rest.
     pub(crate) fn into_log(self) -> Vec<Objectives> {
         self.log
     }
 
-    /// The rule that the run is judged by.
+    /// The stop rule of the run.
     pub(crate) fn rule(&self) -> StopRule {
         self.rule
     }
@@ -107,8 +108,8 @@ impl History {
         self.stop
     }
 
-    /// The share of f that is estimated to be left to gain, from the decay of the last sweeps; `None` where that says
-    /// nothing.
+    /// The share of f that is estimated to be left to gain; `None` if there is no estimate. See
+    /// [`StopRule::remaining`].
     pub(crate) fn remaining(&self) -> Option<f64> {
         self.remaining
     }

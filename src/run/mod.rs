@@ -1,5 +1,5 @@
-//! All that decides: what a caller asks for, the steps of a plan, when a run ends, and the loop over sweeps. It knows
-//! the place where a run computes as an [`Engine`] alone.
+//! The control of a run: options, the steps of a plan, the stop rule, and the loop over sweeps. Computing is left to
+//! an [`Engine`], on the CPU or a device.
 
 mod corrections;
 mod drive;

@@ -1,4 +1,4 @@
-//! The objective by each metric.
+//! The values of the objective by several metrics.
 
 use crate::metric::Metric;
 
@@ -7,11 +7,12 @@ use crate::metric::Metric;
 pub struct Objectives([f64; Metric::ALL.len()]);
 
 impl Objectives {
-    /// None evaluated yet.
+    /// No objective evaluated yet.
     pub(crate) fn untracked() -> Self {
         Self([f64::NAN; Metric::ALL.len()])
     }
 
+    /// Sets the objective by `metric`.
     pub(crate) fn set(&mut self, metric: Metric, value: f64) {
         self.0[metric as usize] = value;
     }

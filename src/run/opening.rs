@@ -1,8 +1,8 @@
 //! Opening triangles that are too flat for single precision.
 //!
-//! In single precision the area of a triangle is wrong by about 1e-7 of the product of its sides, so one whose inverse mean
-//! ratio is above a million may look inverted, and no step on a device can tell better from worse. A few sweeps in
-//! double precision open it.
+//! In single precision the error of a triangle's area is about 1e-7 times the product of its sides. A triangle with an
+//! inverse mean ratio above a million may look inverted, and a device cannot tell whether a step improves it. A few
+//! sweeps in double precision open it first.
 
 use glam::DVec2;
 
@@ -17,16 +17,17 @@ use crate::run::plan::Plan;
 use crate::run::sweeps;
 use crate::run::yielding::yield_now;
 
-/// The largest inverse mean ratio that is left to a device, with room for what rounding does to areas.
+/// The largest inverse mean ratio that is left to a device. A tenth of the ratio at which rounding may invert a
+/// triangle.
 const TOO_FLAT: f64 = 1e5;
 
-/// Sweeps after which a triangle that is still flat will stay so.
+/// Number of sweeps after which opening is given up.
 const MOST_SWEEPS: u32 = 120;
 
-/// Sweeps that opened the flat triangles.
+/// The result of sweeps that opened all flat triangles.
 pub(crate) struct Opened {
     history: History,
-    /// The positions after the last.
+    /// The positions after the last sweep.
     pub(crate) positions: Vec<DVec2>,
     /// The best positions by the base metric.
     best: Vec<DVec2>,
@@ -37,15 +38,15 @@ pub(crate) fn is_needed(problem: &Problem, positions: &[DVec2]) -> bool {
     let is_flat = |t: &[u32; 3]| {
         let [p, q, r] = t.map(|v| positions[v as usize]);
         let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
-        // A triangle of no area is infinite, and not to be opened: only an application has such.
+        // Infinite if the rounded area is not positive.
         corner.inverse_mean_ratio() > TOO_FLAT
     };
     map_parts(problem.triangles().chunks(4096), |_, chunk| chunk.iter().any(is_flat))
         .contains(&true)
 }
 
-/// Sweeps of the plan by an engine in double precision, until no triangle is too flat, in whole periods of the scheme;
-/// `None` if they do not get there, or the run ends before. Yields after each period.
+/// Sweeps by an engine in double precision until no triangle is too flat, in whole periods of the plan's scheme.
+/// Returns `None` if a triangle stays too flat, or if the run ends before. Yields after each period.
 pub(crate) async fn open(
     problem: &Problem,
     mut engine: impl Engine,
@@ -68,19 +69,19 @@ pub(crate) async fn open(
 }
 
 impl Opened {
-    /// Sweeps done.
+    /// Number of sweeps done.
     pub(crate) fn sweeps(&self) -> u32 {
         self.history.sweeps()
     }
 
-    /// The objectives and best positions of the whole, given those of what came after.
+    /// The objectives and best positions of the whole run, given those of the sweeps after the opening.
     pub(crate) fn followed_by(
         self,
         history: History,
         positions: Vec<DVec2>,
     ) -> (Vec<Objectives>, Vec<DVec2>) {
         let best = if self.history.least() < history.least() { self.best } else { positions };
-        // What came after began with an evaluation of where this ended.
+        // The first entry evaluates the positions at which the opening ended, which are in its history already.
         let rest = history.into_log().into_iter().skip(1);
         (self.history.into_log().into_iter().chain(rest).collect(), best)
     }

@@ -1,4 +1,4 @@
-//! What a caller can ask for.
+//! The options of a run.
 
 use crate::error::SmoothError;
 use crate::metric::Metric;
@@ -7,51 +7,53 @@ use crate::run::plan::Plan;
 use crate::run::step::{Derivatives, Sharpness};
 use crate::run::stop::StopRule;
 
-/// How a run goes from sweep to sweep.
+/// Whether sweeps are followed by corrections from coarser levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// [`Multilevel`](Self::Multilevel) where it is to be had, else [`Sweeps`](Self::Sweeps).
+    /// [`Multilevel`](Self::Multilevel) if the options and the device allow it, else [`Sweeps`](Self::Sweeps).
     #[default]
     Auto,
-    /// Sweeps, each followed, once sweeps alone gain little, by a correction from coarser levels:
-    /// some 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. For a
-    /// scheme of one metric that has a [`Stiffness`](crate::Stiffness) (imr, ar, rms), with exact derivatives, one
-    /// Newton step a visit and `omega` left open.
+    /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels.
+    /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Requires a
+    /// scheme of one metric that has a [`Stiffness`](crate::Stiffness) (imr, ar, rms, shape-size), analytic
+    /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     Multilevel,
-    /// Sweeps alone, over-relaxed as [`Options::omega`] says.
+    /// Sweeps alone, over-relaxed by [`Options::omega`].
     Sweeps,
 }
 
-/// How to smooth. [`Options::default`] is IMR with over-relaxation until little is left to gain.
+/// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of
+/// f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The metric, or the metrics in turn. The first judges convergence.
+    /// The metric, or several metrics in turn. The first one judges convergence.
     pub scheme: Scheme,
     /// Sweeps alone, or corrected from coarser levels.
     pub method: Method,
     /// The run ends after this many sweeps at the latest.
     pub max_sweeps: u32,
-    /// The run ends when the estimated distance to its limit, relative to f, is below this. The
-    /// estimate extrapolates the decay over the last 16 or more sweeps, so it speaks of what
-    /// remains, not of the change in one sweep. 0 never ends a run.
+    /// The run ends when the estimated distance of f to its limit, relative to f, is below this. The
+    /// estimate extrapolates the decay over the last 16 or more sweeps (over the last two where each is corrected
+    /// from coarser levels), so it bounds what remains, not the change in one sweep. 0 turns this test off.
     pub tolerance: f64,
-    /// Ends the run at a share of the way to a desired objective; the tolerance then does not.
+    /// Ends the run at a share of the way to a desired objective. The tolerance then has no effect.
     pub goal: Option<Goal>,
-    /// Over-relaxation: each Newton step is first tried at this multiple. `None` takes the metric's
-    /// own in a scheme of one metric, and 1 in one that alternates: there the overshoot of one
-    /// metric's sweep is what the next has to mend, and the run ends worse (edge+imr on a
-    /// 2,000-vertex mesh at 1.536 instead of 1.492). 1 is the published method.
+    /// Over-relaxation, between 0 and 2: each Newton step is first tried at this multiple. 1 is the published method.
+    ///
+    /// `None` takes [`Properties::omega`](crate::Properties::omega) in a scheme of one metric and 1 in a scheme that
+    /// alternates: there each metric would have to undo the overshoot of the one before, and the run ends worse
+    /// (edge+imr on a 2,000-vertex mesh at 1.536 instead of 1.492). Runs with corrections use values of their own.
     pub omega: Option<f64>,
-    /// Sweeps before over-relaxation starts.
+    /// Number of sweeps before over-relaxation starts, in runs without corrections.
     pub plain_sweeps: u32,
     /// The most Newton steps per visit of a vertex. With analytic derivatives a visit ends sooner once
     /// its steps have become short.
     pub inner: u32,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
-    /// The exponent of the p-norm that stands in for EDGE in Newton's method.
+    /// The exponent of the p-norm that replaces EDGE in Newton's method.
     pub sharpness: Sharpness,
-    /// Whether the history holds the objective of every metric.
+    /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
 }
 
@@ -74,17 +76,17 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The method as published: one plain Newton step, no over-relaxation.
+    /// The method of Park & Shontz (2011): sweeps alone, one Newton step per visit, no over-relaxation.
     pub fn paper(scheme: Scheme) -> Self {
         Self { scheme, method: Method::Sweeps, omega: Some(1.0), ..Self::default() }
     }
 
-    /// Whether the run is corrected from coarser levels.
+    /// Whether runs with these options are corrected from coarser levels, if the device has room for the levels.
     pub fn is_multilevel(&self) -> bool {
         self.method != Method::Sweeps && self.only_sweeps().is_none()
     }
 
-    /// Why there are no corrections for these options, if there are none.
+    /// The reason why these options rule out corrections, if they do.
     fn only_sweeps(&self) -> Option<&'static str> {
         let metric = self.scheme.base();
         if self.scheme.period() > 1 {
@@ -147,13 +149,13 @@ impl Options {
         }
     }
 
-    /// What the engines are to do by these options, for those who drive sweeps themselves. Of
-    /// [`goal`](Self::goal) and [`method`](Self::method) nothing is taken over: the one needs a run before, the other levels.
+    /// The plan of sweeps by these options, for code that drives sweeps itself. Leaves out [`goal`](Self::goal) and
+    /// [`method`](Self::method).
     pub fn plan(&self) -> Plan {
         self.plan_to(None)
     }
 
-    /// What the engines are to do by these options, the run ending below `target` if there is one.
+    /// The plan of a run by these options, which ends when the base objective is below `target`, if there is one.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
         let alternates = self.scheme.metrics().iter().any(|&m| m != self.scheme.base());
         let own = |metric: Metric| if alternates { 1.0 } else { metric.properties().omega };
@@ -179,22 +181,23 @@ impl Options {
     }
 }
 
-/// The convergence test of Park & Shontz, equation (2): the run is done when
-/// f_initial - f > fraction · (f_initial - f_desired), f by the base metric.
+/// The convergence test of Park & Shontz, equation (2): the run ends when
+/// f_initial - f > fraction · (f_initial - f_desired), with f the objective by the base metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// The share of the way to go; the paper's is 0.95.
+    /// The share of the way from f_initial to f_desired, above 0 and at most 1. The paper's is 0.95.
     pub fraction: f64,
-    /// Where the way leads.
+    /// Where f_desired comes from.
     pub desired: Desired,
 }
 
-/// The objective a [`Goal`] is measured by.
+/// The objective f_desired of a [`Goal`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Desired {
-    /// This value.
+    /// This value, by the base metric.
     Value(f64),
-    /// The fully converged optimum of the base metric, which is found first: the better of the base
-    /// metric alone and of the base metric after IMR, both over-relaxed.
+    /// The converged optimum of the base metric, found by runs before the smoothing. Unless the base metric is IMR or
+    /// AR, it is the better of two runs: by the base metric alone, and by the base metric after IMR. Both use
+    /// over-relaxation, or corrections from coarser levels where the metric has them.
     Auto,
 }

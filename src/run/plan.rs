@@ -1,18 +1,18 @@
-//! What a run does, independent of the place where it computes: the step of each sweep, and when to stop.
+//! The plan of a run, the same for every engine: the step of each sweep, and when to stop.
 
 use crate::metric::{Metric, Scheme};
 use crate::run::line_search;
 use crate::run::step::{Derivatives, Sharpness, Step};
 use crate::run::stop::StopRule;
 
-/// Everything both engines need to know to do the same sweeps.
+/// Everything that engines need to know to do the same sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The metric of each sweep.
+    /// The metrics of the sweeps, in turn.
     pub scheme: Scheme,
-    /// Over-relaxation by metric, in the order of [`Metric::ALL`].
+    /// Over-relaxation by each metric, in the order of [`Metric::ALL`].
     pub omega: [f64; Metric::ALL.len()],
-    /// Sweeps before over-relaxation starts.
+    /// Number of sweeps before over-relaxation starts.
     pub plain_sweeps: u32,
     /// The most Newton steps per visit of a vertex.
     pub inner: u32,
@@ -20,13 +20,13 @@ pub struct Plan {
     pub derivatives: [Derivatives; Metric::ALL.len()],
     /// The exponent of EDGE's p-norm.
     pub sharpness: Sharpness,
-    /// When to end.
+    /// When the run ends.
     pub stop: StopRule,
-    /// Whether the history holds every metric's objective, not the base's alone.
+    /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
-    /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above this,
-    /// unless the patch had a worse one before. The metric's own [`shape_guard`](crate::Properties::shape_guard) bounds
-    /// it from above.
+    /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above
+    /// this, unless its patch already had a worse one. If the metric's own
+    /// [`shape_guard`](crate::Properties::shape_guard) is smaller, it is used instead.
     pub shape_guard: f64,
 }
 
@@ -38,7 +38,7 @@ impl Plan {
         self.step_with(metric, omega, self.sharpness.of(sweep))
     }
 
-    /// Every different step that [`step`](Self::step) answers with.
+    /// All distinct steps that [`step`](Self::step) can return.
     pub(crate) fn steps(&self) -> Vec<Step> {
         let Sharpness { first, last, .. } = self.sharpness;
         let mut steps = Vec::new();
@@ -55,7 +55,7 @@ impl Plan {
         steps
     }
 
-    /// A step with the base metric at another relaxation, for sweeps between corrections.
+    /// A step of the base metric with over-relaxation `omega`, for runs with corrections.
     pub(crate) fn base_step(&self, omega: f64) -> Step {
         self.step_with(self.scheme.base(), omega, self.sharpness.last)
     }
@@ -72,14 +72,14 @@ impl Plan {
         }
     }
 
-    /// The plan of a run that somebody else ends.
+    /// This plan without a stop rule, for a run that the caller ends.
     pub(crate) fn endless(mut self) -> Self {
         self.stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
         self
     }
 
-    /// Whether every sweep lowers the base objective, so that the last state is the best. Differences
-    /// promise nothing: their minimum is a little off.
+    /// Whether every sweep lowers the base objective, so that the last state is the best. Not so with finite
+    /// differences: the minimum they find is slightly off.
     pub fn is_monotone(&self) -> bool {
         let base = self.scheme.base();
         self.scheme.is_monotone() && self.derivatives[base as usize] == Derivatives::Analytic

@@ -1,4 +1,4 @@
-//! How far metrics without a barrier may flatten triangles.
+//! The shape guard: how far metrics without a barrier may flatten triangles.
 
 use glam::DVec2;
 
@@ -6,9 +6,9 @@ use crate::layout::Problem;
 use crate::metric::{Corner, Scheme};
 use crate::parallel::map_parts;
 
-/// The largest inverse mean ratio of a triangle with a free vertex: no step may leave a triangle worse than that, so that
-/// metrics that pay no attention to shape do not flatten a good mesh. Infinite where no metric of the scheme is without a
-/// barrier.
+/// The shape guard of a run: the largest inverse mean ratio among the triangles with a free vertex. No step may leave a
+/// triangle worse than that, so metrics that do not measure shape cannot flatten a good mesh. Infinite if every metric
+/// of the scheme has a barrier.
 pub(crate) fn shape_guard(problem: &Problem, positions: &[DVec2], scheme: &Scheme) -> f64 {
     if scheme.metrics().iter().all(|metric| metric.properties().shape_guard.is_infinite()) {
         return f64::INFINITY;

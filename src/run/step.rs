@@ -1,8 +1,8 @@
-//! One sweep, settled in every detail.
+//! The parameters of one sweep.
 
 use crate::metric::Metric;
 
-/// How every free vertex is visited in one sweep.
+/// The parameters by which one sweep visits every free vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The metric that the sweep lowers.
@@ -11,12 +11,13 @@ pub struct Step {
     pub omega: f64,
     /// The most Newton steps per visit of a vertex.
     pub inner: u32,
-    /// log2 of the exponent of EDGE's p-norm.
+    /// log2 k of the exponent k of EDGE's p-norm.
     pub sharpness: u32,
     /// How the metric is differentiated.
     pub derivatives: Derivatives,
-    /// The inverse mean ratio up to which a step may flatten any triangle, infinite where the metric's barrier does
-    /// that work: [`Plan::shape_guard`](super::Plan::shape_guard) less a reserve for rounding.
+    /// The largest inverse mean ratio that a step may leave, unless the patch already had a larger one: the smaller of
+    /// [`Plan::shape_guard`](super::Plan::shape_guard) and that of the metric, less a reserve for rounding. Infinite
+    /// if the metric has a barrier.
     pub shape_guard: f64,
 }
 
@@ -26,30 +27,30 @@ pub enum Derivatives {
     /// Exactly, by formulas that tests hold against dual numbers.
     #[default]
     Analytic,
-    /// By forward differences of the value, 16 evaluations an element, as Mesquite differentiates
-    /// a metric that has no derivatives of its own (Park & Shontz's EDGE, AREA and RMS). Slower
-    /// and no better: here to test the paper's cost model.
+    /// By forward differences of the value, 16 evaluations per triangle, as Mesquite differentiates
+    /// a metric without derivatives of its own (EDGE, AREA and RMS of Park & Shontz). Slower
+    /// and no better: only there to test the paper's cost model.
     FiniteDifference,
 }
 
-/// Newton on EDGE works on a p-norm with exponent k = 2^sharpness; this says which k each sweep uses.
+/// The exponent k of the p-norm that replaces EDGE in Newton's method, for each sweep. Given as log2 k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sharpness {
     /// log2 k of the first sweep.
     pub first: u32,
-    /// k doubles after this many sweeps; 0 keeps it.
+    /// Number of sweeps after which k doubles; 0 keeps k constant.
     pub every: u32,
-    /// log2 of the largest k.
+    /// log2 k of the largest k.
     pub last: u32,
 }
 
 impl Sharpness {
     /// k = 16 throughout: good after a few sweeps.
     pub const FIXED: Self = Self { first: 4, every: 0, last: 4 };
-    /// k from 2 to 512, doubling every 5 sweeps: the best optimum, over more sweeps.
+    /// k from 2 to 512, doubling every 5 sweeps: takes more sweeps and finds the best optimum.
     pub const CONTINUED: Self = Self { first: 1, every: 5, last: 9 };
 
-    /// The largest log2 k: beyond it even the ratio nearest to one vanishes in single precision.
+    /// The largest log2 k that is allowed: beyond it even the ratio nearest to 1 vanishes in single precision.
     pub const MOST: u32 = 10;
 
     /// log2 k of a sweep; sweeps count from 1.

@@ -1,25 +1,25 @@
-//! When a run ends.
+//! The stop rule.
 
 use crate::metric::Scheme;
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stop {
-    /// The base objective passed the asked fraction of the way to the desired value.
+    /// The base objective went the share of the way to the desired one that the [`Goal`](crate::Goal) asks for.
     Reached,
-    /// What is left to gain is estimated below the tolerance.
+    /// The estimated distance to the limit is below the tolerance, or f no longer changes.
     Converged,
-    /// The base objective no longer improves: a goal is not reached, or an alternating scheme has
-    /// drifted away from the base metric's optimum.
+    /// The base objective no longer improves: a goal is out of reach, or the sweeps of an alternating scheme lead away
+    /// from the optimum of the base metric.
     Stalled,
-    /// The largest number of sweeps was done.
+    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps were done.
     MaxSweeps,
-    /// The caller's progress callback asked for it.
+    /// The [`Observer`](crate::Observer) ended the run.
     Cancelled,
 }
 
 impl Stop {
-    /// Codes of the reasons the device can find, injected into finish.wgsl; 0 is to go on.
+    /// The codes by which finish.wgsl names the reasons that the device can find; 0 means to go on.
     pub(crate) const CODES: [(Stop, u32); 4] =
         [(Stop::Reached, 1), (Stop::Converged, 2), (Stop::Stalled, 3), (Stop::MaxSweeps, 4)];
 
@@ -27,7 +27,7 @@ impl Stop {
         Self::CODES.iter().find(|&&(_, c)| c == code).map(|&(stop, _)| stop)
     }
 
-    /// A word for reports.
+    /// The reason in one word, for reports.
     pub fn name(self) -> &'static str {
         match self {
             Stop::Reached => "reached",
@@ -39,13 +39,13 @@ impl Stop {
     }
 }
 
-/// When a run ends, judged after every sweep on the base objective alone.
+/// Decides when a run ends, after every sweep and from the base objective alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
-    /// The run is done when the base objective is below this.
+    /// The run ends when the base objective is below this.
     pub target: Option<f64>,
-    /// The run is done when the estimated distance to the limit, relative to f, is below this; 0
-    /// never is.
+    /// The run ends when the estimated distance of f to its limit, relative to f, is below this. 0 turns this test
+    /// off.
     pub tolerance: f64,
     /// The run ends after this many sweeps.
     pub max_sweeps: u32,
@@ -55,17 +55,17 @@ pub struct StopRule {
 pub(crate) const NOISE: f64 = 1e-9;
 
 impl StopRule {
-    /// The longer of the two windows the remaining distance is estimated from, in sweeps: a
-    /// multiple of the scheme's period, so that like is compared with like.
+    /// The longer of the two windows from which the remaining distance is estimated, in sweeps. Both windows are
+    /// multiples of the scheme's period, so that sweeps by the same metrics are compared.
     pub fn window(scheme: &Scheme) -> u32 {
         8u32.next_multiple_of(2 * scheme.period())
     }
 
-    /// Judges after the last sweep of `history`, the base objective before the first sweep and
-    /// after each. `best` is the sweep with the least of them. `shaders/finish.wgsl` states the same rule for runs that are
-    /// judged on the device.
+    /// Says why the run ends after the last sweep of `history`, or `None` if it goes on. `history` is the base
+    /// objective before the first sweep and after each, `best` the index of the least, `window` as from
+    /// [`Self::window`]. An empty history goes on.
     ///
-    /// An empty history is not over.
+    /// `shaders/finish.wgsl` states the same rule for runs that are judged on the device.
     pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
         let (last, f) = (history.len().checked_sub(1)?, *history.last()?);
         if self.target.is_some_and(|target| f < target) {
@@ -74,7 +74,7 @@ impl StopRule {
         if last >= window.saturating_mul(2) && (self.target.is_some() || self.tolerance > 0.0) {
             let still = (history[last - window] - f).abs() <= NOISE * f;
             if still || last.saturating_sub(best) >= 2 * window {
-                // Nothing happens any more. Without a goal that is what was asked for.
+                // f no longer changes, or no longer improves. Without a goal, no change is convergence.
                 let done = still && self.target.is_none();
                 return Some(if done { Stop::Converged } else { Stop::Stalled });
             }
@@ -86,8 +86,8 @@ impl StopRule {
     }
 
     /// The share of f that is estimated to be left to gain after the last sweep of `history`: twice what a geometric
-    /// decay would still gain, as slow modes outlast those that a window sees. `None` where `history` is shorter than two
-    /// windows, or the gains do not decay.
+    /// decay would still gain, because the slowest modes do not show in a window. `None` if `history` is shorter than
+    /// two windows, or the gains do not decay.
     pub fn remaining(&self, history: &[f64], window: usize) -> Option<f64> {
         let last = history.len().checked_sub(1)?;
         if last < window.saturating_mul(2) {
@@ -101,8 +101,8 @@ impl StopRule {
     }
 }
 
-/// What a geometric decay would still gain, from the gains of two successive windows; infinite where
-/// these are none.
+/// What a geometric decay would still gain, given the gains of two successive windows. Infinite if
+/// the gains do not decay.
 fn remaining_gain(before: f64, gain: f64) -> f64 {
     if gain > 0.0 && gain < before { gain * gain / (before - gain) } else { f64::INFINITY }
 }
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_fast_start_is_not_taken_for_convergence() {
-        // A steep drop, then a slow decay: what a strongly perturbed mesh does.
+        // A steep drop, then a slow decay, as from a strongly perturbed mesh.
         let slow = |k: i32| 1.0 + 100.0 * 0.1f64.powi(k) + 1e-2 * 0.99f64.powi(k);
         let history: Vec<f64> = (0..30).map(slow).collect();
         assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], n - 1, 8).is_none()));

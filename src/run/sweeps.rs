@@ -9,7 +9,7 @@ use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::Stop;
 
-/// Does up to `sweeps` further sweeps of the plan; fewer when the run stops.
+/// Does up to `sweeps` further sweeps of the plan; fewer if the run ends.
 pub(crate) async fn advance(
     engine: &mut impl Engine,
     plan: &Plan,
@@ -22,7 +22,7 @@ pub(crate) async fn advance(
     engine.sweeps(&steps, history).await
 }
 
-/// A run of sweeps that is driven call by call, for benchmarks and experiments.
+/// A run of sweeps that its caller drives batch by batch, for benchmarks and experiments.
 pub(crate) struct StepwiseRun<E> {
     engine: E,
     plan: Plan,
@@ -36,22 +36,22 @@ impl<E: Engine> StepwiseRun<E> {
     }
 }
 
-/// What can be asked of a run that is driven call by call, wherever it computes. Blocks.
+/// A run that its caller drives batch by batch, on the CPU or a device. All calls block.
 pub trait Stepwise {
-    /// Does up to `sweeps` further sweeps and returns the objectives after each. The first call
-    /// puts those before the first sweep in front. Fewer come back when the run stopped.
+    /// Does up to `sweeps` further sweeps, fewer if the run ends, and returns the objectives after each. The first call
+    /// also returns the objectives before the first sweep, in front.
     ///
     /// # Errors
-    /// When the device fails; the run is then lost.
+    /// If the device fails; the run is then lost.
     fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError>;
 
     /// Why the run has ended, if it has.
     fn stop(&self) -> Option<Stop>;
 
-    /// The normalized positions of the best state seen by the base metric.
+    /// The normalized positions of the best state so far, by the base metric.
     ///
     /// # Errors
-    /// When the device fails.
+    /// If the device fails.
     fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
 }
 

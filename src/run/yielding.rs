@@ -1,9 +1,10 @@
-//! Pauses between pieces of work that the host does inside a future.
+//! Pauses between pieces of work on the CPU inside a future.
 
 use std::future::poll_fn;
 use std::task::Poll;
 
-/// Lets the executor do something else before it goes on. Where the caller blocks, it goes on at once.
+/// Lets the executor run other tasks before this future goes on. If the caller blocks on the future, it goes on at
+/// once.
 pub(crate) async fn yield_now() {
     let mut yielded = false;
     poll_fn(|context| {

@@ -1,19 +1,18 @@
-//! The certificate that no triangle is inverted or flat.
+//! The exact guarantee that no triangle is inverted or flat.
 
 use crate::error::MeshError;
 use crate::topology::Topology;
 use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
 
-/// Makes `points` feasible as they stand, in place: each vertex of an inverted or flat triangle
-/// goes back to where it was in `before`, until no such triangle is left. Returns how many
-/// vertices went back.
+/// Makes `points` feasible, in place: sets each vertex of an inverted or flat triangle back to its
+/// position in `before`, until no such triangle is left. Returns the number of vertices set back.
 ///
-/// This is the certificate: afterwards every triangle of `topology` is positive by exact
-/// arithmetic on these values. A triangle with a coordinate that is not a finite number counts as inverted.
+/// Afterwards every triangle of `topology` is counter-clockwise by exact
+/// arithmetic on the values in `points`. A triangle with a coordinate that is not a finite number counts as inverted.
 ///
 /// # Errors
-/// [`MeshError::PointCount`] if `before` or `points` has not one point for each vertex; nothing is moved then.
-/// [`MeshError::Infeasible`] if triangles are left that are inverted or flat in `before` already.
+/// [`MeshError::PointCount`] if `before` or `points` does not have one point for each vertex. Nothing is moved then.
+/// [`MeshError::Infeasible`] if triangles are left that are inverted or flat in `before` itself.
 pub fn certify(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
@@ -25,13 +24,13 @@ pub fn certify(
     let mut suspects = not_positive(points, triangles);
     let is_certified = suspects.is_empty();
     let mut returned = 0;
-    // Each round returns the moved vertices of every suspect, and then looks again at the triangles around them.
+    // Each round sets back the moved vertices of every suspect, then checks the triangles around them again.
     while !suspects.is_empty() {
         let mut touched = Vec::new();
         for &t in &suspects {
             for &v in &triangles[t as usize] {
                 let v_index = v as usize;
-                // By their bits: NaN differs from itself, and would go back forever.
+                // Compared by bits: NaN differs from itself, so the vertex would be set back forever.
                 if points[v_index].map(f64::to_bits) != before[v_index].map(f64::to_bits) {
                     points[v_index] = before[v_index];
                     returned += 1;
@@ -60,7 +59,7 @@ mod tests {
 
     #[test]
     fn an_inverting_vertex_goes_back_and_others_stay() {
-        // A strip of two squares' fans; one center is thrown outside, the other moved properly.
+        // Two squares with their centers. One center is moved out of its square, the other stays inside.
         let mesh = Mesh {
             points: vec![
                 [0.0, 0.0],

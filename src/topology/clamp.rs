@@ -1,24 +1,26 @@
-//! How far vertices can be dragged before a triangle gives way.
+//! How far vertices can be dragged before a triangle inverts or exceeds a bound.
 
 use crate::error::MeshError;
 use crate::metric::Corner;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
-/// Room for rounding, relative to an inverse mean ratio.
+/// Tolerance for rounding, relative to an inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
 impl Topology<'_> {
-    /// Moves vertices straight toward new places, all by the same share of their ways, as far as the triangles
-    /// allow; returns the share, 1 being all the way. For handles and boundaries that a user drags:
-    /// one call for each frame, the sweeps mending the mesh in between.
+    /// Moves vertices straight toward new positions, all by the same share of their ways, as far as the triangles
+    /// allow. Returns the share; 1 is all the way. For handles and boundaries that a user drags:
+    /// one call in each frame, with sweeps in between that improve the mesh.
     ///
-    /// On the way no triangle inverts or becomes flat, and at the end, by exact predicates on `points` as they
-    /// then stand, none is. Nor does any get an inverse mean ratio above `worst_imr`, unless it has one and keeps
-    /// it: with [`f64::INFINITY`] a vertex may go until a triangle is all but flat, with 8 or so
-    /// there is room left for the sweeps, and for rounding `points` to single precision. Triangles
-    /// inverted beforehand hinder nothing. Fixed vertices and those of the boundary can be moved as
-    /// well. Of a vertex that is named twice, the last place counts.
+    /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed vertices and those of the
+    /// boundary can be moved too. If a vertex is listed twice, its last position counts.
+    ///
+    /// No triangle inverts or becomes flat, neither on the way nor, by exact predicates on the values in `points`, at
+    /// the end. No triangle gets an inverse mean ratio above `worst_imr`; a triangle that already has a larger one
+    /// does not get worse. With [`f64::INFINITY`] triangles may become nearly flat; a bound of about 8 leaves room for
+    /// sweeps, and for rounding `points` to single precision. Triangles that are inverted or flat beforehand do not
+    /// limit the move.
     ///
     /// ```
     /// # use gpu_smooth::{Mesh, Topology};
@@ -65,7 +67,7 @@ impl Topology<'_> {
         triangles.sort_unstable();
         triangles.dedup();
         let corners = || triangles.iter().map(|&t| self.triangles()[t as usize]);
-        // Those of no triangle as well.
+        // The vertices of these triangles, and moved vertices of no triangle.
         let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
         if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
             return Err(MeshError::NotFinite { vertex });
@@ -78,7 +80,7 @@ impl Topology<'_> {
         let gives_way =
             |(corners, limit): &([u32; 3], f64)| ways.gives_way(points, corners, *limit);
         let mut share = limited.iter().map(gives_way).fold(1.0, f64::min);
-        // The share is exact but for rounding, and then points are rounded: a little less, until it is exact.
+        // The share and the points are rounded, so a triangle may exceed its limit: lowers the share until none does.
         let mut less = f64::EPSILON;
         loop {
             ways.go(points, share);
@@ -95,14 +97,14 @@ impl Topology<'_> {
     }
 }
 
-/// Where a vertex is, and where it is to go.
+/// The way of a vertex: its position and its new position.
 struct Way {
     vertex: u32,
     from: [f64; 2],
     to: [f64; 2],
 }
 
-/// One way for each vertex that moves, ascending.
+/// One way for each vertex that moves, in ascending order of vertices.
 struct Ways(Vec<Way>);
 
 impl Ways {
@@ -117,6 +119,7 @@ impl Ways {
         Self(ways)
     }
 
+    /// Moves the vertices by a share of their ways.
     fn go(&self, points: &mut [[f64; 2]], share: f64) {
         for &Way { vertex, from, to } in &self.0 {
             let between = |i: usize| from[i] + share * (to[i] - from[i]);
@@ -124,7 +127,7 @@ impl Ways {
         }
     }
 
-    /// The displacement of a vertex.
+    /// The displacement of a vertex over all of its way.
     fn of(&self, vertex: u32) -> [f64; 2] {
         match self.0.binary_search_by_key(&vertex, |way| way.vertex) {
             Ok(i) => minus(self.0[i].to, self.0[i].from),
@@ -132,14 +135,14 @@ impl Ways {
         }
     }
 
-    /// The share of the ways at which a triangle's inverse mean ratio, L / (2√3 D) with L the sum of the
-    /// squared lengths and D the doubled area, exceeds `limit`: the least root of D - L / (2√3 limit),
-    /// a quadratic.
+    /// The share of the ways at which a triangle's inverse mean ratio reaches `limit`. With L the sum of the squared
+    /// lengths and D the doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic
+    /// D - L / (2√3 limit).
     fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
         let [p, q, r] = corners.map(|v| points[v as usize]);
         let [dp, dq, dr] = corners.map(|v| self.of(v));
         let edges = [minus(q, p), minus(r, p), minus(dq, dp), minus(dr, dp)];
-        // In the triangle's own unit, where nothing overflows.
+        // Divided by the largest difference of coordinates, so that nothing overflows.
         let unit = edges.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let [e, f, de, df] = edges.map(|edge| edge.map(|x| x / unit));
         let [c, dc] = [minus(f, e), minus(df, de)];
@@ -156,7 +159,7 @@ impl Ways {
     }
 }
 
-/// The least positive t with constant + slope t + bend t² = 0; infinite if there is none.
+/// The least positive t with constant + slope t + bend t² = 0. Infinite if there is none.
 fn least_root(constant: f64, slope: f64, bend: f64) -> f64 {
     let discriminant = slope * slope - 4.0 * bend * constant;
     if discriminant < 0.0 {

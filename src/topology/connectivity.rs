@@ -1,4 +1,4 @@
-//! What hangs together in a mesh: consistent windings, the boundary, one-rings.
+//! The topology of a mesh: consistent windings, free vertices, and the triangles and neighbors around each vertex.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -11,13 +11,13 @@ use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::winding::{NONE, are_positive, neighbors, wind};
 
-/// The triangles of a mesh made counter-clockwise, and its free vertices. Triangles that are so already stay those
-/// of the mesh, which is borrowed for them.
+/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
+/// consistent and counter-clockwise already.
 #[derive(Clone, Debug)]
 pub struct Topology<'m> {
     triangles: Cow<'m, [[u32; 3]]>,
     free: Vec<bool>,
-    /// The triangles at each vertex, unless nobody has asked for them since they were forgotten.
+    /// The triangles at each vertex. Empty after [`Self::forget_stars`], until they are needed again.
     stars: OnceLock<Groups>,
 }
 
@@ -25,19 +25,20 @@ impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
     /// Windings are made consistent across shared edges, and such that most triangles of each edge-connected part are
-    /// counter-clockwise; if as many go one way as the other, the sum of their areas decides. A vertex is free unless
+    /// counter-clockwise; if equally many are clockwise, the sum of their areas decides. A vertex is free unless
     /// it lies on the boundary, is listed in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
     ///
     /// # Errors
-    /// What is no 2D triangle mesh at all: see [`MeshError`]. Whether it is feasible and has a free
-    /// vertex is for [`check_smoothable`](Self::check_smoothable) to say.
+    /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
+    /// [`check_smoothable`](Self::check_smoothable) checks whether the mesh is feasible and has a free vertex.
     pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let mut stars = stars(points.len(), triangles);
         check_size(points, &stars)?;
         let mut free = vec![false; points.len()];
-        // What most meshes are, all consistent and counter-clockwise, is seen from the stars alone.
+        // Most meshes are consistent and counter-clockwise already. The stars are enough to see that.
         let triangles =
             if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
                 Cow::Borrowed(triangles.as_slice())
@@ -52,13 +53,13 @@ impl<'m> Topology<'m> {
         Ok(Self { triangles, free, stars: stars.into() })
     }
 
-    /// The same with triangles of its own, which does not borrow the mesh.
+    /// Copies the triangles if they are borrowed, so that the topology no longer borrows the mesh.
     pub fn into_owned(self) -> Topology<'static> {
         let Self { triangles, free, stars } = self;
         Topology { triangles: Cow::Owned(triangles.into_owned()), free, stars }
     }
 
-    /// Checks that there is something to smooth, and that smoothing can keep what it needs.
+    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, and some vertex is free.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Infeasible`] if a triangle is
@@ -74,8 +75,8 @@ impl<'m> Topology<'m> {
         }
     }
 
-    /// The triangles that are inverted or flat with the vertices at `points`, by exact predicates, ascending. Those
-    /// with a coordinate that is not a finite number count as inverted.
+    /// The triangles that are inverted or flat with the vertices at `points`, by exact predicates, in ascending order.
+    /// Triangles with a coordinate that is not a finite number count as inverted.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -90,12 +91,12 @@ impl<'m> Topology<'m> {
         if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
     }
 
-    /// The triangles in the mesh's order, each counter-clockwise.
+    /// The triangles in the mesh's order, with consistent windings: counter-clockwise unless inverted.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Whether each vertex is free to move.
+    /// For each vertex of the mesh, whether it is free to move.
     pub fn free(&self) -> &[bool] {
         &self.free
     }
@@ -105,8 +106,8 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// The triangles at a vertex: counter-clockwise around a free one, starting with the least. None at a vertex that
-    /// the mesh does not have.
+    /// The indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order, starting
+    /// with the least. Empty for a vertex that the mesh does not have.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {
             Some(_) => self.stars().of(vertex as usize),
@@ -119,7 +120,7 @@ impl<'m> Topology<'m> {
         self.stars.get_or_init(|| self.find_stars())
     }
 
-    /// Gives up the memory of the stars. They are found again when one is asked for.
+    /// Frees the memory of the stars. They are found again when one is needed.
     pub(crate) fn forget_stars(&mut self) {
         self.stars.take();
     }
@@ -131,15 +132,14 @@ impl<'m> Topology<'m> {
         stars
     }
 
-    /// The neighbors of a free vertex in counter-clockwise cyclic order, starting with the
-    /// second corner of its first triangle. Each neighbor makes a
-    /// triangle of the patch with the vertex and the neighbor after it. Of a vertex that is not free, or that the mesh
-    /// does not have, there are none.
+    /// The one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner after
+    /// the vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically. Empty
+    /// for a vertex that is not free, or that the mesh does not have.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }
 
-    /// As [`ring`](Self::ring), without memory of its own.
+    /// The one-ring of a free vertex as an iterator; see [`ring`](Self::ring).
     #[inline]
     pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let star = match self.free.get(free_vertex as usize) {
@@ -150,6 +150,7 @@ impl<'m> Topology<'m> {
     }
 }
 
+/// Checks the lengths of lists, that coordinates are finite, and that indices are valid.
 fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     let Mesh { points, triangles, fixed } = mesh;
     if triangles.is_empty() {
@@ -186,16 +187,17 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// The first of the items that is bad.
+/// The index of the first bad item.
 fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
-    // Looking at all of a chunk goes without branches.
+    // All items of a chunk are checked, as this takes no branches.
     let any = |_, chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
     let chunk = map_parts(items.chunks(CHUNK), any).into_iter().position(|any| any)?;
     items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
 }
 
-/// Checks that coordinates are of a size to compute with. Vertices in no triangle may be anywhere.
+/// Checks that coordinates are neither too large nor all too small to compute with. Vertices of no triangle may be
+/// anywhere.
 fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
     let size = |v: usize| match stars.of(v) {
         [] => 0.0,
@@ -213,7 +215,7 @@ fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
 mod tests {
     use super::*;
 
-    /// A square with its center, counter-clockwise but for the third triangle.
+    /// A square with its center. All triangles are counter-clockwise except the third.
     fn fan() -> Mesh {
         Mesh {
             points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],

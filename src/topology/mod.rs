@@ -1,5 +1,5 @@
-//! How the triangles of a mesh hang together: consistent windings, stars, one-rings and the boundary; exact
-//! predicates on it, and what they certify.
+//! The connectivity of a mesh: consistent windings, stars, one-rings and the boundary. Also exact predicates, and the
+//! checks that rest on them.
 
 mod boundary;
 mod certify;

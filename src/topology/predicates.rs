@@ -1,12 +1,12 @@
-//! Feasibility by exact predicates: no triangle inverted or flat, on the very values given.
+//! Exact predicates for inverted and flat triangles, on coordinates as given.
 
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::parallel::map_ranges;
 
-/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; not a
-/// finite number if a coordinate is none.
+/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded. NaN or
+/// infinite if a coordinate is.
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| {
         let [x, y] = points[v as usize];
@@ -15,14 +15,14 @@ pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     robust::orient2d(p, q, r)
 }
 
-/// Whether a triangle is counter-clockwise. False as well if a coordinate is NaN or infinite.
+/// Whether a triangle is counter-clockwise. False if a coordinate is NaN or infinite.
 pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     let orientation = orientation(points, corners);
     orientation > 0.0 && orientation < f64::INFINITY
 }
 
-/// The counter-clockwise `triangles` that are inverted, flat, or have a coordinate that is not a finite number,
-/// ascending.
+/// The indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat, or have
+/// a coordinate that is not a finite number. In ascending order.
 ///
 /// # Errors
 /// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have,
@@ -42,7 +42,7 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
     Ok(not_positive(points, triangles))
 }
 
-/// As [`infeasible`], of triangles all of whose vertices are among the points.
+/// The result of [`infeasible`], for triangles whose vertices `points` is known to have.
 pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
     let bad = |t: &usize| !is_positive(points, &triangles[*t]);
     let found = map_ranges(triangles.len(), 1 << 12, |range| -> Vec<u32> {
@@ -51,7 +51,7 @@ pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u
     found.concat()
 }
 
-/// As [`not_positive`], each with what is wrong with it.
+/// The triangles that are not counter-clockwise, each with its vertices and whether it is flat.
 pub(crate) fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
     let describe = |t: u32| {
         let vertices = triangles[t as usize];
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_flip_below_rounding_is_seen() {
-        // 0.1 + 0.2 lies above 0.3 by one rounding; the naive determinant is not to be trusted.
+        // 0.1 + 0.2 is above 0.3 by a rounding error, which a plain determinant may not see.
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
         assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
         assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));

@@ -1,4 +1,4 @@
-//! The triangles at each vertex, and whether they close a cycle around it.
+//! Stars: the triangles at each vertex, and whether they form a cycle around it.
 
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
@@ -10,7 +10,7 @@ pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
 
 /// The triangles other than `triangle` at the edge between two vertices.
 ///
-/// They are looked for around the vertex that has fewer triangles: on all edges of a planar mesh together that takes
+/// Searches around the vertex that has fewer triangles. For all edges of a planar mesh this takes
 /// linear time, however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
 pub(crate) fn others_at_edge<'a>(
     triangles: &'a [[u32; 3]],
@@ -24,9 +24,9 @@ pub(crate) fn others_at_edge<'a>(
     star.iter().copied().filter(is_other)
 }
 
-/// Notes in `closed` around which vertices the triangles close one cycle, and sorts those of each by it. False, with
-/// notes of no use, if two triangles run along one edge in the same direction: then windings differ, or more than
-/// two triangles meet.
+/// Writes to `closed` around which vertices the triangles form one cycle, and sorts their stars in its order. Returns
+/// false if two triangles have an edge in the same direction: windings are then inconsistent, or more than two
+/// triangles share the edge, and `closed` is not valid.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
     let parts = stars.chunks_mut(CHUNK).into_iter().zip(closed.chunks_mut(CHUNK));
@@ -44,7 +44,7 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
                     *t = edge.triangle;
                 }
             } else {
-                // Those of a cycle are all different.
+                // The edges of a cycle are different anyway.
                 consistent &= are_different(&edges);
             }
         }
@@ -53,7 +53,7 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
     !consistent.contains(&false)
 }
 
-/// The edge of a triangle that does not touch one of its vertices.
+/// The edge of a triangle opposite to one of its vertices.
 #[derive(Clone, Copy, Default)]
 struct OuterEdge {
     from: u32,
@@ -61,14 +61,14 @@ struct OuterEdge {
     triangle: u32,
 }
 
-/// The ends of a triangle's edge that does not touch the vertex. Without branches: which corner it is nobody foretells.
+/// The ends of a triangle's edge opposite to a vertex. Without branches, which the processor could not predict.
 #[inline]
 pub(crate) fn outer_edge(corners: &[u32; 3], vertex: u32) -> (u32, u32) {
     let [is_a, is_b, is_c] = corners.map(|corner| usize::from(corner == vertex));
     (corners[is_a + 2 * is_b], corners[2 * is_a + is_c])
 }
 
-/// The edges of a vertex's triangles that do not touch it, in the order of the triangles.
+/// The edges opposite to a vertex in its triangles, in the order of the triangles.
 #[inline]
 fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Vec<OuterEdge>) {
     edges.clear();
@@ -78,8 +78,8 @@ fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Ve
     }));
 }
 
-/// Sorts edges into one cycle of three or more, each from where the one before it ends; false if they
-/// make none.
+/// Sorts edges into one cycle of three or more, in which each starts where the one before it ends. Returns false if
+/// they do not form one.
 fn chain(edges: &mut [OuterEdge]) -> bool {
     match edges.len() {
         0..3 => false,
@@ -88,16 +88,17 @@ fn chain(edges: &mut [OuterEdge]) -> bool {
     }
 }
 
-/// Edges that are compared all at once.
+/// The most edges that are all compared with each other.
 const FEW: usize = 8;
 
+/// [`chain`] for at most [`FEW`] edges.
 fn chain_few(edges: &mut [OuterEdge]) -> bool {
-    // No vertex has the number that pads.
+    // Padded by a number that no vertex has.
     let mut from = [u32::MAX; FEW];
     for (from, edge) in from.iter_mut().zip(&*edges) {
         *from = edge.from;
     }
-    // Of the edges that start where another ends: their number times FEW, and the sum of their places.
+    // Of the edges that start where `edge` ends: FEW times their number, plus the sum of their indices.
     let after = |edge: &OuterEdge| {
         let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
         (0..FEW).map(|k| found(k) as u32).sum::<u32>()
@@ -115,7 +116,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     let mut sorted = [OuterEdge::default(); FEW];
     let mut at = 0;
     for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
-        // Back at the first before all were met.
+        // Back at the first edge before all edges were visited.
         if i > 0 && at == 0 {
             return false;
         }
@@ -126,6 +127,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     at == 0
 }
 
+/// [`chain`] for any number of edges.
 fn chain_many(edges: &mut [OuterEdge]) -> bool {
     let mut by_start = edges.to_vec();
     by_start.sort_unstable_by_key(|edge| edge.from);
@@ -138,7 +140,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
     while let Ok(i) = by_start.binary_search_by_key(&at, |edge| edge.from) {
         chained.push(by_start[i]);
         at = by_start[i].to;
-        // Back at the first, or in a circle that does not pass it.
+        // Back at the first edge, or in a cycle without it.
         if at == first || chained.len() == edges.len() {
             break;
         }
@@ -150,7 +152,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
     true
 }
 
-/// Whether no two edges start at one vertex, nor end at one.
+/// Whether no two edges start at the same vertex, and no two end at the same vertex.
 fn are_different(edges: &[OuterEdge]) -> bool {
     if edges.len() <= FEW {
         let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
@@ -191,7 +193,7 @@ mod tests {
         assert!(chained.iter().map(|e| (e.from, e.to)).eq((0..20).map(|i| (i, (i + 1) % 20))));
         assert!(chained.iter().all(|e| cycle[e.triangle as usize] == (e.from, e.to)));
 
-        // What is no cycle keeps its edges, whatever their order.
+        // Edges that are not a cycle are kept, in any order.
         let mut open = cycle.clone();
         open.retain(|edge| edge.0 != 7);
         let mut two = cycle.clone();

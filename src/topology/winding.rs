@@ -1,4 +1,4 @@
-//! Windings made consistent across edges.
+//! Making windings consistent across edges.
 
 use std::ops::Range;
 
@@ -8,10 +8,11 @@ use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::others_at_edge;
 
-/// No triangle lies across this edge.
+/// Stands for no triangle, across an edge of the boundary.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The triangle across each edge (corner i to corner i + 1) of each triangle, or `NONE`.
+/// For each triangle, the triangle across its edge from corner i to corner i + 1, or [`NONE`]. Fails with
+/// [`MeshError::EdgeOfThree`].
 pub(crate) fn neighbors(
     triangles: &[[u32; 3]],
     stars: &Groups,
@@ -39,7 +40,7 @@ pub(crate) fn neighbors(
     Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// Whether a triangle's corners run from a to b somewhere.
+/// Whether corner b comes directly after corner a in a triangle, cyclically.
 fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
 }
@@ -47,9 +48,9 @@ fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
 /// The triangles with windings made consistent across edges, and most triangles of each edge-connected part
 /// counter-clockwise.
 ///
-/// Triangles are counted, whatever their size: one mirrored triangle may be larger than all sound ones together, as
-/// where a mesh of the globe crosses the date line. Only if as many go one way as the other does the sum of their areas
-/// decide, which does not depend on how they are numbered or listed.
+/// Triangles are counted, whatever their size: one inverted triangle may be larger than all others together, as
+/// where a mesh of the globe crosses the date line. If equally many are clockwise, the sum of their areas
+/// decides, so the result does not depend on the order of triangles and vertices.
 pub(crate) fn wind(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -73,7 +74,7 @@ pub(crate) fn wind(
             let orientation = predicates::orientation(points, &corners);
             majority += i64::from(orientation > 0.0) - i64::from(orientation < 0.0);
             doubled_area += orientation;
-            // `across` belongs to the corners as given; a swap of the last two reverses its order.
+            // `across` refers to the corners as given. If the last two were swapped since, edges run the other way.
             let given = triangles[t as usize];
             for (i, &other) in across[t as usize].iter().enumerate() {
                 if other == NONE || seen[other as usize] {

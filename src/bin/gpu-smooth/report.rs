@@ -193,7 +193,7 @@ impl Report {
             return None;
         }
         let judges_shape = |metric: &str| {
-            metric.parse::<Metric>().is_ok_and(|metric| metric.properties().is_inverse_mean_ratio)
+            metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier)
         };
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.scheme.split('+').next().unwrap_or_default();

@@ -1,6 +1,6 @@
-//! Which unknowns of a level make one unknown of the next.
+//! Aggregates: groups of unknowns of one level, each a single unknown of the next coarser level.
 
-/// The aggregate of an unknown that belongs to none.
+/// Stands for no aggregate, at an unknown that belongs to none.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Disjoint groups of neighboring unknowns.
@@ -13,8 +13,8 @@ pub(crate) struct Aggregates {
 }
 
 impl Aggregates {
-    /// Groups each unknown with all its neighbors where those are still alone, then lets those left over
-    /// join a group they touch (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation a
+    /// Makes a group of each unknown and all its neighbors if none of them is in a group yet. Unknowns left over then
+    /// join a neighboring group (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation a
     /// group has eight or nine members.
     pub(crate) fn new<N: Iterator<Item = u32>>(
         unknowns: usize,
@@ -36,7 +36,7 @@ impl Aggregates {
                 count += 1;
             }
         }
-        // Whoever is left has a neighbor in a group of the first pass, or none at all.
+        // An unknown left over has a neighbor in a group of the first pass, or no neighbors.
         let first_pass = of.clone();
         for (k, group) in of.iter_mut().enumerate().filter(|(_, group)| **group == NONE) {
             let near = neighbors(k).map(|n| first_pass[n as usize]).find(|&g| g != NONE);
@@ -45,7 +45,7 @@ impl Aggregates {
         Self { of, count: count as usize }
     }
 
-    /// The members of each group: where they start, and they.
+    /// The members of each group as compressed rows: where each group starts, with one past the last, and all members.
     pub(crate) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let grouped = || self.of.iter().enumerate().filter(|(_, group)| **group != NONE);
         let mut start = vec![0u32; self.count + 1];

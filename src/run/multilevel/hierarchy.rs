@@ -1,4 +1,4 @@
-//! The levels of a mesh: aggregates, and the graph Laplacians on them.
+//! The coarser levels of a mesh: aggregates, and graph Laplacians on them.
 
 use glam::DVec2;
 
@@ -9,26 +9,27 @@ use crate::run::multilevel::aggregate::{Aggregates, NONE};
 use crate::run::multilevel::dense;
 use crate::run::multilevel::sparse::Sparse;
 
-/// Unknowns up to which a level is solved directly.
+/// The most unknowns of a level that is solved directly.
 const DIRECT: usize = 96;
 
-/// Share of a Jacobi step that smooths the prolongation.
+/// Damping factor of the Jacobi step that smooths the prolongation.
 pub(crate) const SMOOTHING: f32 = 0.9;
 
-/// Two steps of Chebyshev's iteration for D⁻¹A over the upper three quarters of its spectrum, which is
-/// taken to end at 1.8: the factor of D⁻¹r in the first step d, then of d and of D⁻¹r in the second.
+/// Factors of two steps of the Chebyshev iteration for D⁻¹A, over [0.45, 1.8]: the upper three quarters of its
+/// spectrum, which is assumed to end at 1.8. In order: the factor of D⁻¹r in the first step d, then the factors of d
+/// and of D⁻¹r in the second step.
 pub(crate) const CHEBYSHEV: [f32; 3] = {
     let (center, radius) = (0.625 * 1.8, 0.375 * 1.8);
     let (first, second) = (radius / center, 1.0 / (2.0 * center / radius - radius / center));
     [1.0 / center, first * second, 2.0 * second / radius]
 };
 
-/// Two unknowns of a coarse level are taken for neighbors if the entry between them is at least this share of the
-/// geometric mean of their diagonals.
+/// Two unknowns of a coarse level count as neighbors if the matrix entry between them is at least this share of the
+/// geometric mean of their diagonal entries.
 const STRONG: f32 = 0.1;
 
-/// A hierarchy of graph Laplacians that stand in for the Hessian of the objective. Level 0 are the free vertices; of
-/// it only the aggregates and weights are kept, as its matrix follows from the one-rings.
+/// A hierarchy of graph Laplacians that approximate the Hessian of the objective. The unknowns of level 0 are the free
+/// vertices. Only its aggregates and weights are stored, as its matrix follows from the one-rings.
 pub(crate) struct Hierarchy {
     aggregates: Aggregates,
     member_start: Vec<u32>,
@@ -38,7 +39,7 @@ pub(crate) struct Hierarchy {
     levels: Vec<Level>,
 }
 
-/// A level below the free vertices.
+/// A level coarser than the free vertices.
 pub(crate) struct Level {
     pub(crate) operator: Sparse,
     /// The reciprocals of the operator's diagonal.
@@ -46,22 +47,22 @@ pub(crate) struct Level {
     pub(crate) coarser: Coarser,
 }
 
-/// How a level goes on below.
+/// What is below a level.
 pub(crate) enum Coarser {
-    /// To a level of fewer unknowns.
+    /// A level of fewer unknowns, and the transfer to it.
     Level { prolongation: Sparse, restriction: Sparse },
-    /// The inverse of the operator, row by row.
+    /// Nothing: the level is solved by the inverse of its operator, in row-major order.
     Direct(Vec<f32>),
-    /// There is nothing left to do.
+    /// Nothing: no two unknowns are neighbors, so smoothing is enough.
     Nothing,
 }
 
 impl Hierarchy {
-    /// Builds the levels for elements of the sizes they have at `positions`.
+    /// Builds the levels, with weights by the sizes of elements at `positions`.
     pub(crate) fn new(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Self {
         let free = problem.free_count();
         let free_neighbors = |v| neighbors(problem, v).filter(move |&k| (k as usize) < free);
-        // The former goes vertex by vertex.
+        // Aggregation is serial, so the weights are computed beside it.
         let (aggregates, root) = rayon::join(
             || Aggregates::new(free, free_neighbors),
             || roots(problem, positions, stiffness),
@@ -80,9 +81,9 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// The same levels for elements of the sizes they now have. Couplings of aggregates change as those of their
-    /// members do on average, which is nearly Galerkin's operator again for a small part of the work: sizes
-    /// change by factors that hardly differ from one aggregate to the next.
+    /// Fits the levels to the sizes of elements at `positions`. Aggregates stay, and couplings between them are scaled
+    /// by the average change of their members. Sizes change by nearly the same factors in neighboring aggregates, so
+    /// this is close to the Galerkin operator at a small part of the work.
     pub(crate) fn resized(
         mut self,
         problem: &Problem,
@@ -112,21 +113,23 @@ impl Hierarchy {
         self
     }
 
+    /// The reciprocal of each free vertex's diagonal entry, from the weights.
     fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
             |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
         collect(problem.free_count(), |v| 1.0 / diagonal(v))
     }
 
-    /// Galerkin's operator on the aggregates. The prolongation to the vertices is not kept: it follows from
+    /// The Galerkin operator on the aggregates. The prolongation to the vertices is not kept, as it follows from
     /// the aggregates and the one-rings.
     fn first_coarse_operator(&self, problem: &Problem) -> Sparse {
         let free = problem.free_count();
         let of = &self.aggregates.of;
         let free_neighbors =
             |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
-        // With the weights of edges taken apart, A = R (E - N) R: R are the roots, E is diagonal and N one for each
-        // edge. So P goes with R, and around a vertex ones are summed.
+        // The weight of an edge is the product of two roots, so A = R (E - N) R with R the diagonal matrix of the
+        // roots, E diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix in the
+        // product is E - N, with entries -1 off the diagonal.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {
@@ -147,21 +150,21 @@ impl Hierarchy {
         })
     }
 
-    /// Weight of the edge from a free vertex to a neighbor.
+    /// The weight of the edge from a free vertex `v` to its neighbor `k`.
     #[inline]
     pub(crate) fn weight(&self, v: usize, k: usize) -> f32 {
         let near = self.root[v];
-        // Of fixed vertices none is kept: they take that of whoever asks.
+        // Fixed vertices have no root. The free vertex's is used for both.
         near * self.root.get(k).copied().unwrap_or(near)
     }
 
-    /// Of each free vertex the root of the stiffness over the size of its elements: the weight of an edge is the product
-    /// of two of them.
+    /// The square root of stiffness over element size at each free vertex. The weight of an edge is the product of the
+    /// roots at its ends.
     pub(crate) fn roots(&self) -> &[f32] {
         &self.root
     }
 
-    /// The aggregate of each free vertex, [`NONE`] if it has no free neighbor.
+    /// The aggregate of each free vertex, [`NONE`] if the vertex has no free neighbor.
     pub(crate) fn aggregate_of(&self) -> &[u32] {
         &self.aggregates.of
     }
@@ -171,7 +174,7 @@ impl Hierarchy {
         &self.member_start
     }
 
-    /// The free vertices in aggregates, aggregate by aggregate.
+    /// The members of all aggregates, aggregate by aggregate.
     pub(crate) fn members(&self) -> &[u32] {
         &self.member
     }
@@ -181,13 +184,13 @@ impl Hierarchy {
         &self.inverse_diagonal
     }
 
-    /// The levels below the free vertices, finest first.
+    /// The coarse levels, finest first.
     pub(crate) fn levels(&self) -> &[Level] {
         &self.levels
     }
 }
 
-/// The levels from an operator down.
+/// The coarse levels, given the operator of the finest of them.
 fn levels(mut operator: Sparse) -> Vec<Level> {
     let mut levels = Vec::new();
     loop {
@@ -235,7 +238,7 @@ fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
     problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
 }
 
-/// Of each free vertex the root of the stiffness over the size of its elements.
+/// The square root of stiffness over element size at each free vertex.
 fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f32> {
     match stiffness {
         Stiffness::BySize(factor) => {
@@ -249,7 +252,7 @@ fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f3
     }
 }
 
-/// The mean doubled area of the triangles at each free vertex, averaged once with its neighbors.
+/// The mean doubled area of the triangles at each free vertex, averaged once with that of its free neighbors.
 fn element_sizes(problem: &Problem, positions: &[DVec2]) -> Vec<f32> {
     let free = problem.free_count();
     let own: Vec<f32> = collect(free, |v| {

@@ -1,13 +1,14 @@
-//! Coarser levels of a mesh, and corrections from them: what makes a run converge in a number of sweeps that does not grow
-//! with the mesh.
+//! Coarser levels of a mesh, and corrections from them. With corrections, the number of sweeps that a run takes to
+//! converge does not grow with the mesh.
 //!
-//! Sweeps even out neighbors at once and the whole mesh never. So after each sweep the gradient of the
-//! objective is handed down a hierarchy of graph Laplacians that stand in for its Hessian (aggregates
-//! of neighbors, prolongation smoothed once: Vaněk, Mandel & Brezina, Computing 56, 1996), and all free vertices
-//! move along what comes back up, as far as the true objective falls and no triangle is inverted.
+//! Sweeps quickly remove errors between neighbors, but hardly those that extend over the whole mesh. So after each
+//! sweep the gradient of the objective is restricted to a hierarchy of graph Laplacians, which approximate the Hessian
+//! of the objective (aggregates of neighbors, prolongation smoothed once: Vaněk, Mandel & Brezina, Computing 56, 1996).
+//! The result is a direction for all free vertices, and a line search moves them along it, as far as the true objective
+//! falls and no triangle is inverted.
 //!
-//! Weights depend on the size of elements alone, so the operator is always positive definite, however
-//! bad the mesh. No Hessian is ever assembled.
+//! The weights of the Laplacians depend on the sizes of elements alone, so the operators are positive definite however
+//! bad the mesh is. No Hessian is ever assembled.
 
 mod aggregate;
 mod dense;

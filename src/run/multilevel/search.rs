@@ -1,14 +1,14 @@
-//! How far to go along a correction.
+//! The line search along a correction.
 
-/// Lengths that may be tried along one correction.
+/// The most lengths tried along one correction.
 const TRIALS: u32 = 8;
-/// Share of the predicted decrease that must be had (Armijo).
+/// Share of the predicted decrease that a trial must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// How far from the length tried a parabola's minimum may lie for that length to be good enough.
+/// The first length tried is good enough if the minimum of the fitted parabola differs from it by no more than this
+/// share.
 const CLOSE: f64 = 0.2;
 
-/// A line search on the objective, which only proposes lengths: whoever can evaluate the objective
-/// tries them.
+/// A line search that proposes lengths. The caller evaluates the objective at them.
 pub(crate) struct Search {
     here: f64,
     slope: f64,
@@ -17,19 +17,19 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// The first length to try, given the last one taken. One nearly flat triangle can have held that
-    /// one down, so it is let back up at once.
+    /// The first length to try, given the last one taken. At least 0.6, as a single nearly flat triangle may have
+    /// shortened the last one.
     pub(crate) fn first_length(last_taken: f64) -> f64 {
         last_taken.clamp(0.6, 3.0)
     }
 
-    /// Searches from an objective of `here` with the derivative `slope`, below zero.
+    /// Starts a search from the objective `here` with the derivative `slope`, which is negative.
     pub(crate) fn new(here: f64, slope: f64) -> Self {
         Self { here, slope, trials: 0, best: None }
     }
 
-    /// Takes in the objective at a length, `None` if a triangle is inverted there, and returns the length
-    /// to try next, if any.
+    /// Takes the objective at a length, `None` if a triangle is inverted or breaks the shape guard there. Returns the
+    /// length to try next, if any.
     pub(crate) fn tried(&mut self, length: f64, objective: Option<f64>) -> Option<f64> {
         self.trials += 1;
         let next = match objective {
@@ -54,7 +54,7 @@ impl Search {
         (self.trials < TRIALS).then_some(next)
     }
 
-    /// The length to take and the objective there; `None` if none lowers it.
+    /// The best length and the objective there; `None` if no length tried lowers the objective enough.
     pub(crate) fn best(&self) -> Option<(f64, f64)> {
         self.best
     }

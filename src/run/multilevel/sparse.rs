@@ -2,7 +2,7 @@
 
 use crate::parallel::map_ranges;
 
-/// A sparse matrix as compressed rows.
+/// A sparse matrix in compressed rows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sparse {
     start: Vec<u32>,
@@ -11,18 +11,19 @@ pub(crate) struct Sparse {
 }
 
 impl Sparse {
-    /// Builds a matrix row by row, in parallel. `fill` adds the entries of a row to the sum it is given.
+    /// Builds a matrix of `rows` rows, in parallel. `fill` adds the entries of a row to the sum it is given.
     pub(crate) fn from_rows(rows: usize, fill: impl Fn(usize, &mut RowSum) + Sync) -> Self {
         Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
     }
 
-    /// Galerkin's product Pᵀ A P by rows, of P and its transpose. `row` adds a multiple of a row of A to a sum.
+    /// The Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` adds `factor` times row `i` of A
+    /// to `sum`.
     pub(crate) fn galerkin(
         prolongation: &Self,
         restriction: &Self,
         row: impl Fn(usize, f32, &mut RowSum) + Sync,
     ) -> Self {
-        // The support of a row is small: nothing larger than it is ever stored.
+        // Row by row, so that A P is never stored.
         Self::from_rows_with(restriction.rows(), RowSum::default, |coarse, of_ap, sum| {
             for (k, value) in restriction.row(coarse) {
                 row(k, value, of_ap);
@@ -36,7 +37,7 @@ impl Sparse {
         })
     }
 
-    /// As [`Self::from_rows`], with scratch that the rows of a part share.
+    /// [`Self::from_rows`] with scratch memory, which rows of one task share.
     fn from_rows_with<S>(
         rows: usize,
         scratch: impl Fn() -> S + Sync,
@@ -93,15 +94,15 @@ impl Sparse {
         columns.zip(self.value[range].iter().copied())
     }
 
-    /// The reciprocals of the diagonal.
+    /// The reciprocals of the diagonal entries.
     pub(crate) fn diagonal_inverted(&self) -> Vec<f32> {
         let diagonal =
             |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
         (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
     }
 
-    /// Multiplies each entry off the diagonal by the factors of its row and its column. What the matrix makes of
-    /// a constant changes by the square of the row's factor.
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. Sets the diagonal such that
+    /// each row sum is multiplied by the square of the row's factor.
     pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
         for row in 0..self.rows() {
             let range = self.start[row] as usize..self.start[row + 1] as usize;
@@ -121,7 +122,7 @@ impl Sparse {
         }
     }
 
-    /// Of each row the mean of `values`, weighted by the sizes of its entries.
+    /// For each row the mean of `values` over its columns, weighted by the absolute values of its entries.
     pub(crate) fn means(&self, values: &[f32]) -> Vec<f32> {
         let mean = |row: usize| {
             let (mut sum, mut weights) = (0.0, 0.0);
@@ -134,7 +135,7 @@ impl Sparse {
         (0..self.rows()).map(mean).collect()
     }
 
-    /// The transpose; its rows' entries ascend by column.
+    /// The transpose of a matrix with `columns` columns. Entries of its rows ascend by column.
     pub(crate) fn transposed(&self, columns: usize) -> Self {
         let mut start = vec![0u32; columns + 1];
         for &column in &self.column {
@@ -161,17 +162,18 @@ impl Sparse {
     }
 }
 
-/// A sparse vector while it is being summed up, as a hash table. Rows have some tens of entries, so it stays in
-/// the nearest cache whatever the size of the mesh.
+/// A sum of sparse rows, as a hash table by column. A row has some tens of entries, so the table stays in
+/// the first-level cache whatever the size of the mesh.
 pub(crate) struct RowSum {
-    /// Column and value of each slot, their number a power of two; [`FREE`] is no column.
+    /// Column and value of each slot. The number of slots is a power of two.
     slots: Vec<(u32, f32)>,
-    /// The slots taken, in the order they were.
+    /// The slots in use, in the order in which they were taken.
     taken: Vec<u32>,
-    /// Bits of a hash that are not a slot's.
+    /// How far a 32-bit hash is shifted right to be the number of a slot.
     shift: u32,
 }
 
+/// The column of a slot that is not in use.
 const FREE: u32 = u32::MAX;
 
 impl Default for RowSum {
@@ -186,7 +188,7 @@ impl RowSum {
         Self { taken: Vec::with_capacity(slots.len()), slots, shift: 32 - bits }
     }
 
-    /// Adds to the entry of a column.
+    /// Adds `value` to the entry of a column.
     #[inline(always)]
     pub(crate) fn add(&mut self, column: u32, value: f32) {
         let mask = self.slots.len() - 1;
@@ -209,7 +211,7 @@ impl RowSum {
         }
     }
 
-    /// The entries so far, in the order their columns came.
+    /// The entries so far, in the order in which their columns were first added.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (u32, f32)> + '_ {
         self.taken.iter().map(|&slot| self.slots[slot as usize])
     }
@@ -262,7 +264,7 @@ mod tests {
         let matrix = sample();
         let values = dense(&matrix, 70);
         assert_eq!((matrix.rows(), matrix.row(10).count()), (1000, 0));
-        // Of row 13: k = 0, 1, 2, the first of them in the column of the second part.
+        // Row 13 has k = 0, 1, 2. The entry for k = 0 is in the column that the second part adds to.
         assert_eq!(matrix.row(13).count(), 3);
         assert_eq!(values[13][13 * 7 % 70], 1.0 + 3.0 * 13.0);
         assert_eq!(values[13][(13 * 7 + 26) % 70], 3.0);
