@@ -189,7 +189,10 @@ impl<'a> Smoother<'a> {
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         let goal = match options.goal {
-            Some(goal) => Some(self.aim(goal, options, device, observe).await?),
+            Some(goal) => match self.aim(goal, options, device, observe).await? {
+                Some(aimed) => Some(aimed),
+                None => return Ok(self.unchanged(base, initial, start)),
+            },
             None => None,
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
@@ -238,23 +241,44 @@ impl<'a> Smoother<'a> {
         })
     }
 
+    /// The outcome of a run that was cancelled before its first sweep.
+    fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
+        let mut objectives = Objectives::untracked();
+        objectives.set(base, f);
+        Outcome {
+            points: self.mesh.points.clone(),
+            stop: Stop::Cancelled,
+            sweeps: 0,
+            corrections: 0,
+            opening_sweeps: 0,
+            levels_left_out: false,
+            best_sweep: 0,
+            remaining: None,
+            history: vec![objectives],
+            goal: None,
+            returned: 0,
+            smooth: start.elapsed(),
+        }
+    }
+
     /// The objective by a metric at normalized positions.
     fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
         metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
     }
 
-    /// Determines the desired objective of a goal, by runs to convergence if it is not given.
+    /// Determines the desired objective of a goal, by runs to convergence if it is not given; `None` if the observer
+    /// ended one of them.
     async fn aim(
         &self,
         goal: Goal,
         options: &Options,
         device: Option<(&Gpu, Waiting)>,
         observe: &mut (impl Observer + ?Sized),
-    ) -> Result<GoalOutcome, SmoothError> {
+    ) -> Result<Option<GoalOutcome>, SmoothError> {
         let Goal { fraction, desired } = goal;
         if let Desired::Value(desired) = desired {
             let origin = "given".to_owned();
-            return Ok(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 });
+            return Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }));
         }
         let base = options.scheme.base();
         let full = |metric: Metric| Options {
@@ -270,19 +294,25 @@ impl<'a> Smoother<'a> {
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
             let after_imr = run.sweep(&imr, None, start, observe).await?;
+            if after_imr.stop == Stop::Cancelled {
+                return Ok(None);
+            }
             starts.push((format!("imr, then {base}"), after_imr.positions));
         }
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
             let end = run.sweep(&full(base), None, &start, observe).await?;
+            if end.stop == Stop::Cancelled {
+                return Ok(None);
+            }
             let f = self.objective(base, &end.positions);
             let sweeps = end.history.len() - 1;
             describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
             desired = desired.min(f);
         }
-        let origin = format!("over-relaxed; {}", describe.join("; "));
-        Ok(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
+        let origin = format!("runs to convergence; {}", describe.join("; "));
+        Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }))
     }
 }
 

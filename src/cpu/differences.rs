@@ -1,5 +1,4 @@
-//! Derivatives by forward differences, as Mesquite computes them. Only there to test the cost model of Park & Shontz.
-//! Not inlined, so compiled without the processor's special instructions: that saves compile time, and makes them slow.
+//! Derivatives by forward differences, as Mesquite takes them: to test the cost model of Park & Shontz.
 
 use fearless_simd::prelude::*;
 
@@ -9,6 +8,7 @@ use crate::metric::{Corner, Dual, Formulas, Real};
 use crate::run::line_search;
 
 /// The objectives of four patches with their derivatives, by forward differences.
+#[inline(always)]
 pub(crate) fn derivatives<S: Simd>(
     patches: &Patches<'_, S>,
     formulas: impl Formulas,
@@ -26,6 +26,7 @@ pub(crate) fn derivatives<S: Simd>(
 }
 
 /// The least distance of each vertex from a line through an edge of its one-ring.
+#[inline(always)]
 fn least_height<S: Simd>(patches: &Patches<'_, S>, at: Points<S>) -> Lanes<S> {
     let mut least = at[0].constant(f64::INFINITY);
     for i in 0..patches.degree() {
@@ -37,6 +38,7 @@ fn least_height<S: Simd>(patches: &Patches<'_, S>, at: Points<S>) -> Lanes<S> {
 }
 
 /// Value, gradient and Hessian of the model by forward differences of width `h`.
+#[inline(always)]
 fn differences<S: Simd>(
     formulas: impl Formulas,
     corner: &Corner<Lanes<S>>,

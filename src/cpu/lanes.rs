@@ -8,25 +8,30 @@ use fearless_simd::{f64x4, mask64x4};
 
 use crate::metric::Real;
 
-/// Evaluates an expression with `$simd` bound to the best instructions that the code is compiled for: on x86 those of
-/// AVX2 if the processor has them. The expression is compiled for each instruction set, so there are only two on x86.
+/// Evaluates an expression with `$f` bound to the formulas of a metric and `$simd` to the best instructions that the code
+/// is compiled for. On x86 these are those of AVX2, for each metric by itself. Processors without them get code that
+/// any can run, compiled once for all metrics but EDGE: each copy of a sweep takes seconds to compile.
 macro_rules! with_lanes {
-    ($simd:ident => $body:expr) => {{
+    ($metric:expr, $simd:ident, $f:ident => $body:expr) => {{
         let level = fearless_simd::Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match level.as_avx2() {
-            Some($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
-            None => {
+            Some($simd) => $crate::metric::with_each_metric!($metric, $f => {
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $body,
+                )
+            }),
+            None => $crate::metric::with_formulas!($metric, $f => {
                 let $simd = fearless_simd::Fallback::new();
                 $body
-            }
+            }),
         }
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        fearless_simd::dispatch!(level, $simd => $body)
+        $crate::metric::with_each_metric!($metric, $f => {
+            fearless_simd::dispatch!(level, $simd => $body)
+        })
     }};
 }
 pub(crate) use with_lanes;

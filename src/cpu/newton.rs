@@ -48,19 +48,22 @@ fn newton_step<S: Simd>(
     going: Mask<S>,
     step: &Step,
 ) -> (Points<S>, Mask<S>) {
-    let properties = step.metric.properties();
+    let (metric, properties) = (formulas.metric(), formulas.metric().properties());
     let sum = match step.derivatives {
         Derivatives::Analytic => patches.derivatives(formulas, at, step.sharpness),
         Derivatives::FiniteDifference => {
             differences::derivatives(patches, formulas, at, step.sharpness)
         }
     };
-    let limit = step.shape_guard.is_finite().then(|| {
-        let guard = at[0].constant(step.shape_guard);
-        Real::max(guard, patches.worst_shape(at))
-    });
+    // No closure: it would not be compiled for these instructions.
+    let limit = match properties.barrier {
+        true => None,
+        false => {
+            Some(Real::max(at[0].constant(step.shape_guard), patches.worst_shape(formulas, at)))
+        }
+    };
     let ([dx, dy], slope, descends) = descent(&sum, properties.eigenvalue_floor);
-    let squares = sum.value + patches.degree() as f64 * step.metric.ideal_squared();
+    let squares = sum.value + patches.degree() as f64 * metric.ideal_squared();
     let most = sum.value + squares * line_search::SLACK;
     let wanted = slope * line_search::SUFFICIENT_DECREASE;
 

@@ -4,9 +4,9 @@ use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
-use crate::cpu::patch::{inverse_mean_ratio, points};
+use crate::cpu::patch::points;
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas, Metric, with_formulas};
+use crate::metric::{Corner, Formulas, Metric};
 use crate::parallel::map_parts;
 
 /// Number of triangles of one task.
@@ -16,8 +16,8 @@ const CHUNK: usize = 1024;
 /// number of threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_formulas!(metric, formulas => {
-            with_lanes!(simd => excess(simd, formulas, problem.mean_area(), positions, chunk))
+        with_lanes!(metric, simd, formulas => {
+            excess(simd, formulas, problem.mean_area(), positions, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -41,10 +41,8 @@ pub(crate) fn mean_excess_along(
     guard: f64,
 ) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_formulas!(metric, formulas => {
-            with_lanes!(simd => {
-                excess_along(simd, formulas, problem.mean_area(), along, guard, chunk)
-            })
+        with_lanes!(metric, simd, formulas => {
+            excess_along(simd, formulas, problem.mean_area(), along, guard, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -73,8 +71,8 @@ fn excess_along<S: Simd>(
         borne &= now.doubled_area().simd_gt(0.0);
         if guard.is_finite() {
             let before = corner(p, q, r, mean_area);
-            let shape = inverse_mean_ratio(&now);
-            borne &= shape.simd_le(guard) | shape.simd_le(inverse_mean_ratio(&before));
+            let shape = formulas.inverse_mean_ratio(&now);
+            borne &= shape.simd_le(guard) | shape.simd_le(formulas.inverse_mean_ratio(&before));
         }
         sum += formulas.excess(&now);
     }

@@ -80,12 +80,12 @@ impl<'a, S: Simd> Patches<'a, S> {
 
     /// The largest inverse mean ratio of each patch, infinite if a triangle is inverted or flat.
     #[inline(always)]
-    pub(crate) fn worst_shape(&self, at: Points<S>) -> Lanes<S> {
+    pub(crate) fn worst_shape(&self, formulas: impl Formulas, at: Points<S>) -> Lanes<S> {
         let mut worst = at[0].constant(0.0);
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
             let positive = corner.doubled_area().simd_gt(0.0);
-            let ratio = inverse_mean_ratio(&corner);
+            let ratio = formulas.inverse_mean_ratio(&corner);
             worst = Real::max(worst, positive.select(ratio, worst.constant(f64::INFINITY)));
         }
         worst
@@ -107,7 +107,7 @@ impl<'a, S: Simd> Patches<'a, S> {
             let corner = self.corner(i, at);
             feasible &= corner.doubled_area().simd_gt(0.0);
             if let Some(limit) = limit {
-                feasible &= inverse_mean_ratio(&corner).simd_le(limit);
+                feasible &= formulas.inverse_mean_ratio(&corner).simd_le(limit);
             }
             sum += formulas.model(&corner, sharpness);
         }
@@ -122,10 +122,4 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
     let (a, b) = (positions[a as usize], positions[b as usize]);
     let (c, d) = (positions[c as usize], positions[d as usize]);
     [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
-}
-
-/// The inverse mean ratio for the shape guard. Valid only if the area is positive.
-#[inline(always)]
-pub(crate) fn inverse_mean_ratio<S: Simd>(corner: &Corner<Lanes<S>>) -> Lanes<S> {
-    corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()
 }

@@ -7,7 +7,7 @@ use crate::cpu::lanes::{LANES, Points, with_lanes};
 use crate::cpu::newton;
 use crate::cpu::patch::{self, Patches};
 use crate::layout::Problem;
-use crate::metric::{Formulas, Metric, with_formulas};
+use crate::metric::{Formulas, Metric};
 use crate::parallel::for_each_chunk;
 use crate::run::{Derivatives, Step};
 
@@ -93,8 +93,8 @@ fn visit<T: Found>(
 ) {
     for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        with_formulas!(step.metric, formulas => {
-            with_lanes!(simd => visit_all(simd, formulas, problem, positions, first, step, found));
+        with_lanes!(step.metric, simd, formulas => {
+            visit_all(simd, formulas, problem, positions, first, step, found);
         });
     });
 }

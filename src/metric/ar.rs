@@ -37,10 +37,10 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     Slopes {
         unit,
         value: less_one * (q + 1.0),
-        excess: q * 2.0,
-        area: less_one * q * -2.0,
-        excess_excess: q.constant(2.0),
-        excess_area: (q * 2.0 - 1.0) * -2.0,
-        area_area: less_one * (q * 3.0 - 1.0) * 2.0,
+        excess: Some(q * 2.0),
+        area: Some(less_one * q * -2.0),
+        excess_excess: Some(q.constant(2.0)),
+        excess_area: Some((q * 2.0 - 1.0) * -2.0),
+        area_area: Some(less_one * (q * 3.0 - 1.0) * 2.0),
     }
 }

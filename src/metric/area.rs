@@ -32,14 +32,13 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let q = (t.area - t.mean) * (1.0 / t.mean);
-    let zero = q.constant(0.0);
     Slopes {
         unit: q.constant(1.0 / t.mean),
         value: q * q,
-        excess: zero,
-        area: q * 2.0,
-        excess_excess: zero,
-        excess_area: zero,
-        area_area: q.constant(2.0),
+        excess: None,
+        area: Some(q * 2.0),
+        excess_excess: None,
+        excess_area: None,
+        area_area: Some(q.constant(2.0)),
     }
 }

@@ -69,23 +69,53 @@ impl<T: Real> Corner<T> {
         let (ex, ey) = ((u + v * W) * (-0.5 / W) * unit, (u * W - v) * (0.5 / W) * unit);
         let (dx, dy) = ((self.a[1] - self.b[1]) * unit, (self.b[0] - self.a[0]) * unit);
         // The gradients of ∂f/∂excess and ∂f/∂area.
-        let (px, py) = (
-            slopes.excess_excess * ex + slopes.excess_area * dx,
-            slopes.excess_excess * ey + slopes.excess_area * dy,
-        );
-        let (rx, ry) = (
-            slopes.excess_area * ex + slopes.area_area * dx,
-            slopes.excess_area * ey + slopes.area_area * dy,
-        );
-        let own = slopes.excess * (2.0 * W) * unit;
+        let Slopes { excess, area, excess_excess, excess_area, area_area, .. } = *slopes;
+        let px = sum(times(excess_excess, ex), times(excess_area, dx));
+        let py = sum(times(excess_excess, ey), times(excess_area, dy));
+        let rx = sum(times(excess_area, ex), times(area_area, dx));
+        let ry = sum(times(excess_area, ey), times(area_area, dy));
+        let own = times(times(excess, unit), u.constant(2.0 * W));
+        let zero = u.constant(0.0);
         Dual {
             value: slopes.value,
             gradient: [
-                slopes.excess * ex + slopes.area * dx,
-                slopes.excess * ey + slopes.area * dy,
+                or(sum(times(excess, ex), times(area, dx)), zero),
+                or(sum(times(excess, ey), times(area, dy)), zero),
             ],
-            hessian: [own + px * ex + rx * dx, px * ey + rx * dy, own + py * ey + ry * dy],
+            hessian: [
+                or(sum(own, sum(times(px, ex), times(rx, dx))), zero),
+                or(sum(times(px, ey), times(rx, dy)), zero),
+                or(sum(own, sum(times(py, ey), times(ry, dy))), zero),
+            ],
         }
+    }
+}
+
+// Sums and products of derivatives that may vanish for any triangle: what vanishes costs nothing. No closures: they
+// would not be compiled for the lanes' instructions.
+
+#[inline(always)]
+fn times<T: Real>(slope: Option<T>, by: T) -> Option<T> {
+    match slope {
+        Some(slope) => Some(slope * by),
+        None => None,
+    }
+}
+
+#[inline(always)]
+fn sum<T: Real>(a: Option<T>, b: Option<T>) -> Option<T> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a + b),
+        (Some(one), None) | (None, Some(one)) => Some(one),
+        (None, None) => None,
+    }
+}
+
+#[inline(always)]
+fn or<T: Real>(slope: Option<T>, zero: T) -> T {
+    match slope {
+        Some(slope) => slope,
+        None => zero,
     }
 }
 
@@ -117,7 +147,8 @@ pub struct Invariants<T> {
 }
 
 /// The value of a function of the [`Invariants`] and its partial derivatives, named by what they are taken by. They are
-/// by the invariants times `unit`, so that they have no dimension and neither overflow nor vanish in single precision.
+/// by the invariants times `unit`, so that they have no dimension and neither overflow nor vanish in single precision. `None` is a
+/// derivative that is zero for every triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<T> {
     /// One over an area, of the triangle or of the mean.
@@ -125,13 +156,13 @@ pub struct Slopes<T> {
     /// The function itself.
     pub value: T,
     /// The derivative by unit · excess.
-    pub excess: T,
+    pub excess: Option<T>,
     /// The derivative by unit · area.
-    pub area: T,
+    pub area: Option<T>,
     /// The second derivative by unit · excess.
-    pub excess_excess: T,
+    pub excess_excess: Option<T>,
     /// The mixed second derivative.
-    pub excess_area: T,
+    pub excess_area: Option<T>,
     /// The second derivative by unit · area.
-    pub area_area: T,
+    pub area_area: Option<T>,
 }

@@ -37,10 +37,10 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     Slopes {
         unit,
         value: m * (m + 2.0),
-        excess,
-        area: excess * m * -1.0,
-        excess_excess: m.constant(2.0),
-        excess_area: (m * 2.0 + 1.0) * -2.0,
-        area_area: m * (m * 3.0 + 2.0) * 2.0,
+        excess: Some(excess),
+        area: Some(excess * m * -1.0),
+        excess_excess: Some(m.constant(2.0)),
+        excess_area: Some((m * 2.0 + 1.0) * -2.0),
+        area_area: Some(m * (m * 3.0 + 2.0) * 2.0),
     }
 }

@@ -17,5 +17,7 @@ pub use corner::{Corner, Invariants, Slopes};
 pub use dual::{Dual, Real};
 pub use properties::{Properties, Stiffness};
 pub use scheme::Scheme;
-pub(crate) use table::{AnyFormulas, Formulas, with_formulas};
+pub(crate) use table::{
+    AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric, with_formulas,
+};
 pub use table::{Metric, UnknownMetric};

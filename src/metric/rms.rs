@@ -30,14 +30,14 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 /// Value and derivatives of [`value`] by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let (zero, one) = (t.area.constant(0.0), t.area.constant(1.0));
+    let one = t.area.constant(1.0);
     Slopes {
         unit: t.area.constant(1.0 / t.mean),
         value: value(t),
-        excess: one,
-        area: one,
-        excess_excess: zero,
-        excess_area: zero,
-        area_area: zero,
+        excess: Some(one),
+        area: Some(one),
+        excess_excess: None,
+        excess_area: None,
+        area_area: None,
     }
 }

@@ -42,10 +42,10 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     Slopes {
         unit: e.constant(scale),
         value: (e * (square + 1.0) + off * off * inverse) * 2.0,
-        excess: (square + 1.0) * 2.0,
-        area: (off * (tau + 1.0) * square - e * cube * 2.0) * 2.0,
-        excess_excess: e.constant(0.0),
-        excess_area: cube * -4.0,
-        area_area: (e * inverse * 3.0 + 1.0) * cube * 4.0,
+        excess: Some((square + 1.0) * 2.0),
+        area: Some((off * (tau + 1.0) * square - e * cube * 2.0) * 2.0),
+        excess_excess: None,
+        excess_area: Some(cube * -4.0),
+        area_area: Some((e * inverse * 3.0 + 1.0) * cube * 4.0),
     }
 }

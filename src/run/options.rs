@@ -92,7 +92,7 @@ impl Options {
         if self.scheme.period() > 1 {
             Some("metrics that alternate have no correction: give one metric")
         } else if metric.properties().stiffness.is_none() {
-            Some("this metric has no correction: take imr, ar or rms")
+            Some("this metric has no correction: take imr, ar, rms or shape-size")
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")
         } else if self.derivatives != Derivatives::Analytic {

@@ -38,6 +38,26 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
 }
 
 #[test]
+fn a_run_cancelled_while_the_optimum_is_sought_returns_the_start() {
+    // The f of the sweeps until then was taken for the optimum, and the run was "reached".
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    let goal = Some(Goal { fraction: 0.95, desired: Desired::Auto });
+    for backend in backends() {
+        for name in ["imr", "edge"] {
+            let options = Options { scheme: scheme(name), goal, ..Options::default() };
+            let cancel = &mut |progress: &gpu_smooth::Progress| {
+                assert_eq!(progress.phase, Phase::Reference);
+                ControlFlow::Break(())
+            };
+            let outcome = smoother.run(&options, backend, cancel).unwrap();
+            assert_eq!((outcome.stop, outcome.sweeps), (Stop::Cancelled, 0));
+            assert!(outcome.points == mesh.points && outcome.goal.is_none());
+        }
+    }
+}
+
+#[test]
 fn options_out_of_range_are_named() {
     let mesh = plate(300);
     let smoother = Smoother::new(&mesh).unwrap();

@@ -192,9 +192,8 @@ impl Report {
         if after <= 1.01 * before {
             return None;
         }
-        let judges_shape = |metric: &str| {
-            metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier)
-        };
+        let judges_shape =
+            |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier);
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.scheme.split('+').next().unwrap_or_default();
         let remedy = match shape {
