@@ -48,12 +48,12 @@ pub struct Outcome {
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
+    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`].
     pub corrections: u32,
     /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat for single
     /// precision: the first sweeps, or all if the first ones did not open every triangle.
     pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`](crate::Method::Auto) did without corrections because the coarser levels do not fit the
+    /// Whether [`Method::Auto`] did without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,
     /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.

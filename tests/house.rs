@@ -70,7 +70,7 @@ fn defined_in(path: &str, modules: &BTreeMap<String, String>) -> Option<String> 
             return Some(module);
         }
         let Some(text) = modules.get(&format!("{module}::mod")) else { continue };
-        let Some(name) = parts.get(length) else { return None };
+        let name = parts.get(length)?;
         // `pub use file::{A, B};` or `pub(crate) use file::A;`
         for passed_on in text.split("use ").skip(1) {
             let passed_on = &passed_on[..passed_on.find(';').unwrap_or(0)];

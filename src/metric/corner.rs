@@ -95,6 +95,7 @@ impl<T: Real> Corner<T> {
 // would not be compiled for the lanes' instructions.
 
 #[inline(always)]
+#[allow(clippy::manual_map)]
 fn times<T: Real>(slope: Option<T>, by: T) -> Option<T> {
     match slope {
         Some(slope) => Some(slope * by),

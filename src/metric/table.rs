@@ -248,7 +248,8 @@ impl Metric {
 
     /// q. Infinite for a flat or inverted triangle if the metric has a barrier.
     pub fn quality(self, corner: &Corner<f64>) -> f64 {
-        if self.properties().barrier && !(corner.doubled_area() > 0.0) {
+        let is_positive = corner.doubled_area() > 0.0;
+        if self.properties().barrier && !is_positive {
             return f64::INFINITY;
         }
         (self.excess(corner) + self.ideal_squared()).sqrt()

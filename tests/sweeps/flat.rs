@@ -1,7 +1,14 @@
 //! Triangles so flat that single precision cannot tell them from inverted ones.
 
+use std::future::Future;
+use std::ops::ControlFlow;
+use std::pin::pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::task::{Context, Poll, Wake, Waker};
+
 use crate::{backends, history, name, run, scheme, support, with_points};
-use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Smoother, Stop};
+use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Stop};
 
 /// A lattice of which some vertices lie this far from an edge opposite.
 fn flattened(height: f64) -> Mesh {
@@ -56,4 +63,42 @@ fn a_run_that_ends_before_they_are_open_is_done_on_the_cpu() {
         assert_eq!((gpu.stop, gpu.sweeps, gpu.opening_sweeps), (Stop::MaxSweeps, 1, 1));
         assert_eq!(cpu.points, gpu.points);
     }
+}
+
+/// Counts how often a future asks to be polled again.
+#[derive(Default)]
+struct Wakes(AtomicUsize);
+
+impl Wake for Wakes {
+    fn wake(self: Arc<Self>) {
+        self.0.fetch_add(1, Ordering::SeqCst);
+    }
+}
+
+#[test]
+fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
+    // All of these sweeps were done inside one poll.
+    let mesh = flattened(1e-12);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options::default();
+    // A device of its own, which no other test polls.
+    let gpu = Gpu::open(None).unwrap();
+    let opening = run(&smoother, &options, &backends()[1]).opening_sweeps as usize;
+    assert!(opening > 1, "{opening} sweeps");
+    let wakes = Arc::new(Wakes::default());
+    let waker = Waker::from(Arc::clone(&wakes));
+    let go_on = &mut |_: &gpu_smooth::Progress| ControlFlow::Continue(());
+    let mut future = pin!(smoother.run_async(&options, &gpu, go_on));
+    let mut yields = 0;
+    loop {
+        let before = wakes.0.load(Ordering::SeqCst);
+        let polled = future.as_mut().poll(&mut Context::from_waker(&waker));
+        assert!(matches!(polled, Poll::Pending), "nobody polls the device, and the run ended");
+        // What did not wake itself waits for the device.
+        if wakes.0.load(Ordering::SeqCst) == before {
+            break;
+        }
+        yields += 1;
+    }
+    assert!(yields >= opening - 1, "{yields} yields in {opening} sweeps");
 }

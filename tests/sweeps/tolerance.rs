@@ -52,3 +52,21 @@ fn what_is_left_of_edge_is_within_the_tolerance() {
     let limit = history(&long, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min);
     check(&smoother, &options, limit);
 }
+
+#[test]
+fn a_run_that_is_cut_short_says_how_far_it_is() {
+    let rms = global::rms_optimum(distorted());
+    let (limit, _) = global::imr_optimum(&rms);
+    let smoother = Smoother::new(distorted()).unwrap();
+    for (omega, max_sweeps) in [(Some(1.0), 120), (None, 8)] {
+        let options = Options { omega, max_sweeps, ..Options::default() };
+        for backend in backends() {
+            let outcome = run(&smoother, &options, backend);
+            let label = format!("{max_sweeps} sweeps on the {}", name(backend));
+            assert_eq!(outcome.stop, Stop::MaxSweeps, "{label}");
+            let f = *history(&outcome, Metric::Imr).last().unwrap();
+            let (left, told) = ((f - limit) / limit, outcome.remaining.unwrap());
+            assert!(left <= TRUST * told && told <= 100.0 * left, "{label}: {told:e} of {left:e}");
+        }
+    }
+}

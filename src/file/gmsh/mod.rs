@@ -31,7 +31,7 @@ enum Version {
 
 /// What `$MeshFormat` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Layout {
+struct Encoding {
     version: Version,
     /// The byte order of the numbers, if they are not text.
     order: Option<Order>,
@@ -71,9 +71,9 @@ trait Sink {
 }
 
 /// Feeds a file's nodes and elements to the sink.
-fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
-    let mut layout = None;
+    let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
     while cursor.next_row() {
         // Like gmsh, ignore what stands between sections.
@@ -83,12 +83,12 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
         let opened = cursor.location();
         match name {
             b"MeshFormat" => {
-                layout = Some(mesh_format(cursor)?);
+                encoding = Some(mesh_format(cursor)?);
                 end_of_section(cursor, "MeshFormat", opened, "one line")?;
             }
             b"Nodes" | b"ParametricNodes" => {
                 once(cursor, &mut nodes, "Nodes")?;
-                let Layout { version, order } = known(cursor, layout)?;
+                let Encoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
                     sink.parametric();
@@ -109,7 +109,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
                     let problem = "$Elements stands before $Nodes";
                     return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
                 }
-                let Layout { version, order } = known(cursor, layout)?;
+                let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
                     (Version::V4, None) => text4::elements(cursor, sink)?,
@@ -126,8 +126,8 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
         }
     }
     let missing = if !nodes { "$Nodes" } else { "$Elements" };
-    match layout {
-        Some(layout) if nodes && elements => Ok(layout),
+    match encoding {
+        Some(encoding) if nodes && elements => Ok(encoding),
         _ => Err(source.error(
             format!("it has no {missing} section"),
             "The file is cut off or was saved without its mesh: save it again",
@@ -135,7 +135,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
     }
 }
 
-fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Layout, ReadError> {
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
     let version = match name {
@@ -148,9 +148,9 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Layout, ReadError> {
         }
     };
     match cursor.integer("the file type")? {
-        0 => Ok(Layout { version, order: None }),
+        0 => Ok(Encoding { version, order: None }),
         1 => match cursor.integer("the size of a number")? {
-            8 => Ok(Layout { version, order: Some(words::byte_order(cursor)?) }),
+            8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {
                 let problem =
                     format!("its numbers have {size} bytes, and only those of 8 are read");
@@ -164,9 +164,9 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Layout, ReadError> {
     }
 }
 
-fn known(cursor: &Cursor<'_>, layout: Option<Layout>) -> Result<Layout, ReadError> {
+fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
-    layout.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
+    encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
 }
 
 fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {

@@ -2,7 +2,7 @@
 
 use super::kind::Kind;
 use super::tags::TagMap;
-use super::{Element, Layout, Sink, Version, walk};
+use super::{Element, Encoding, Sink, Version, walk};
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
 use crate::file::parsed::{Parsed, fixed_note};
@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 /// Reads a mesh.
 pub(in crate::file) fn parse(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader::default();
-    let Layout { version, order } = walk(source, &mut reader)?;
+    let Encoding { version, order } = walk(source, &mut reader)?;
     let format = match (version, order) {
         (Version::V2, None) => Format::Gmsh22,
         (Version::V2, Some(_)) => Format::Gmsh22Binary,

@@ -62,7 +62,7 @@ const TOTALS: u32 = 0;
 const SUMS: u32 = 4;
 
 /// The content of the kernels' arrays, collected while the dispatches are listed.
-struct Layout<'g> {
+struct Listing<'g> {
     gpu: &'g Gpu,
     positions: Positions,
     structure: Pages<u32>,
@@ -72,7 +72,7 @@ struct Layout<'g> {
     listed: u32,
 }
 
-impl Layout<'_> {
+impl Listing<'_> {
     fn vector(&mut self, length: usize) -> u32 {
         let at = self.vectors;
         self.vectors += length as u32;
@@ -129,12 +129,12 @@ impl Layout<'_> {
         let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
         let smoother = LevelOp { right, step, ..operator };
         // Two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, one on to `to`.
-        let smooth = |layout: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
+        let smooth = |listing: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
             let [first, again, now] = CHEBYSHEV;
             let one = LevelOp { x: from, out: over, b: first, ..smoother };
             let two = LevelOp { x: over, out: to, a: again, b: now, ..smoother };
-            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, one)?);
-            list.push(layout.step(Kernel::Chebyshev, bound, Groups::ForRows, two)?);
+            list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, one)?);
+            list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, two)?);
             Ok::<(), GpuError>(())
         };
         smooth(self, list, [NONE, other, x])?;
@@ -229,7 +229,7 @@ impl Levels {
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(f32::MAX.into()) as f32;
-        let mut layout = Layout {
+        let mut listing = Listing {
             gpu,
             positions: mesh.parts.positions(),
             structure: Pages::new(gpu, "structure of the coarse levels"),
@@ -239,47 +239,49 @@ impl Levels {
             listed: 0,
         };
         let partials = objective_invocations(problem.triangles().len());
-        let sums = layout.vector(4 * partials as usize);
+        let sums = listing.vector(4 * partials as usize);
 
         let (values, [entries, diagonal]) =
-            layout.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
-        let (of_page, [of]) = layout.structure.place([hierarchy.aggregate_of()])?;
+            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
+        let (of_page, [of]) = listing.structure.place([hierarchy.aggregate_of()])?;
         let (members, [starts, columns]) =
-            layout.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
+            listing.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
-        let right = layout.vector(aggregates as usize);
+        let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
         let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
         // Lists a step on the free vertices, a dispatch for each part of the one-rings.
-        let by_rings = |layout: &mut Layout<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
-            for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
-                let rows = vertices.end - vertices.start;
-                let op = LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
-                let bound = match kernel.interface() {
-                    Interface::Fine => Bound::Fine { part },
-                    _ => Bound::Transfer { part, structure: of_page, values },
-                };
-                list.push(layout.step(kernel.clone(), bound, Groups::ForRows, op)?);
-            }
-            Ok::<(), GpuError>(())
-        };
+        let by_rings =
+            |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
+                for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
+                    let rows = vertices.end - vertices.start;
+                    let op =
+                        LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
+                    let bound = match kernel.interface() {
+                        Interface::Fine => Bound::Fine { part },
+                        _ => Bound::Transfer { part, structure: of_page, values },
+                    };
+                    list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
+                }
+                Ok::<(), GpuError>(())
+            };
 
         let mut correction = Vec::new();
-        by_rings(&mut layout, &mut correction, Kernel::Gradient(metric), fine)?;
-        by_rings(&mut layout, &mut correction, Kernel::SmoothGradient, fine)?;
+        by_rings(&mut listing, &mut correction, Kernel::Gradient(metric), fine)?;
+        by_rings(&mut listing, &mut correction, Kernel::SmoothGradient, fine)?;
         let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
         let bound = Bound::Transfer { part: 0, structure: members, values };
-        correction.push(layout.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
-        let solution = layout.solve(hierarchy.levels(), right, &mut correction)?;
+        correction.push(listing.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
+        let solution = listing.solve(hierarchy.levels(), right, &mut correction)?;
         let op = LevelOp { starts: of, x: solution, ..fine };
-        by_rings(&mut layout, &mut correction, Kernel::Prolong, op)?;
+        by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
 
         let mut objective = Vec::new();
         for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
             let (rows, first) = (triangles.end - triangles.start, triangles.start);
             let op = LevelOp { rows, first, out: sums, shape_guard: guard, ..fine };
             let groups = Groups::Just(partials / WORKGROUP);
-            objective.push(layout.step(
+            objective.push(listing.step(
                 Kernel::ObjectiveAlongCorrection(metric),
                 Bound::Fine { part },
                 groups,
@@ -288,8 +290,8 @@ impl Levels {
         }
         let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
         let bound = Bound::Coarse { structure: 0, values: 0 };
-        let sum = layout.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
-        let movement = layout.step(
+        let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
+        let movement = listing.step(
             Kernel::MoveAlongCorrection,
             Bound::Fine { part: 0 },
             Groups::ForRows,
@@ -298,19 +300,19 @@ impl Levels {
 
         let limits = gpu.device.limits();
         let what = || "the vectors of the coarse levels".to_owned();
-        let bytes = u64::from(layout.vectors) * size_of::<[f32; 2]>() as u64;
+        let bytes = u64::from(listing.vectors) * size_of::<[f32; 2]>() as u64;
         let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
 
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
-        let mut ops = vec![0u8; (stride * layout.listed) as usize];
+        let mut ops = vec![0u8; (stride * listing.listed) as usize];
         for step in correction.iter().chain(&objective).chain([&sum, &movement]) {
             let at = (step.number * stride) as usize;
             ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
         }
         let Uploaded { bind_groups, ops, vectors } =
-            scoped(&gpu.device, || layout.upload(mesh, free, &dispatches.params, &ops))?;
+            scoped(&gpu.device, || listing.upload(mesh, free, &dispatches.params, &ops))?;
         Ok(Self { bind_groups, ops, stride, correction, objective, sum, movement, vectors })
     }
 
