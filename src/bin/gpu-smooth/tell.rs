@@ -134,15 +134,15 @@ pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
 pub(crate) fn metrics() -> Result<(), String> {
     for metric in Metric::ALL {
         let row = metric.properties();
-        say(&format!("{:<5} q = {}", row.name, row.formula));
-        say(&format!("      {}", row.purpose));
+        say(&format!("{:<10} q = {}", row.name, row.formula));
+        say(&format!("           {}", row.purpose));
         let barrier = if row.barrier { "barrier at zero area" } else { "no barrier" };
         let guard = match row.shape_guard {
             guard if guard.is_finite() => format!(", shape guard at imr {guard}"),
             _ => String::new(),
         };
-        say(&format!("      best q {}, {barrier}{guard}, omega {}", row.ideal, row.omega));
-        say(&format!("      {}\n", row.citation));
+        say(&format!("           best q {}, {barrier}{guard}, omega {}", row.ideal, row.omega));
+        say(&format!("           {}\n", row.citation));
     }
     Ok(())
 }
