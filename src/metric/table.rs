@@ -182,7 +182,7 @@ impl Formulas for OfInvariants {
     #[inline(always)]
     fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> T {
         let t = corner.invariants();
-        (t.excess + t.area) / t.area
+        t.lengths / t.area
     }
 
     #[inline(always)]
