@@ -21,10 +21,10 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("ar.wgsl"),
 };
 
-/// q² - 1 for q = lengths / area.
+/// q² - 1 for q = (excess + area) / area. The numerator is √3/6 times the sum of the squared edge lengths.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    let q = t.lengths / t.area;
+    let q = (t.excess + t.area) / t.area;
     (q - 1.0) * (q + 1.0)
 }
 
@@ -32,14 +32,13 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let unit = t.area.constant(1.0) / t.area;
-    let q = t.lengths * unit;
+    let q = (t.excess + t.area) * unit;
     let less_one = q - 1.0;
     Slopes {
         unit,
         value: less_one * (q + 1.0),
         excess: Some(q * 2.0),
         area: Some(less_one * q * -2.0),
-        lengths: None,
         excess_excess: Some(q.constant(2.0)),
         excess_area: Some((q * 2.0 - 1.0) * -2.0),
         area_area: Some(less_one * (q * 3.0 - 1.0) * 2.0),

@@ -37,7 +37,6 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
         value: q * q,
         excess: None,
         area: Some(q * 2.0),
-        lengths: None,
         excess_excess: None,
         excess_area: None,
         area_area: Some(q.constant(2.0)),

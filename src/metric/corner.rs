@@ -54,7 +54,6 @@ impl<T: Real> Corner<T> {
         Invariants {
             excess: (u * u + v * v) * (0.25 / W),
             area: self.doubled_area(),
-            lengths: self.squared_length_sum() * (0.5 * W),
             mean: 2.0 * self.mean_area,
         }
     }
@@ -75,17 +74,13 @@ impl<T: Real> Corner<T> {
         let py = sum(times(excess_excess, ey), times(excess_area, dy));
         let rx = sum(times(excess_area, ex), times(area_area, dx));
         let ry = sum(times(excess_area, ey), times(area_area, dy));
-        // The excess and the area add up to √3/6 times the sum of the squared lengths, whose gradient is -2 (a + b).
-        let lengths = times(slopes.lengths, unit * -W);
-        let lx = times(lengths, self.a[0] + self.b[0]);
-        let ly = times(lengths, self.a[1] + self.b[1]);
-        let own = times(times(sum(excess, slopes.lengths), unit), u.constant(2.0 * W));
+        let own = times(times(excess, unit), u.constant(2.0 * W));
         let zero = u.constant(0.0);
         Dual {
             value: slopes.value,
             gradient: [
-                or(sum(lx, sum(times(excess, ex), times(area, dx))), zero),
-                or(sum(ly, sum(times(excess, ey), times(area, dy))), zero),
+                or(sum(times(excess, ex), times(area, dx)), zero),
+                or(sum(times(excess, ey), times(area, dy)), zero),
             ],
             hessian: [
                 or(sum(own, sum(times(px, ex), times(rx, dx))), zero),
@@ -148,8 +143,6 @@ pub struct Invariants<T> {
     pub excess: T,
     /// Twice the signed area.
     pub area: T,
-    /// √3/6 times the sum of the squared edge lengths: the excess plus the area.
-    pub lengths: T,
     /// Twice the mean area of the mesh's triangles.
     pub mean: f64,
 }
@@ -167,9 +160,6 @@ pub struct Slopes<T> {
     pub excess: Option<T>,
     /// The derivative by unit · area.
     pub area: Option<T>,
-    /// The derivative by unit · (excess + area), which is √3/6 times the sum of the squared lengths: for metrics that
-    /// depend on the lengths alone, whose derivatives are cheaper so.
-    pub lengths: Option<T>,
     /// The second derivative by unit · excess.
     pub excess_excess: Option<T>,
     /// The mixed second derivative.

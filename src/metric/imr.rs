@@ -39,7 +39,6 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
         value: m * (m + 2.0),
         excess: Some(excess),
         area: Some(excess * m * -1.0),
-        lengths: None,
         excess_excess: Some(m.constant(2.0)),
         excess_area: Some((m * 2.0 + 1.0) * -2.0),
         area_area: Some(m * (m * 3.0 + 2.0) * 2.0),

@@ -21,10 +21,10 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("rms.wgsl"),
 };
 
-/// q² - 1, with q² = lengths / mean.
+/// q² - 1, with q² = (excess + area) / mean. The area less the mean is exact where they are near each other.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    t.lengths * (1.0 / t.mean) - 1.0
+    (t.excess + (t.area - t.mean)) * (1.0 / t.mean)
 }
 
 /// Value and derivatives of [`value`] by the invariants.
@@ -34,9 +34,8 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     Slopes {
         unit: t.area.constant(1.0 / t.mean),
         value: value(t),
-        excess: None,
-        area: None,
-        lengths: Some(one),
+        excess: Some(one),
+        area: Some(one),
         excess_excess: None,
         excess_area: None,
         area_area: None,

@@ -44,7 +44,6 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
         value: (e * (square + 1.0) + off * off * inverse) * 2.0,
         excess: Some((square + 1.0) * 2.0),
         area: Some((off * (tau + 1.0) * square - e * cube * 2.0) * 2.0),
-        lengths: None,
         excess_excess: None,
         excess_area: Some(cube * -4.0),
         area_area: Some((e * inverse * 3.0 + 1.0) * cube * 4.0),

@@ -182,7 +182,7 @@ impl Formulas for OfInvariants {
     #[inline(always)]
     fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> T {
         let t = corner.invariants();
-        t.lengths / t.area
+        (t.excess + t.area) / t.area
     }
 
     #[inline(always)]
