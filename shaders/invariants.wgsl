@@ -2,12 +2,14 @@
 
 const TARGET_W: f32 = 0.57735026919; // 1/√3
 
-// The same as the Rust struct Invariants (src/metric/corner.rs). The excess is √3/6 times the sum of the squared
-// lengths, less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean area.
+// The Rust struct Invariants (src/metric/corner.rs) and the area less the mean. The excess is √3/6 times the sum of the
+// squared lengths, less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean
+// area. Of that, single precision has seven digits, an error that all triangles share, so area - mean takes the pair.
 struct Invariants {
     excess: f32,
     area: f32,
     mean: f32,
+    area_less_mean: f32,
 }
 
 // The value of a function of the invariants, and its partial derivatives by the invariants times unit, one over an area:
@@ -30,7 +32,9 @@ fn distortion(t: Corner) -> vec2<f32> {
 
 fn invariants(t: Corner) -> Invariants {
     let uv = distortion(t);
-    return Invariants(dot(uv, uv) * (0.25 / TARGET_W), doubled_area(t), 2.0 * t.mean_area);
+    let area = doubled_area(t);
+    let mean = 2.0 * t.mean_area;
+    return Invariants(dot(uv, uv) * (0.25 / TARGET_W), area, mean.x, (area - mean.x) - mean.y);
 }
 
 fn expansion(t: Corner, slopes: Slopes) -> Derivatives {

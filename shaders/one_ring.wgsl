@@ -6,7 +6,7 @@ struct Patch {
     end: u32,
     at: vec4<f32>,
     unit: f32,
-    mean_area: f32,
+    mean_area: vec2<f32>,
 }
 
 fn ring_edge(p: Patch, i: u32) -> vec2<f32> {

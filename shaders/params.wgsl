@@ -17,7 +17,8 @@ struct Params {
     target_sum: vec2<f32>,
     ideal_sum: f32,
     tolerance: f32,
-    mean_area: f32,
+    // A pair: the mean area rounded to single precision, and what that left out.
+    mean_area: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

@@ -1,11 +1,11 @@
 // Triangles as a metric sees them, and edges between positions held as pairs.
 
 // The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the mean
-// area of the mesh's triangles in the same unit, squared.
+// area of the mesh's triangles in the same unit, squared, as a pair of floats.
 struct Corner {
     a: vec2<f32>,
     b: vec2<f32>,
-    mean_area: f32,
+    mean_area: vec2<f32>,
 }
 
 // A value and its derivatives with respect to the vertex that the edges start from. The Hessian is xx, xy, yy.

@@ -8,7 +8,7 @@ use crate::run::StepwiseRun;
 
 pub use crate::gpu::{Interface, Kernel};
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
-pub use crate::metric::{Dual, Invariants, Real, Slopes};
+pub use crate::metric::{Dual, InvariantSlopes, Invariants, Real, Slopes};
 pub use crate::run::{Plan, Step, Stepwise, StopRule};
 use crate::{Gpu, GpuError};
 

@@ -55,13 +55,6 @@ fn newton_step<S: Simd>(
             differences::derivatives(patches, formulas, at, step.sharpness)
         }
     };
-    // No closure: it would not be compiled for these instructions.
-    let limit = match properties.barrier {
-        true => None,
-        false => {
-            Some(Real::max(at[0].constant(step.shape_guard), patches.worst_shape(formulas, at)))
-        }
-    };
     let ([dx, dy], slope, descends) = descent(&sum, properties.eigenvalue_floor);
     let squares = sum.value + patches.degree() as f64 * metric.ideal_squared();
     let most = sum.value + squares * line_search::SLACK;
@@ -70,9 +63,20 @@ fn newton_step<S: Simd>(
     let mut length = at[0].constant(step.omega);
     let mut searching = going & descends;
     let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
-    for _ in 0..line_search::TRIALS {
+    // A triangle may stay as bad as the patch's worst. Few trials break the guard, so that is found when one does.
+    let mut limit = at[0].constant(step.shape_guard);
+    let mut worst_is_known = properties.barrier;
+    let mut trial = 0;
+    while trial < line_search::TRIALS {
         let to = [at[0] + dx * length, at[1] + dy * length];
-        let (value, feasible) = patches.objective(formulas, to, step.sharpness, limit);
+        let (value, feasible) =
+            patches.objective(formulas, to, step.sharpness, limit, !properties.barrier);
+        if !worst_is_known && !(!searching | feasible).all_true() {
+            worst_is_known = true;
+            limit = Real::max(limit, patches.worst_shape(formulas, at));
+            continue;
+        }
+        trial += 1;
         let mut taken = searching & feasible;
         if !properties.quadratic {
             taken &= value.simd_le(most + wanted * length);

@@ -70,9 +70,14 @@ fn excess_along<S: Simd>(
         let now = corner(moved_p, moved_q, moved_r, mean_area);
         borne &= now.doubled_area().simd_gt(0.0);
         if guard.is_finite() {
-            let before = corner(p, q, r, mean_area);
-            let shape = formulas.inverse_mean_ratio(&now);
-            borne &= shape.simd_le(guard) | shape.simd_le(formulas.inverse_mean_ratio(&before));
+            let (sum, area) = formulas.inverse_mean_ratio(&now);
+            let mut kept = sum.simd_le(area * guard);
+            if !kept.all_true() {
+                let (sum_before, area_before) =
+                    formulas.inverse_mean_ratio(&corner(p, q, r, mean_area));
+                kept |= (sum * area_before).simd_le(sum_before * area);
+            }
+            borne &= kept;
         }
         sum += formulas.excess(&now);
     }

@@ -84,30 +84,34 @@ impl<'a, S: Simd> Patches<'a, S> {
         let mut worst = at[0].constant(0.0);
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            let positive = corner.doubled_area().simd_gt(0.0);
-            let ratio = formulas.inverse_mean_ratio(&corner);
+            let (numerator, area) = formulas.inverse_mean_ratio(&corner);
+            let positive = area.simd_gt(0.0);
+            let ratio = numerator / area;
             worst = Real::max(worst, positive.select(ratio, worst.constant(f64::INFINITY)));
         }
         worst
     }
 
-    /// The objectives of the patches, and which patches are feasible: no triangle is inverted or flat or, if there is a
-    /// `limit`, has an inverse mean ratio above it.
+    /// The objectives of the patches, and which patches are feasible: no triangle is inverted or flat or, if they are
+    /// `guarded`, has an inverse mean ratio above `limit`.
     #[inline(always)]
     pub(crate) fn objective(
         &self,
         formulas: impl Formulas,
         at: Points<S>,
         sharpness: u32,
-        limit: Option<Lanes<S>>,
+        limit: Lanes<S>,
+        guarded: bool,
     ) -> (Lanes<S>, Mask<S>) {
         let mut sum = at[0].constant(0.0);
         let mut feasible = Mask::splat(sum.simd, true);
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
             feasible &= corner.doubled_area().simd_gt(0.0);
-            if let Some(limit) = limit {
-                feasible &= formulas.inverse_mean_ratio(&corner).simd_le(limit);
+            if guarded {
+                // Both sides times the area: a division costs as much as the rest of the guard.
+                let (numerator, area) = formulas.inverse_mean_ratio(&corner);
+                feasible &= numerator.simd_le(limit * area);
             }
             sum += formulas.model(&corner, sharpness);
         }

@@ -28,19 +28,16 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (q - 1.0) * (q + 1.0)
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Value and derivatives of [`value`].
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let unit = t.area.constant(1.0) / t.area;
-    let q = (t.excess + t.area) * unit;
-    let less_one = q - 1.0;
-    Slopes {
-        unit,
-        value: less_one * (q + 1.0),
-        excess: Some(q * 2.0),
-        area: Some(less_one * q * -2.0),
-        excess_excess: Some(q.constant(2.0)),
-        excess_area: Some((q * 2.0 - 1.0) * -2.0),
-        area_area: Some(less_one * (q * 3.0 - 1.0) * 2.0),
+    let inverse_area = t.area.constant(1.0) / t.area;
+    let q = (t.excess + t.area) * inverse_area;
+    Slopes::ByShape {
+        inverse_area,
+        shape: t.excess * inverse_area,
+        value: (q - 1.0) * (q + 1.0),
+        first: q * 2.0,
+        second: q.constant(2.0),
     }
 }

@@ -1,6 +1,6 @@
 //! The metric AREA, the relative deviation of the area from the mean.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
 
@@ -32,13 +32,12 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let q = (t.area - t.mean) * (1.0 / t.mean);
-    Slopes {
+    Slopes::ByInvariants(InvariantSlopes {
         unit: q.constant(1.0 / t.mean),
         value: q * q,
         excess: None,
         area: Some(q * 2.0),
-        excess_excess: None,
         excess_area: None,
         area_area: Some(q.constant(2.0)),
-    }
+    })
 }

@@ -62,22 +62,63 @@ impl<T: Real> Corner<T> {
     /// edges start from, by the chain rule.
     #[inline(always)]
     pub(crate) fn expansion(&self, slopes: &Slopes<T>) -> Dual<T> {
+        match slopes {
+            Slopes::ByShape { inverse_area, shape, value, first, second } => {
+                self.expansion_by_shape(*inverse_area, *shape, *value, *first, *second)
+            }
+            Slopes::ByInvariants(slopes) => self.expansion_by_invariants(slopes),
+        }
+    }
+
+    /// The gradients of the excess and of the area. Moving the vertex changes u by (-1, w) and v by (-w, -1), with
+    /// w = 1/√3: the Hessian of the excess is 2w times the identity. The area is linear.
+    #[inline(always)]
+    fn gradients(&self) -> ([T; 2], [T; 2]) {
         let [u, v] = self.distortion();
-        // Moving the vertex changes u by (-1, w) and v by (-w, -1), w = 1/√3: the Hessian of the excess is
-        // 2/√3 times the identity. The area is linear.
-        let unit = slopes.unit;
-        let (ex, ey) = ((u + v * W) * (-0.5 / W) * unit, (u * W - v) * (0.5 / W) * unit);
-        let (dx, dy) = ((self.a[1] - self.b[1]) * unit, (self.b[0] - self.a[0]) * unit);
+        (
+            [(u + v * W) * (-0.5 / W), (u * W - v) * (0.5 / W)],
+            [self.a[1] - self.b[1], self.b[0] - self.a[0]],
+        )
+    }
+
+    /// [`Self::expansion`] of a function of the shape m = excess / area with its first two derivatives.
+    #[inline(always)]
+    fn expansion_by_shape(
+        &self,
+        inverse_area: T,
+        shape: T,
+        value: T,
+        first: T,
+        second: T,
+    ) -> Dual<T> {
+        let ([ex, ey], [dx, dy]) = self.gradients();
+        // ∇m = (∇excess - m ∇area) / area, and its Hessian is (2w I - ∇m ∇areaᵀ - ∇area ∇mᵀ) / area. The Hessian of
+        // f(m) is f' times that and f'' ∇m ∇mᵀ: ∇m sᵀ + s ∇mᵀ + 2w f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
+        let (mx, my) = ((ex - shape * dx) * inverse_area, (ey - shape * dy) * inverse_area);
+        let (slope, half) = (first * inverse_area, second * 0.5);
+        let (sx, sy) = (half * mx - slope * dx, half * my - slope * dy);
+        let (xx, yy, own) = (mx * sx, my * sy, slope * (2.0 * W));
+        Dual {
+            value,
+            gradient: [first * mx, first * my],
+            hessian: [xx + xx + own, mx * sy + my * sx, yy + yy + own],
+        }
+    }
+
+    /// [`Self::expansion`] of a function of the excess and the area.
+    #[inline(always)]
+    fn expansion_by_invariants(&self, slopes: &InvariantSlopes<T>) -> Dual<T> {
+        let InvariantSlopes { unit, value, excess, area, excess_area, area_area } = *slopes;
+        let ([ex, ey], [dx, dy]) = self.gradients();
+        let (ex, ey, dx, dy) = (ex * unit, ey * unit, dx * unit, dy * unit);
         // The gradients of ∂f/∂excess and ∂f/∂area.
-        let Slopes { excess, area, excess_excess, excess_area, area_area, .. } = *slopes;
-        let px = sum(times(excess_excess, ex), times(excess_area, dx));
-        let py = sum(times(excess_excess, ey), times(excess_area, dy));
+        let (px, py) = (times(excess_area, dx), times(excess_area, dy));
         let rx = sum(times(excess_area, ex), times(area_area, dx));
         let ry = sum(times(excess_area, ey), times(area_area, dy));
-        let own = times(times(excess, unit), u.constant(2.0 * W));
-        let zero = u.constant(0.0);
+        let own = times(times(excess, unit), unit.constant(2.0 * W));
+        let zero = unit.constant(0.0);
         Dual {
-            value: slopes.value,
+            value,
             gradient: [
                 or(sum(times(excess, ex), times(area, dx)), zero),
                 or(sum(times(excess, ey), times(area, dy)), zero),
@@ -147,11 +188,32 @@ pub struct Invariants<T> {
     pub mean: f64,
 }
 
-/// The value of a function of the [`Invariants`] and its partial derivatives, named by what they are taken by. They are
-/// by the invariants times `unit`, so that they have no dimension and neither overflow nor vanish in single precision. `None` is a
-/// derivative that is zero for every triangle.
+/// The value of a function of the [`Invariants`] and its derivatives. The form is the metric's choice: the more special it
+/// is, the less its sweeps cost.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<T> {
+pub enum Slopes<T> {
+    /// A function of the shape m = excess / area alone.
+    ByShape {
+        /// One over the area.
+        inverse_area: T,
+        /// The shape m.
+        shape: T,
+        /// The function itself.
+        value: T,
+        /// The derivative by m.
+        first: T,
+        /// The second derivative by m.
+        second: T,
+    },
+    /// A function of the excess and the area that is linear in the excess.
+    ByInvariants(InvariantSlopes<T>),
+}
+
+/// The value of a function of the excess and the area, linear in the excess, and its partial derivatives, named by what
+/// they are taken by. They are by the invariants times `unit`, so that they have no dimension. `None` is a derivative that
+/// is zero for every triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct InvariantSlopes<T> {
     /// One over an area, of the triangle or of the mean.
     pub unit: T,
     /// The function itself.
@@ -160,8 +222,6 @@ pub struct Slopes<T> {
     pub excess: Option<T>,
     /// The derivative by unit · area.
     pub area: Option<T>,
-    /// The second derivative by unit · excess.
-    pub excess_excess: Option<T>,
     /// The mixed second derivative.
     pub excess_area: Option<T>,
     /// The second derivative by unit · area.

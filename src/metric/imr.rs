@@ -28,19 +28,16 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     m * (m + 2.0)
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Value and derivatives of [`value`].
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let unit = t.area.constant(1.0) / t.area;
-    let m = t.excess * unit;
-    let excess = (m + 1.0) * 2.0;
-    Slopes {
-        unit,
+    let inverse_area = t.area.constant(1.0) / t.area;
+    let m = t.excess * inverse_area;
+    Slopes::ByShape {
+        inverse_area,
+        shape: m,
         value: m * (m + 2.0),
-        excess: Some(excess),
-        area: Some(excess * m * -1.0),
-        excess_excess: Some(m.constant(2.0)),
-        excess_area: Some((m * 2.0 + 1.0) * -2.0),
-        area_area: Some(m * (m * 3.0 + 2.0) * 2.0),
+        first: (m + 1.0) * 2.0,
+        second: m.constant(2.0),
     }
 }

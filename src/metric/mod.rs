@@ -13,7 +13,7 @@ mod scheme;
 mod shape_size;
 mod table;
 
-pub use corner::{Corner, Invariants, Slopes};
+pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};
 pub use properties::{Properties, Stiffness};
 pub use scheme::Scheme;

@@ -1,6 +1,6 @@
 //! The metric RMS, the root mean square of the edge lengths.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
 use crate::metric::properties::{Properties, SQRT_3, Stiffness};
 
@@ -31,13 +31,12 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let one = t.area.constant(1.0);
-    Slopes {
+    Slopes::ByInvariants(InvariantSlopes {
         unit: t.area.constant(1.0 / t.mean),
         value: value(t),
         excess: Some(one),
         area: Some(one),
-        excess_excess: None,
         excess_area: None,
         area_area: None,
-    }
+    })
 }

@@ -2,7 +2,7 @@
 // Quadratic: a Newton step moves the vertex to the mean of its one-ring.
 
 fn rms_value(t: Invariants) -> f32 {
-    return (t.excess + (t.area - t.mean)) / t.mean;
+    return (t.excess + t.area_less_mean) / t.mean;
 }
 
 fn rms_slopes(t: Invariants) -> Slopes {

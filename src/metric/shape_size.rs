@@ -1,6 +1,6 @@
 //! The metric SHAPE-SIZE, of shape and size together.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
 use crate::metric::properties::{Properties, SQRT_3, Stiffness};
 
@@ -39,13 +39,12 @@ pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let inverse = tau.constant(1.0) / tau;
     let square = inverse * inverse;
     let cube = square * inverse;
-    Slopes {
+    Slopes::ByInvariants(InvariantSlopes {
         unit: e.constant(scale),
         value: (e * (square + 1.0) + off * off * inverse) * 2.0,
         excess: Some((square + 1.0) * 2.0),
         area: Some((off * (tau + 1.0) * square - e * cube * 2.0) * 2.0),
-        excess_excess: None,
         excess_area: Some(cube * -4.0),
         area_area: Some((e * inverse * 3.0 + 1.0) * cube * 4.0),
-    }
+    })
 }

@@ -3,7 +3,7 @@
 
 fn shape_size_value(t: Invariants) -> f32 {
     let e = t.excess / t.mean;
-    let off = (t.area - t.mean) / t.mean;
+    let off = t.area_less_mean / t.mean;
     let inverse = t.mean / t.area;
     return 2.0 * (e * (inverse * inverse + 1.0) + off * off * inverse);
 }
@@ -12,7 +12,7 @@ fn shape_size_slopes(t: Invariants) -> Slopes {
     let scale = 1.0 / t.mean;
     let e = t.excess * scale;
     let tau = t.area * scale;
-    let off = (t.area - t.mean) * scale;
+    let off = t.area_less_mean * scale;
     let inverse = t.mean / t.area;
     let square = inverse * inverse;
     let cube = square * inverse;

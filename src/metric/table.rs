@@ -46,16 +46,19 @@ macro_rules! metrics {
             }
         }
 
-        /// As [`with_formulas`], but compiled for each metric by itself: faster, and dearer to compile.
+        /// As [`with_formulas`], but compiled for each metric by itself: faster, and dearer to compile. `$f` is a constant,
+        /// so that a closure in the expression knows the metric as it is compiled; a variable it would capture.
         macro_rules! with_each_metric {
             ($metric:expr, $f:ident => $body:expr) => {
                 match $metric {
                     $crate::metric::Metric::$edge => {
-                        let $f = $crate::metric::OfEdges;
+                        #[allow(non_upper_case_globals)]
+                        const $f: $crate::metric::OfEdges = $crate::metric::OfEdges;
                         $body
                     }
                     $($crate::metric::Metric::$variant => {
-                        let $f = $crate::metric::OfInvariants::$variant;
+                        #[allow(non_upper_case_globals)]
+                        const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::$variant;
                         $body
                     })*
                 }
@@ -131,9 +134,9 @@ pub(crate) trait Formulas: Copy + Sync {
     /// The metric itself, known to the compiler where its formulas are.
     fn metric(self) -> Metric;
 
-    /// The inverse mean ratio of a triangle whose area is positive, from what the metric is a function of, so that the
-    /// compiler can share it.
-    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> T;
+    /// The inverse mean ratio of a triangle whose area is positive, as numerator and denominator, which is the doubled
+    /// area. From what the metric is a function of, so that the compiler can share it.
+    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T);
 
     /// q² - ideal². Sums of it keep their digits on good meshes.
     fn excess<T: Real>(self, corner: &Corner<T>) -> T;
@@ -153,8 +156,8 @@ impl Formulas for OfEdges {
     }
 
     #[inline(always)]
-    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> T {
-        corner.squared_length_sum() * (3f64.sqrt() / 6.0) / corner.doubled_area()
+    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T) {
+        (corner.squared_length_sum() * (3f64.sqrt() / 6.0), corner.doubled_area())
     }
 
     #[inline(always)]
@@ -180,9 +183,9 @@ impl Formulas for OfInvariants {
     }
 
     #[inline(always)]
-    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> T {
+    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T) {
         let t = corner.invariants();
-        (t.excess + t.area) / t.area
+        (t.excess + t.area, t.area)
     }
 
     #[inline(always)]

@@ -32,7 +32,7 @@ struct Found {
 fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
     let body = format!(
         "    sharpness = {SHARPNESS}u;
-    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), x[4]);
+    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), vec2(x[4], 0.0));
     let d = metric_derivatives(t, x[5]);
     let down = descent(d.gradient, d.hessian);
     y = array<f32, 12>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z,

@@ -43,9 +43,7 @@ fn they_are_opened_in_double_precision() {
                 assert!(support::is_ccw(&after), "{label}");
                 let least = f.iter().copied().fold(f64::INFINITY, f64::min);
                 let found = smoother.quality(&outcome.points).unwrap().f(base);
-                // RMS measures by the mean area, of which a device has seven digits.
-                let bound = if on_gpu && base == Metric::Rms { 5e-8 } else { 1e-8 };
-                assert!((found / least - 1.0).abs() < bound, "{label}: {found} for {least}");
+                assert!((found / least - 1.0).abs() < 1e-8, "{label}: {found} for {least}");
                 least
             });
             assert!((best[1] / best[0] - 1.0).abs() < 1e-4, "{}: {best:?}", options.scheme);

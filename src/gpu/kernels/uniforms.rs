@@ -37,8 +37,7 @@ pub(crate) struct Params {
     pub(crate) target_sum: [f32; 2],
     pub(crate) ideal_sum: f32,
     pub(crate) tolerance: f32,
-    pub(crate) mean_area: f32,
-    pub(crate) padding: u32,
+    pub(crate) mean_area: [f32; 2],
 }
 
 /// `Part` in shaders/common.wgsl.

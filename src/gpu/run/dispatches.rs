@@ -257,7 +257,6 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         target_sum: pair(target.unwrap_or(0.0)),
         ideal_sum: ideal_sum as f32,
         tolerance: plan.stop.tolerance as f32,
-        mean_area: problem.mean_area() as f32,
-        padding: 0,
+        mean_area: pair(problem.mean_area()),
     }
 }
