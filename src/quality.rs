@@ -121,10 +121,10 @@ fn one(
     // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
     let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
         (true, false) => f64::INFINITY,
-        (true, true) => metric.quality(&corner).min(f64::MAX.sqrt()),
-        (false, _) => metric.quality(&corner),
+        (true, true) => (metric.excess(&corner) + metric.ideal_squared()).min(f64::MAX),
+        (false, _) => metric.excess(&corner) + metric.ideal_squared(),
     };
-    let sums = std::array::from_fn(|i| judged(Metric::ALL[i]).powi(2));
+    let sums = std::array::from_fn(|i| judged(Metric::ALL[i]));
     let doubled = corner.doubled_area().abs();
     let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
     let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
