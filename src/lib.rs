@@ -111,12 +111,12 @@ pub mod internal;
 
 pub use choice::Reason;
 pub use error::{BadTriangle, GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
-pub use file::{AbandonedWrites, Format, MeshFile, Place, abandon_writes};
+pub use file::{AbandonedWrites, Difference, Format, MeshFile, Place, abandon_writes};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,
 };
-pub use mesh::Mesh;
+pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, Stiffness, UnknownMetric};
 pub use quality::Quality;
 pub use run::{

@@ -1,5 +1,33 @@
 //! The mesh that a caller supplies.
 
+/// How many digits the coordinates of a mesh are stored with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// About seven digits, as in files of 32-bit floats.
+    Single,
+    /// About sixteen digits.
+    #[default]
+    Double,
+}
+
+impl Precision {
+    /// How many bytes a number has in binary.
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Precision::Single => 4,
+            Precision::Double => 8,
+        }
+    }
+
+    /// The number that is read back after this one was stored.
+    pub fn rounded(self, number: f64) -> f64 {
+        match self {
+            Precision::Single => f64::from(number as f32),
+            Precision::Double => number,
+        }
+    }
+}
+
 /// A 2D triangle mesh: double-precision positions and vertex triples, in the order of their file or application.
 ///
 /// Nothing about it is checked here: windings may be mixed and vertices unused.

@@ -210,6 +210,9 @@ impl<'a> Smoother<'a> {
             (0..end.history.len()).fold(0, better)
         };
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
+        for x in points.as_flattened_mut() {
+            *x = options.stored.rounded(*x);
+        }
         let mut returned = self.certify(&mut points)?;
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.

@@ -32,6 +32,22 @@ impl Order {
     }
 
     #[inline]
+    pub(crate) fn f32(self, bytes: [u8; 4]) -> f32 {
+        match self {
+            Order::Little => f32::from_le_bytes(bytes),
+            Order::Big => f32::from_be_bytes(bytes),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn single_bytes(self, number: f32) -> [u8; 4] {
+        match self {
+            Order::Little => number.to_le_bytes(),
+            Order::Big => number.to_be_bytes(),
+        }
+    }
+
+    #[inline]
     pub(crate) fn bytes(self, number: f64) -> [u8; 8] {
         match self {
             Order::Little => number.to_le_bytes(),

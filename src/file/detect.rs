@@ -1,7 +1,7 @@
 //! Which format a file is in, by its content first and its ending second.
 
 use crate::error::ReadError;
-use crate::file::format::{Format, has_ending};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, Reader, TRIANGLE};
 use crate::file::source::{Source, file_name};
 use crate::file::text::{Cursor, integer};
 use crate::file::triangle::{Names, appended};
@@ -9,62 +9,38 @@ use std::path::{Path, PathBuf};
 
 /// What a file holds, of the formats with a reader.
 pub(crate) enum Content {
-    Gmsh,
+    /// A mesh in one file.
+    Of(&'static Reader),
     Triangle(Names),
 }
 
-/// A format without a reader, so that messages can name it.
-struct Foreign {
-    name: &'static str,
-    endings: &'static [&'static str],
-    /// What a file of the format may start with, after blanks and `%` comment lines.
-    opens: &'static [&'static [u8]],
-}
-
-const fn foreign(
-    name: &'static str,
-    endings: &'static [&'static str],
-    opens: &'static [&'static [u8]],
-) -> Foreign {
-    Foreign { name, endings, opens }
-}
-
-const FOREIGN: [Foreign; 15] = [
-    foreign("legacy VTK", &[".vtk"], &[b"# vtk DataFile"]),
-    foreign("VTK XML", &[".vtu", ".vtp", ".pvtu"], &[b"<VTKFile", b"<?xml"]),
-    foreign("SU2", &[".su2"], &[b"NDIME", b"NZONE", b"IZONE"]),
-    foreign("Medit", &[".mesh"], &[b"MeshVersionFormatted"]),
-    foreign("binary Medit", &[".meshb"], &[&[1, 0, 0, 0], &[0, 0, 0, 1]]),
-    foreign("OFF", &[".off"], &[b"OFF", b"COFF", b"NOFF"]),
-    foreign("SMS 2dm", &[".2dm"], &[b"MESH2D"]),
-    foreign("SELAFIN", &[".slf"], &[&[0, 0, 0, 80]]),
-    foreign("Wavefront OBJ", &[".obj"], &[b"v ", b"mtllib "]),
-    foreign("STL", &[".stl"], &[b"solid "]),
-    foreign("PLY", &[".ply"], &[b"ply\n", b"ply\r"]),
-    foreign("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"]),
-    foreign("netCDF or HDF5", &[".exo", ".med", ".cgns"], &[b"CDF", b"\x89HDF"]),
-    foreign("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"]),
-    // Files of it start with a free title: `by_rows` tells it.
-    foreign("ADCIRC or SCHISM grid", &["fort.14", ".gr3", ".grd"], &[]),
-];
-
 /// Finds the format of a file. The error names what else it holds, if that is known.
 pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
-    let head = head(&source.bytes);
+    let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
-    if head.starts_with(b"$MeshFormat") || head.starts_with(b"$Comments") {
-        return Ok(Content::Gmsh);
+    // Its title may start with anything.
+    if ADCIRC.has_ending_of(&source.path) {
+        return of(source, &ADCIRC);
     }
-    let opens = |magic: &&[u8]| head.starts_with(magic) || source.bytes.starts_with(magic);
-    if let Some(foreign) = FOREIGN.iter().find(|foreign| foreign.opens.iter().any(opens)) {
-        return Err(not_read(source, foreign.name));
+    // Comments that `#` starts are looked behind too, but one of VTK's is its name.
+    let heads = [head, &source.bytes, self::head(head, b"%#")];
+    let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
+    let promised = |family: &&&Family| family.has_ending_of(&source.path);
+    let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
+    if let Some(family) = by_content().find(promised).or_else(|| by_content().next()) {
+        return of(source, family);
     }
-    if Format::Triangle.has_ending_of(&source.path) {
+    if TRIANGLE.has_ending_of(&source.path) {
         return Ok(Content::Triangle(Names::of(&source.path)));
     }
-    by_rows(source)
+    // Of the others that are told by their rows, those whose ending is theirs alone.
+    let by_ending = |family: &&&Family| promised(family) && family.endings != FREEFEM.endings;
+    match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
+        Some(family) => of(source, family),
+        None => by_rows(source),
+    }
 }
 
 /// Tells formats apart that consist only of rows of numbers, by how many numbers the first rows have.
@@ -98,37 +74,39 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
         _ => {}
     }
     if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
-        return Err(not_read(source, "FreeFem .msh"));
+        return of(source, &FREEFEM);
     }
     let counts = second.get(..2).and_then(numbers);
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
-        return Err(not_read(source, FOREIGN[FOREIGN.len() - 1].name));
+        return of(source, &ADCIRC);
     }
     Err(source.error("the format is not recognized", formats_read()))
 }
 
 /// The name of the format, with a reader or without, whose files end as this path does.
-pub(crate) fn owner_of_ending(path: &Path) -> Option<String> {
-    let format = Format::ALL.iter().find(|format| format.has_ending_of(path));
-    format.map(ToString::to_string).or_else(|| {
-        let foreign = FOREIGN.iter().find(|foreign| has_ending(path, foreign.endings));
-        foreign.map(|foreign| foreign.name.to_owned())
-    })
+pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
+    let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
+    family.map(|family| family.name)
 }
 
-fn not_read(source: &Source, name: &str) -> ReadError {
-    source.error(format!("not read yet: {name}"), formats_read())
+fn of(source: &Source, family: &'static Family) -> Result<Content, ReadError> {
+    match &family.reader {
+        Some(reader) => Ok(Content::Of(reader)),
+        None => Err(source.error(format!("not read yet: {}", family.name), formats_read())),
+    }
 }
 
 fn formats_read() -> String {
-    let names: Vec<_> = Format::ALL.iter().map(ToString::to_string).collect();
+    let read = FAMILIES.iter().filter(|family| family.is_read());
+    let names: Vec<_> = read.map(|family| family.name).collect();
     format!("Formats read: {}", names.join(", "))
 }
 
-/// The content without what may stand before its first words: a byte order mark, blanks and `%` comment lines.
-fn head(bytes: &[u8]) -> &[u8] {
+/// The content without what may stand before its first words: a byte order mark, blanks and lines that start with one of
+/// the bytes of `comments`.
+fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     let mut head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
-    while head.starts_with(b"%") {
+    while head.first().is_some_and(|first| comments.contains(first)) {
         let end = memchr::memchr(b'\n', head).unwrap_or(head.len());
         head = head[end..].trim_ascii_start();
     }
@@ -161,7 +139,10 @@ mod tests {
     fn problem(name: &str, content_bytes: &[u8]) -> String {
         let source = Source { path: name.into(), bytes: content_bytes.to_vec() };
         match content(&source) {
-            Ok(Content::Gmsh) => "gmsh".into(),
+            Ok(Content::Of(reader)) => {
+                let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
+                FAMILIES.iter().find(of).unwrap().name.into()
+            }
             Ok(Content::Triangle(_)) => "triangle".into(),
             Err(ReadError::Format { problem, .. }) => problem,
             Err(error) => error.to_string(),
@@ -172,26 +153,28 @@ mod tests {
     fn content_comes_before_the_ending() {
         assert_eq!(problem("a.node", b"\n $MeshFormat\n"), "gmsh");
         assert_eq!(problem("a.msh", b"\xEF\xBB\xBF$MeshFormat\r\n"), "gmsh");
-        assert_eq!(problem("a.node", b"# vtk DataFile Version 2.0\n"), "not read yet: legacy VTK");
+        assert_eq!(problem("a.node", b"# vtk DataFile Version 2.0\n"), "legacy VTK");
         assert_eq!(problem("a.node", b"# made by hand\n3 2 0 0\n"), "triangle");
         assert_eq!(problem("a.ELE", b"1 3 0\n"), "triangle");
     }
 
     #[test]
-    fn formats_without_a_reader_are_named() {
-        let cases: [(&[u8], &str); 9] = [
+    fn formats_are_known_by_their_content() {
+        let cases: [(&[u8], &str); 11] = [
             (b"<?xml version=\"1.0\"?>", "VTK XML"),
+            (b"solid part\n", "not read yet: STL"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),
             (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),
             (b"OFF\n3 1 0\n", "OFF"),
+            (b"# made by hand\n#\no part\nv 0 0 0\n", "Wavefront OBJ"),
             (b"MESH2D\nE3T 1 1 2 3 1\n", "SMS 2dm"),
             (b"\0\0\0\x50River", "SELAFIN"),
             (b" 3 1 3\n 0.0 0.0 1\n", "FreeFem .msh"),
             (b"title\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
         ];
         for (bytes, name) in cases {
-            assert_eq!(problem("mesh.dat", bytes), format!("not read yet: {name}"));
+            assert_eq!(problem("mesh.dat", bytes), name);
         }
         assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
@@ -200,10 +183,10 @@ mod tests {
     #[test]
     fn endings_have_owners() {
         let owner = |name: &str| owner_of_ending(Path::new(name));
-        assert_eq!(owner("a/B.VTK").as_deref(), Some("legacy VTK"));
-        assert_eq!(owner("la.1.ele").as_deref(), Some("Triangle .node/.ele"));
-        assert_eq!(owner("fort.14").as_deref(), Some("ADCIRC or SCHISM grid"));
-        assert_eq!(owner("la.14"), None);
+        assert_eq!(owner("a/B.VTK"), Some("legacy VTK"));
+        assert_eq!(owner("la.1.ele"), Some("Triangle .node/.ele"));
+        assert_eq!(owner("fort.14"), Some("ADCIRC or SCHISM grid"));
+        assert_eq!(owner("la.15"), None);
         assert_eq!(owner("la"), None);
     }
 }

@@ -1,8 +1,6 @@
-//! The formats that are read and written, and what each is known by.
+//! The formats that are read and written.
 
-use crate::file::source::file_name;
 use std::fmt;
-use std::path::Path;
 
 /// A file format that is read and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,67 +13,96 @@ pub enum Format {
     Gmsh22,
     /// gmsh's `.msh`, versions 2.0 to 2.2, in binary.
     Gmsh22Binary,
+    /// gmsh's `.msh`, version 4.0, as text.
+    Gmsh40,
     /// gmsh's `.msh`, version 4.1, as text.
     Gmsh41,
     /// gmsh's `.msh`, version 4.1, in binary.
     Gmsh41Binary,
-}
-
-/// What is to be known of a format besides its reader.
-struct Row {
-    /// For messages.
-    name: &'static str,
-    /// Endings of file names that promise this format, the usual one first.
-    endings: &'static [&'static str],
-    /// Which of the mesh's files lists the triangles; the first one has the vertices.
-    file_with_triangles: usize,
+    /// VTK's legacy `.vtk`, versions 1.0 to 5.1, as text.
+    Vtk,
+    /// VTK's legacy `.vtk`, versions 1.0 to 5.1, in binary.
+    VtkBinary,
+    /// VTK's XML format of unstructured grids, `.vtu`.
+    Vtu,
+    /// SU2's `.su2`.
+    Su2,
+    /// Medit's `.mesh`.
+    Medit,
+    /// Medit's `.meshb`, versions 1 to 4.
+    MeditBinary,
+    /// Wavefront's `.obj`.
+    Obj,
+    /// Geomview's `.off`, as text.
+    Off,
+    /// PLY, as text.
+    Ply,
+    /// PLY, in binary of either byte order.
+    PlyBinary,
+    /// The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
+    Adcirc,
+    /// SMS's `.2dm`.
+    Sms2dm,
+    /// FreeFem's `.msh`.
+    FreeFem,
+    /// TELEMAC's SELAFIN, in either byte order and precision.
+    Selafin,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 5] = [
+    pub const ALL: [Format; 20] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
+        Format::Gmsh40,
         Format::Gmsh41,
         Format::Gmsh41Binary,
+        Format::Vtk,
+        Format::VtkBinary,
+        Format::Vtu,
+        Format::Su2,
+        Format::Medit,
+        Format::MeditBinary,
+        Format::Obj,
+        Format::Off,
+        Format::Ply,
+        Format::PlyBinary,
+        Format::Adcirc,
+        Format::Sms2dm,
+        Format::FreeFem,
+        Format::Selafin,
     ];
 
-    fn row(self) -> Row {
-        let row = |name, endings, file_with_triangles| Row { name, endings, file_with_triangles };
+    /// The name for messages.
+    const fn name(self) -> &'static str {
         match self {
-            Format::Triangle => row("Triangle .node/.ele", &[".node", ".ele"], 1),
-            Format::Gmsh22 => row("gmsh 2.2 ASCII", &[".msh"], 0),
-            Format::Gmsh22Binary => row("gmsh 2.2 binary", &[".msh"], 0),
-            Format::Gmsh41 => row("gmsh 4.1 ASCII", &[".msh"], 0),
-            Format::Gmsh41Binary => row("gmsh 4.1 binary", &[".msh"], 0),
+            Format::Triangle => "Triangle .node/.ele",
+            Format::Gmsh22 => "gmsh 2.2 ASCII",
+            Format::Gmsh22Binary => "gmsh 2.2 binary",
+            Format::Gmsh40 => "gmsh 4.0 ASCII",
+            Format::Gmsh41 => "gmsh 4.1 ASCII",
+            Format::Gmsh41Binary => "gmsh 4.1 binary",
+            Format::Vtk => "legacy VTK ASCII",
+            Format::VtkBinary => "legacy VTK binary",
+            Format::Vtu => "VTK XML",
+            Format::Su2 => "SU2",
+            Format::Medit => "Medit ASCII",
+            Format::MeditBinary => "Medit binary",
+            Format::Obj => "Wavefront OBJ",
+            Format::Off => "OFF",
+            Format::Ply => "PLY ASCII",
+            Format::PlyBinary => "PLY binary",
+            Format::Adcirc => "ADCIRC or SCHISM grid",
+            Format::Sms2dm => "SMS 2dm",
+            Format::FreeFem => "FreeFem .msh",
+            Format::Selafin => "SELAFIN",
         }
-    }
-
-    /// The ending that files of this format usually have.
-    pub(crate) fn usual_ending(self) -> &'static str {
-        self.row().endings[0]
-    }
-
-    /// Which of the mesh's files lists the triangles.
-    pub(crate) fn file_with_triangles(self) -> usize {
-        self.row().file_with_triangles
-    }
-
-    /// Whether the path ends as files of this format do.
-    pub(crate) fn has_ending_of(self, path: &Path) -> bool {
-        has_ending(path, self.row().endings)
     }
 }
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.row().name)
+        f.write_str(self.name())
     }
-}
-
-/// Whether the path has one of these endings, given in lower case; the path's own case does not matter.
-pub(crate) fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let name = file_name(path).to_ascii_lowercase();
-    endings.iter().any(|ending| name.ends_with(ending))
 }

@@ -1,19 +1,20 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
 use crate::error::{Location, ReadError, WriteError};
-use crate::file::binary::Order;
 use crate::file::detect::{self, Content};
+use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
-use crate::file::gmsh;
+use crate::file::numbers::{Encoded, Numbers};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
 use crate::file::source::Source;
 use crate::file::triangle::{self, Names};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Precision};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
@@ -47,6 +48,12 @@ impl fmt::Display for Place {
 /// | Triangle | attributes in the `.ele`, all that its first line announces, compared as numbers |
 /// | gmsh 2.2 | first and second tag: physical group and geometrical entity |
 /// | gmsh 4.1 | entity of the model, and so the physical groups of that entity |
+/// | Medit, FreeFem | reference |
+/// | SMS 2dm | material |
+/// | OBJ | material, group and object |
+/// | SU2 | zone |
+/// | VTK | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
+/// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
 /// [`Mesh::fixed`], so that regions keep their shapes. Two surfaces of a model are two regions even where they belong to
@@ -57,8 +64,10 @@ pub struct MeshFile {
     notes: Vec<String>,
     /// The byte at which the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
-    /// The byte order of the file's numbers, if they are not text.
-    order: Option<Order>,
+    /// How the first of the sources has the coordinates.
+    numbers: Numbers,
+    /// The points, if the first of the sources has them encoded.
+    encoded: Option<Box<dyn Encoded>>,
     regions: Option<Vec<u32>>,
     /// Vertices fixed only for lying between regions. The mesh's list of fixed vertices ends with them.
     interfaces: Vec<u32>,
@@ -79,7 +88,7 @@ impl MeshFile {
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
         let names = Names::of(path);
         let has_half = names.node.is_file() || names.ele.is_file();
-        let has_ending = Format::Triangle.has_ending_of(path);
+        let has_ending = TRIANGLE.has_ending_of(path);
         if has_half && !has_ending && !path.is_file() {
             return Self::read(&names.node);
         }
@@ -88,7 +97,7 @@ impl MeshFile {
             given => given?,
         };
         let file = match detect::content(&given)? {
-            Content::Gmsh => Self::new(gmsh::parse(&given)?, vec![given]),
+            Content::Of(reader) => Self::new((reader.parse)(&given)?, vec![given]),
             Content::Triangle(names) => Self::read_triangle(given, &names)?,
         };
         if file.mesh.triangles.is_empty() {
@@ -116,14 +125,14 @@ impl MeshFile {
     }
 
     fn new(parsed: Parsed, sources: Vec<Source>) -> MeshFile {
-        let Parsed { format, mut mesh, x_at, order, regions, notes } = parsed;
+        let Parsed { format, mut mesh, x_at, numbers, encoded, regions, notes } = parsed;
         let Mesh { points, triangles, fixed } = &mut mesh;
         let interfaces = regions
             .as_ref()
             .map(|regions| interface_vertices(regions, triangles, points.len(), fixed))
             .unwrap_or_default();
         fixed.extend_from_slice(&interfaces);
-        MeshFile { mesh, format, notes, x_at, order, regions, interfaces, sources }
+        MeshFile { mesh, format, notes, x_at, numbers, encoded, regions, interfaces, sources }
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -169,6 +178,34 @@ impl MeshFile {
         self.format
     }
 
+    pub(crate) fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+
+    pub(crate) fn x_at(&self) -> &[usize] {
+        &self.x_at
+    }
+
+    pub(crate) fn numbers(&self) -> Numbers {
+        self.numbers
+    }
+
+    /// The bytes that hold the coordinates, if they are not those of the file.
+    pub(crate) fn encoded_bytes(&self) -> Option<&[u8]> {
+        self.encoded.as_deref().map(Encoded::bytes)
+    }
+
+    /// The ranges of the file that depend on the coordinates, if it has them encoded; ascending.
+    pub(crate) fn encoded_ranges(&self) -> Option<Vec<Range<usize>>> {
+        self.encoded.as_deref().map(Encoded::ranges)
+    }
+
+    /// How many digits of coordinates the file holds. [`write`](Self::write) rounds to them; for
+    /// [`Options::stored`](crate::Options::stored), so that a run judges the values as they will be written.
+    pub fn precision(&self) -> Precision {
+        self.numbers.precision()
+    }
+
     /// Remarks for the user on what the file holds besides triangles, one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -191,11 +228,9 @@ impl MeshFile {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.x_at.len());
         let source = &self.sources[0];
-        let found = match self.format {
-            Format::Triangle => {
-                triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v]))
-            }
-            _ => gmsh::vertex_places(source, &wanted),
+        let found = match &Family::of(self.format).reader {
+            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),
+            Some(reader) => (reader.vertex_places)(source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };
         wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
@@ -220,10 +255,10 @@ impl MeshFile {
     ) -> BTreeMap<usize, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
         keep_ascending(&mut wanted, self.mesh.triangles.len());
-        let source = &self.sources[self.format.file_with_triangles()];
-        let found = match self.format {
-            Format::Triangle => triangle::triangle_places(source, &wanted),
-            _ => gmsh::triangle_places(source, &wanted),
+        let source = &self.sources[usize::from(self.format == Format::Triangle)];
+        let found = match &Family::of(self.format).reader {
+            None => triangle::triangle_places(source, &wanted),
+            Some(reader) => (reader.triangle_places)(source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };
         wanted.iter().copied().zip(found.into_iter().map(place)).collect()
@@ -248,9 +283,22 @@ impl MeshFile {
         for (part, (destination, source)) in destinations.zip(&self.sources).enumerate() {
             // Only the first file holds vertices.
             let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-            let (bytes, old) = (&source.bytes, &self.mesh.points);
-            let rewrite = Rewrite { bytes, x_at, order: self.order, old, new: points };
-            jobs.push((destination, Box::new(move |out| rewrite.write(out))));
+            let (numbers, old) = (self.numbers, &self.mesh.points);
+            let rewrite = |bytes| Rewrite { bytes, x_at, numbers, old, new: points };
+            let encoded = self.encoded.as_deref().filter(|_| part == 0);
+            jobs.push((
+                destination,
+                match encoded {
+                    None => {
+                        let rewrite = rewrite(&source.bytes);
+                        Box::new(move |out| rewrite.write(out))
+                    }
+                    Some(encoded) => {
+                        let rewrite = rewrite(encoded.bytes());
+                        Box::new(move |out| rewrite.write_encoded(&source.bytes, encoded, out))
+                    }
+                },
+            ));
         }
         replace::replace_all(&jobs)
     }
@@ -270,7 +318,7 @@ impl MeshFile {
     /// # Errors
     /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let usual = self.format.usual_ending();
+        let usual = Family::of(self.format).endings[0];
         let refused = |problem: String, remedy: String| {
             Err(WriteError::Format { path: path.to_owned(), problem, remedy })
         };
@@ -282,7 +330,7 @@ impl MeshFile {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
         }
         if let Some(owner) = detect::owner_of_ending(path)
-            && !self.format.has_ending_of(path)
+            && !Family::of(self.format).has_ending_of(path)
         {
             let problem = format!("its ending is that of {owner}, but the mesh is {}", self.format);
             return refused(problem, format!("Formats are not converted: end the name in {usual}"));
@@ -302,7 +350,9 @@ impl MeshFile {
         if points.len() != vertices {
             return refused(format!("{} points given for {vertices} vertices", points.len()));
         }
-        match points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
+        let precision = self.numbers.precision();
+        let is_finite = |&x: &f64| precision.rounded(x).is_finite();
+        match points.iter().position(|point| !point.iter().all(is_finite)) {
             Some(index) => {
                 let [x, y] = points[index];
                 refused(format!("the point given for vertex index {index} is ({x}, {y})"))

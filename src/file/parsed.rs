@@ -1,7 +1,7 @@
 //! What a format's reader makes of a mesh's files.
 
-use crate::file::binary::Order;
 use crate::file::format::Format;
+use crate::file::numbers::{Encoded, Numbers};
 use crate::mesh::Mesh;
 
 /// What a reader returns.
@@ -11,8 +11,10 @@ pub(crate) struct Parsed {
     pub(crate) mesh: Mesh,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
     pub(crate) x_at: Vec<usize>,
-    /// The byte order of the file's numbers, if they are not text.
-    pub(crate) order: Option<Order>,
+    /// How the file has its coordinates.
+    pub(crate) numbers: Numbers,
+    /// The points, if they are encoded.
+    pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// The region of each triangle, or none if all are of one.
     pub(crate) regions: Option<Vec<u32>>,
     /// One-line remarks for the user.

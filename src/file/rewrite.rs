@@ -1,7 +1,9 @@
 //! Writes a file again with the coordinates of moved vertices replaced.
 
 use crate::file::binary::Order;
-use crate::file::text::{skip_blanks, token_end};
+use crate::file::numbers::{Encoded, Numbers};
+use crate::file::text::{skip_to_token, token_end};
+use crate::mesh::Precision;
 use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
@@ -13,11 +15,10 @@ const BLOCK: usize = 2048;
 pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
-    /// Where each vertex's x starts, ascending; its y is the token or number after it. Empty for a file without
-    /// vertices.
+    /// Where each vertex's x starts, ascending. Empty for a file without vertices.
     pub(crate) x_at: &'a [usize],
-    /// The byte order of the file's numbers, if they are not text.
-    pub(crate) order: Option<Order>,
+    /// How the coordinates stand there.
+    pub(crate) numbers: Numbers,
     /// The coordinates as they were read.
     pub(crate) old: &'a [[f64; 2]],
     /// The coordinates to be written.
@@ -28,35 +29,76 @@ impl Rewrite<'_> {
     /// Writes the content to `out`, with those coordinates replaced whose bits differ between `old` and `new`.
     pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         let vertices = self.x_at.len();
+        if let Numbers::Binary { order, precision, y_after } = self.numbers
+            && y_after != precision.bytes()
+            && vertices > 0
+        {
+            return out.write_all(&self.in_two_lists(order, precision, y_after));
+        }
         write_blocks(out, vertices.div_ceil(BLOCK), |block| {
             self.block(block * BLOCK..vertices.min((block + 1) * BLOCK))
         })?;
         out.write_all(&self.bytes[self.start_of(vertices)..])
     }
 
+    /// Writes `file` to `out`, with the content of this rewrite encoded in it where that changed.
+    pub(crate) fn write_encoded(
+        &self,
+        file: &[u8],
+        encoded: &dyn Encoded,
+        out: &mut (dyn Write + Send),
+    ) -> io::Result<()> {
+        let mut new = Vec::with_capacity(self.bytes.len());
+        self.write(&mut new)?;
+        let mut copied = 0;
+        if new != self.bytes {
+            for splice in encoded.splices(&new) {
+                out.write_all(&file[copied..splice.range.start])?;
+                out.write_all(&splice.bytes)?;
+                copied = splice.range.end;
+            }
+        }
+        out.write_all(&file[copied..])
+    }
+
     /// The new content of some vertices, up to the first vertex after them.
     fn block(&self, vertices: Range<usize>) -> Vec<u8> {
-        match self.order {
-            None => self.block_of_text(vertices),
-            Some(order) => self.block_of_numbers(order, vertices),
+        match self.numbers {
+            Numbers::Text { precision } => self.block_of_text(precision, vertices),
+            Numbers::Binary { order, precision, .. } => {
+                self.block_of_numbers(order, precision, vertices)
+            }
         }
     }
 
-    fn block_of_numbers(&self, order: Order, vertices: Range<usize>) -> Vec<u8> {
+    fn block_of_numbers(
+        &self,
+        order: Order,
+        precision: Precision,
+        vertices: Range<usize>,
+    ) -> Vec<u8> {
         let start = self.start_of(vertices.start);
         let mut out = self.bytes[start..self.start_of(vertices.end)].to_vec();
         for v in vertices {
-            let numbers = out[self.x_at[v] - start..].as_chunks_mut().0;
-            for ((old, new), number) in self.old[v].iter().zip(self.new[v]).zip(numbers) {
-                if old.to_bits() != new.to_bits() {
-                    *number = order.bytes(new);
-                }
+            let x_at = self.x_at[v] - start;
+            for (axis, (old, new)) in self.old[v].iter().zip(self.new[v]).enumerate() {
+                put(&mut out, x_at + axis * precision.bytes(), order, precision, *old, new);
             }
         }
         out
     }
 
-    fn block_of_text(&self, vertices: Range<usize>) -> Vec<u8> {
+    /// The new content of a file that lists y elsewhere than x.
+    fn in_two_lists(&self, order: Order, precision: Precision, y_after: usize) -> Vec<u8> {
+        let mut out = self.bytes.to_vec();
+        for ((&x_at, old), new) in self.x_at.iter().zip(self.old).zip(self.new) {
+            put(&mut out, x_at, order, precision, old[0], new[0]);
+            put(&mut out, x_at + y_after, order, precision, old[1], new[1]);
+        }
+        out
+    }
+
+    fn block_of_text(&self, precision: Precision, vertices: Range<usize>) -> Vec<u8> {
         let Rewrite { bytes, x_at, old, new, .. } = self;
         let mut copied = self.start_of(vertices.start);
         let end_of_block = self.start_of(vertices.end);
@@ -64,12 +106,17 @@ impl Rewrite<'_> {
         for v in vertices {
             let mut start = x_at[v];
             for (old, new) in old[v].iter().zip(new[v]) {
-                start = skip_blanks(bytes, start);
+                start = skip_to_token(bytes, start);
                 let end = token_end(bytes, start);
+                let new = precision.rounded(new);
                 if old.to_bits() != new.to_bits() {
                     out.extend_from_slice(&bytes[copied..start]);
                     // The fewest digits that parse back to the same bits.
-                    write!(out, "{new:?}").expect("memory takes what is written to it");
+                    match precision {
+                        Precision::Double => write!(out, "{new:?}"),
+                        Precision::Single => write!(out, "{:?}", new as f32),
+                    }
+                    .expect("memory takes what is written to it");
                     copied = end;
                 }
                 start = end;
@@ -85,13 +132,27 @@ impl Rewrite<'_> {
         match vertex.checked_sub(1) {
             None => 0,
             Some(before) if vertex == self.x_at.len() => {
-                if self.order.is_some() {
-                    return self.x_at[before] + 16;
+                if let Numbers::Binary { precision, .. } = self.numbers {
+                    return self.x_at[before] + 2 * precision.bytes();
                 }
-                let y_at = skip_blanks(self.bytes, token_end(self.bytes, self.x_at[before]));
+                let y_at = skip_to_token(self.bytes, token_end(self.bytes, self.x_at[before]));
                 token_end(self.bytes, y_at)
             }
             Some(_) => self.x_at[vertex],
+        }
+    }
+}
+
+/// Replaces a number in binary if it moved.
+#[inline]
+fn put(out: &mut [u8], at: usize, order: Order, precision: Precision, old: f64, new: f64) {
+    let new = precision.rounded(new);
+    if old.to_bits() != new.to_bits() {
+        match precision {
+            Precision::Single => {
+                out[at..][..4].copy_from_slice(&order.single_bytes(new as f32));
+            }
+            Precision::Double => out[at..][..8].copy_from_slice(&order.bytes(new)),
         }
     }
 }
@@ -122,7 +183,7 @@ mod tests {
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let mut out = Vec::new();
-        Rewrite { bytes, x_at, order: None, old, new }.write(&mut out).unwrap();
+        Rewrite { bytes, x_at, numbers: Numbers::TEXT, old, new }.write(&mut out).unwrap();
         out
     }
 

@@ -3,6 +3,7 @@
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
 use std::fmt::Display;
+use std::ops::Range;
 
 /// What to do about a single wrong line.
 pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
@@ -13,6 +14,7 @@ const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
 
 /// Walks over the rows of a file, which are the lines that hold more than blanks and a `#` comment. In a binary file it
 /// takes bytes between the lines.
+#[derive(Clone)]
 pub(crate) struct Cursor<'a> {
     pub(crate) source: &'a Source,
     /// The source's bytes up to where this cursor ends.
@@ -23,13 +25,41 @@ pub(crate) struct Cursor<'a> {
     line: usize,
     /// Where the bytes last taken start. None in a text file.
     taken: Option<usize>,
+    /// What, besides `#`, starts a line that is no row.
+    comment: u8,
 }
 
 impl<'a> Cursor<'a> {
     /// Stands before the first row.
     pub(crate) fn new(source: &'a Source) -> Self {
         let at = if source.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        Cursor { source, bytes: &source.bytes, at, line: 0, taken: None }
+        Cursor { source, bytes: &source.bytes, at, line: 0, taken: None, comment: b'#' }
+    }
+
+    /// Stands on the line of a byte, for messages.
+    pub(crate) fn standing_at(source: &'a Source, at: usize) -> Self {
+        let mut cursor = Cursor::new(source);
+        (cursor.at, cursor.line) = (at, source.line_of(at));
+        cursor
+    }
+
+    /// Stands before a byte of a binary file, for messages.
+    pub(crate) fn at_byte_of(source: &'a Source, at: usize) -> Self {
+        let mut cursor = Cursor::new(source);
+        (cursor.at, cursor.taken) = (at, Some(at));
+        cursor
+    }
+
+    /// Stands before the first row of a range of the file, of which it sees no more.
+    pub(crate) fn within(source: &'a Source, range: Range<usize>) -> Self {
+        let mut cursor = Cursor::standing_at(source, range.start);
+        cursor.bytes = &source.bytes[..range.end];
+        cursor
+    }
+
+    /// Lines that start with this byte are no rows either.
+    pub(crate) fn with_comments(self, comment: u8) -> Self {
+        Cursor { comment, ..self }
     }
 
     /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
@@ -40,7 +70,7 @@ impl<'a> Cursor<'a> {
         while parts.len() < count && at < self.bytes.len() {
             let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
             let bytes = &self.bytes[..end];
-            parts.push(Cursor { source: self.source, bytes, at, line: 0, taken: None });
+            parts.push(Cursor { bytes, at, line: 0, taken: None, ..*self });
             at = end;
         }
         parts
@@ -83,6 +113,16 @@ impl<'a> Cursor<'a> {
         Some(taken)
     }
 
+    /// Passes over bytes that are there, without counting them as taken.
+    pub(crate) fn pass(&mut self, count: usize) {
+        self.at += count;
+    }
+
+    /// Where the bytes start that are taken next.
+    pub(crate) fn at_byte(&self) -> usize {
+        self.next_line()
+    }
+
     /// Where the bytes last taken start.
     #[inline]
     pub(crate) fn taken(&self) -> usize {
@@ -104,10 +144,74 @@ impl<'a> Cursor<'a> {
             }
             self.line += 1;
             self.at = skip_blanks(bytes, self.at);
-            if !matches!(bytes.get(self.at), None | Some(b'\n' | b'#')) {
-                return true;
+            match bytes.get(self.at) {
+                None | Some(b'\n' | b'#') => {}
+                Some(&first) if first == self.comment => {}
+                Some(_) => return true,
             }
         }
+    }
+
+    /// Moves to the next of `count` rows, `done` of which were read.
+    #[inline]
+    pub(crate) fn row(&mut self, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
+        if self.next_row() {
+            return Ok(());
+        }
+        Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
+    }
+
+    /// How many rows follow.
+    pub(crate) fn rows(mut self) -> u64 {
+        let mut rows = 0;
+        while self.next_row() {
+            rows += 1;
+        }
+        rows
+    }
+
+    /// Takes the next line whole, without what ends it, be it a row or not.
+    pub(crate) fn line(&mut self) -> Option<&'a [u8]> {
+        let start = self.next_line();
+        if start == self.bytes.len() {
+            return None;
+        }
+        let end = line_end(self.bytes, start);
+        self.line += 1;
+        // On the line feed, so that the next line is the one after it.
+        self.at = end - usize::from(self.bytes[..end].ends_with(b"\n"));
+        Some(self.bytes[start..end].trim_ascii_end())
+    }
+
+    /// The rest of the row, without blanks around it.
+    pub(crate) fn rest(&mut self) -> &'a [u8] {
+        let end = line_end(self.bytes, self.at);
+        let rest = self.bytes[self.at..end].trim_ascii();
+        self.at = end - usize::from(self.bytes[..end].ends_with(b"\n"));
+        rest
+    }
+
+    /// Whether the next token of the row starts with a letter.
+    pub(crate) fn is_at_letter(&self) -> bool {
+        self.bytes.get(skip_blanks(self.bytes, self.at)).is_some_and(u8::is_ascii_alphabetic)
+    }
+
+    /// Where the next token of the row starts.
+    pub(crate) fn at(&self) -> usize {
+        skip_blanks(self.bytes, self.at)
+    }
+
+    /// Whether the row has no token left.
+    #[inline]
+    pub(crate) fn is_at_end(&self) -> bool {
+        let at = skip_blanks(self.bytes, self.at);
+        token_end(self.bytes, at) == at
+    }
+
+    /// Moves before the next token of the file, on this row or a later one. False when there is none.
+    #[inline]
+    pub(crate) fn next_word(&mut self) -> bool {
+        (self.line > 0 && !self.is_at_end()) || self.next_row()
     }
 
     /// The next token of the row, or none at its end.
@@ -260,6 +364,19 @@ pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
         at += 1;
     }
     at
+}
+
+/// Where the next token starts, on this line or a later one, behind a comment too: some formats break lines between x
+/// and y.
+#[inline]
+pub(crate) fn skip_to_token(bytes: &[u8], mut at: usize) -> usize {
+    loop {
+        match bytes.get(at) {
+            Some(b'#') => at = line_end(bytes, at),
+            Some(&byte) if byte <= b' ' => at += 1,
+            _ => return at,
+        }
+    }
 }
 
 /// Where the token ends that starts at `at`: at a blank, at a comment or at the end of the line.

@@ -5,6 +5,7 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
+use crate::file::numbers;
 use crate::file::parallel_rows::take_rows;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
@@ -57,7 +58,15 @@ pub(crate) fn parse(
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
     let mesh = Mesh { points, triangles, fixed };
-    Ok(Parsed { format: Format::Triangle, mesh, x_at, order: None, regions, notes })
+    Ok(Parsed {
+        format: Format::Triangle,
+        mesh,
+        x_at,
+        numbers: numbers::Numbers::TEXT,
+        encoded: None,
+        regions,
+        notes,
+    })
 }
 
 /// Line and number of the vertices whose x stand at some offsets, ascending.
@@ -179,7 +188,7 @@ fn vertex_number(
     row: u64,
     numbers: &mut Numbers,
 ) -> Result<u64, ReadError> {
-    next_of(cursor, row, numbers.count, "vertices")?;
+    cursor.row(row, numbers.count, "vertices")?;
     let number = cursor.integer("the number of a vertex")?;
     if row == 0 {
         if number > 1 {
@@ -228,7 +237,7 @@ fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles
     let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
     let plain = take_rows(cursor, count, read, &mut take);
     for row in plain..count {
-        next_of(cursor, row, count, "triangles")?;
+        cursor.row(row, count, "triangles")?;
         take(triangle(cursor, node, numbers, columns)?);
     }
     Ok((triangles, regions.finish()))
@@ -311,7 +320,7 @@ fn segments(
     header(cursor, "segments")?;
     let count = cursor.integer("the number of segments")?;
     for row in 0..count {
-        next_of(cursor, row, count, "segments")?;
+        cursor.row(row, count, "segments")?;
         let number = cursor.integer("the number of a segment")?;
         for _ in 0..2 {
             fixed.push(ends.index(cursor, node, format_args!("segment {number}"))?);
@@ -325,15 +334,6 @@ fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadError> {
         return Ok(());
     }
     Err(cursor.error(format!("the file ends before the number of {what}"), CUT_OFF))
-}
-
-/// Moves to the next of `count` rows, `done` of which were read.
-#[inline]
-fn next_of(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
-    if cursor.next_row() {
-        return Ok(());
-    }
-    Err(cursor.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The options of a run.
 
 use crate::error::SmoothError;
+use crate::mesh::Precision;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::run::plan::Plan;
@@ -36,6 +37,9 @@ pub struct Options {
     /// estimate extrapolates the decay over the last 16 or more sweeps (over the last two where each is corrected
     /// from coarser levels), so it bounds what remains, not the change in one sweep. 0 turns this test off.
     pub tolerance: f64,
+    /// The precision in which the result will be stored. It is rounded to that before it is judged: what is returned has no
+    /// inverted triangle, and a lower f, as stored.
+    pub stored: Precision,
     /// Ends the run at a share of the way to a desired objective. The tolerance then has no effect.
     pub goal: Option<Goal>,
     /// Over-relaxation, between 0 and 2: each Newton step is first tried at this multiple. 1 is the published method.
@@ -64,6 +68,7 @@ impl Default for Options {
             method: Method::Auto,
             max_sweeps: 1000,
             tolerance: 1e-6,
+            stored: Precision::Double,
             goal: None,
             omega: None,
             plain_sweeps: 4,

@@ -272,9 +272,9 @@ fn files_of_other_kinds_are_told() {
     assert_gmsh_refused("2 2 0 1 10", "4 2 0 1 10", &["in.msh:14: ", "makes this a volume mesh"]);
     assert_refused(&[("in.txt", "hello\n")], "in.txt", &["in.txt: the format is not recognized. "]);
     assert_refused(
-        &[("in.vtk", "# vtk DataFile Version 2.0\n")],
-        "in.vtk",
-        &["in.vtk: not read yet: legacy VTK. Formats read: Triangle .node/.ele, gmsh 2.2 ASCII"],
+        &[("in.stl", "solid part\n")],
+        "in.stl",
+        &["in.stl: not read yet: STL. Formats read: Triangle .node/.ele, gmsh, legacy VTK"],
     );
 }
 

@@ -5,18 +5,39 @@ use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
 use gpu_smooth::{Location, MeshFile, Place};
 use std::fs;
 
-/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
-#[test]
-fn damaged_files_never_panic() {
-    let mut state = 7_u64;
-    let mut random = move |below: usize| {
-        // SplitMix64.
+/// Random numbers below the one given, by SplitMix64.
+pub(crate) fn random(seed: u64) -> impl FnMut(usize) -> usize {
+    let mut state = seed;
+    move |below: usize| {
         state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = state;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         ((z ^ (z >> 31)) % below as u64) as usize
-    };
+    }
+}
+
+/// The content with up to three random pieces cut, replaced or doubled.
+pub(crate) fn damaged(content: &[u8], mut random: impl FnMut(usize) -> usize) -> Vec<u8> {
+    let bytes = b"0123456789 \n\r\t#$.-+eEdDnaifE\"\0\xFF";
+    let mut damaged = content.to_vec();
+    for _ in 0..=random(3) {
+        let at = random(damaged.len());
+        match random(5) {
+            0 => damaged.truncate(at + 1),
+            1 => damaged[at] = bytes[random(bytes.len())],
+            2 => damaged.insert(at, bytes[random(bytes.len())]),
+            3 => damaged.extend_from_within(at..),
+            _ => drop(damaged.drain(at..(at + 1 + random(9)).min(damaged.len() - 1).max(at))),
+        }
+    }
+    damaged
+}
+
+/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+#[test]
+fn damaged_files_never_panic() {
+    let mut random = random(7);
     let folder = triangle();
     fs::write(folder.path("a.msh"), "").unwrap();
     let binary = [msh22(false), msh22(true), msh41(false), msh41(true)];
@@ -31,7 +52,6 @@ fn damaged_files_never_panic() {
         ("a.msh", &binary[2]),
         ("a.msh", &binary[3]),
     ];
-    let bytes = b"0123456789 \n\r\t#$.-+eEdDnaifE\"\0\xFF";
     let inside = |place: Place| match place.location {
         Location::Line(line) => line > 1,
         Location::Byte(at) => at > 20,
@@ -39,17 +59,7 @@ fn damaged_files_never_panic() {
     let mut read = 0;
     for round in 0..7200 {
         let (name, content) = samples[round % samples.len()];
-        let mut damaged = content.to_vec();
-        for _ in 0..=random(3) {
-            let at = random(damaged.len());
-            match random(5) {
-                0 => damaged.truncate(at + 1),
-                1 => damaged[at] = bytes[random(bytes.len())],
-                2 => damaged.insert(at, bytes[random(bytes.len())]),
-                3 => damaged.extend_from_within(at..),
-                _ => drop(damaged.drain(at..(at + 1 + random(9)).min(damaged.len() - 1).max(at))),
-            }
-        }
+        let damaged = damaged(content, &mut random);
         fs::write(folder.path(name), &damaged).unwrap();
         let given = if name == "la.1.poly" { "la.1" } else { name };
         if let Ok(file) = MeshFile::read(&folder.path(given)) {

@@ -97,7 +97,7 @@ fn gmsh_errors_name_line_and_remedy() {
     };
     v2("2.2 0 8", "2.2 1 8", &["a.msh, byte 20: the mark of the byte order is one in neither"]);
     v2("2.2 0 8", "2.2 2 8", &["a.msh:2: the file type is 2, neither 0 nor 1"]);
-    v2("2.2 0 8", "4 0 8", &["a.msh:2: gmsh's format version 4 is not read. Save as version 4.1"]);
+    v2("2.2 0 8", "3 0 8", &["a.msh:2: gmsh's format version 3 is not read. Save as version 4.1"]);
     v2(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat",
         "$Comments\n$EndComments",
@@ -136,7 +136,7 @@ fn gmsh_errors_name_line_and_remedy() {
         assert!(GMSH41.contains(from), "{from}");
         assert_gmsh_error(&GMSH41.replacen(from, to, 1), parts);
     };
-    v4("4.1 0 8", "4.0 0 8", &["a.msh:2: gmsh's format version 4.0", "-format msh41"]);
+    v4("4.1 0 8", "4.0 1 8", &["a.msh:2: binary files of version 4.0", "-format msh41"]);
     v4("2 1 1 4", "2 1 1 5", &["a.msh:14: a block of 5 nodes where", "leaves 4"]);
     v4("2 1 1 4", "2 1 1 3", &["a.msh:18: y of node 9 is missing"]);
     v4("2 5 1 9", "2 6 1 9", &["a.msh:22: the blocks hold 5 of the 6 nodes"]);
@@ -151,10 +151,10 @@ fn gmsh_errors_name_line_and_remedy() {
 
 #[test]
 fn other_files_are_refused_by_name() {
-    let formats =
-        "Formats read: Triangle .node/.ele, gmsh 2.2 ASCII, gmsh 2.2 binary, gmsh 4.1 ASCII";
-    assert_gmsh_error(" 3 1 3\n 0.0 0.0 1\n", &["a.msh: not read yet: FreeFem .msh. ", formats]);
-    assert_error(&[("a.vtk", "# vtk DataFile Version 2.0\n")], &["not read yet: legacy VTK. "]);
+    let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
+                   Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, FreeFem .msh, SELAFIN";
+    assert_error(&[("a.stl", "solid part\n")], &["a.stl: not read yet: STL. ", formats]);
+    assert_error(&[("a.inp", "*HEADING\nbay\n")], &["not read yet: Abaqus. ", formats]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
     let folder = Folder::new(&[]);
     let of = |path: &Path| MeshFile::read(path).unwrap_err().to_string();

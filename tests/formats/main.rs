@@ -4,9 +4,15 @@ mod binary;
 mod damage;
 mod errors;
 mod long;
+mod made;
+mod others;
+mod refused;
 mod regions;
+mod special;
+mod spoiled;
 #[path = "../support/mod.rs"]
 mod support;
+mod vtu;
 
 use gpu_smooth::{Format, Location, MeshFile};
 use std::fs;

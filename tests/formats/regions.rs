@@ -15,7 +15,7 @@ fn folder(files: &[(&str, Vec<u8>)]) -> Folder {
 }
 
 /// What is held between regions, by definition: no triangle at an edge of its own, and not all of one region.
-fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
+pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
     let on_boundary = super::support::boundary(mesh);
     let mut of_vertex = vec![Vec::new(); mesh.points.len()];
     for (t, &region) in mesh.triangles.iter().zip(regions) {

@@ -1,6 +1,6 @@
-//! Meshes as gmsh's binary `.msh`, in either byte order.
+//! Binary files in either byte order: their numbers, and meshes as gmsh's `.msh`.
 
-use gpu_smooth::Mesh;
+use gpu_smooth::{Mesh, Precision};
 
 /// A file under construction.
 pub struct Binary {
@@ -10,9 +10,14 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Starts a file of a version of the format, with the section that states it.
+    /// Starts a file of any format.
+    pub fn empty(big: bool) -> Binary {
+        Binary { bytes: Vec::new(), big }
+    }
+
+    /// Starts a file of a version of gmsh's format, with the section that states it.
     pub fn new(version: &str, big: bool) -> Binary {
-        let mut file = Binary { bytes: Vec::new(), big };
+        let mut file = Binary::empty(big);
         file.text(&format!("$MeshFormat\n{version} 1 8\n"));
         file.ints(&[1]);
         file.text("\n$EndMeshFormat\n");
@@ -40,6 +45,14 @@ impl Binary {
 
     pub fn doubles(&mut self, numbers: &[f64]) {
         numbers.iter().for_each(|x| self.put(x.to_le_bytes()));
+    }
+
+    /// Adds numbers rounded to a precision, in as many bytes as that takes.
+    pub fn reals(&mut self, precision: Precision, numbers: &[f64]) {
+        match precision {
+            Precision::Single => numbers.iter().for_each(|x| self.put((*x as f32).to_le_bytes())),
+            Precision::Double => self.doubles(numbers),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness};
+use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -16,7 +16,8 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Scheme, Sharpness}
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
-                  Triangle .node/.ele, gmsh .msh 2.2 and 4.1 (ASCII or binary). Ctrl-C ends a run at \
+                  Triangle .node/.ele, gmsh .msh, VTK .vtk and .vtu, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
+                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh\n  \
@@ -48,12 +49,25 @@ pub(crate) struct OutputArgs {
 pub(crate) enum Command {
     /// Tells how good a mesh is
     Quality(QualityArgs),
+    /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
+    Compare(CompareArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters,
     /// Tells what each metric measures and what it is good for
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
     Bench(BenchArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct CompareArgs {
+    /// The mesh before
+    pub(crate) before: PathBuf,
+    /// The mesh after
+    pub(crate) after: PathBuf,
+    /// Vertices between regions may have moved
+    #[arg(long)]
+    pub(crate) free_interfaces: bool,
 }
 
 #[derive(Args)]
@@ -111,8 +125,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
 
-    /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele. Without it they
-    /// stay where they are
+    /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele, references,
+    /// materials. Without it they stay where they are
     #[arg(long)]
     pub(crate) free_interfaces: bool,
 
@@ -277,12 +291,14 @@ impl SmoothArgs {
     }
 
     /// What the library is asked to do.
-    pub(crate) fn options(&self) -> Options {
+    /// The options of a run on a mesh that is stored with so many digits.
+    pub(crate) fn options(&self, stored: Precision) -> Options {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         Options {
             scheme: self.scheme.clone(),
             max_sweeps: self.max_sweeps,
             tolerance: self.tolerance,
+            stored,
             goal: has_goal.then(|| Goal {
                 fraction: self.fraction.unwrap_or(0.95),
                 desired: self.desired.unwrap_or(Desired::Auto),

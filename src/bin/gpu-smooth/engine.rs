@@ -1,6 +1,6 @@
 //! Which engine a run gets.
 
-use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Reason, SmoothError};
+use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
 use crate::cli::{EngineChoice, SmoothArgs};
 
@@ -31,7 +31,7 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
 
 /// Chooses the engine for a mesh of this size and opens it.
 pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
-    let (backend, reason) = Backend::auto(size, &args.options());
+    let (backend, reason) = Backend::auto(size, &args.options(Precision::Double));
     let reason = match reason {
         Reason::GpuFails(_) => reason.to_string(),
         Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),

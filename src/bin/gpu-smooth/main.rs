@@ -2,6 +2,7 @@
 
 mod bench;
 mod cli;
+mod compare;
 mod engine;
 mod explain;
 mod interrupt;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
     let cli = Cli::read();
     let done = match &cli.command {
         Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother,
-    Stop, output,
+    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Precision, Progress, SmoothError,
+    Smoother, Stop, output,
 };
 use serde::Serialize;
 
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
-        let (outcome, taken) = smooth(args, show, &smoother, taken)?;
+        let (outcome, taken) = smooth(args, show, &smoother, file.precision(), taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
@@ -107,9 +107,10 @@ fn smooth(
     args: &SmoothArgs,
     show: &OutputArgs,
     smoother: &Smoother<'_>,
+    stored: Precision,
     mut taken: Taken,
 ) -> Result<(Outcome, Taken), String> {
-    let options = args.options();
+    let options = args.options(stored);
     let mut bar = Bar::new(show, args.max_sweeps);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {

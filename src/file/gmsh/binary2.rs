@@ -1,11 +1,12 @@
 //! The sections of version 2.2 in binary: after its count, which is text, one node after the other, and elements in runs
 //! of one kind.
 
-use super::kind::Kind;
+use super::kind::kind_of;
 use super::words::Words;
-use super::{Element, Sink, block_fits, row};
+use super::{block_fits, row};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 
 /// Reads `$Nodes` after its first line, or `$ParametricNodes`. Returns their number.
@@ -54,7 +55,7 @@ pub(super) fn elements(
     while done < count {
         let words = &mut Words::take(cursor, order, HEADER, (done, count, "elements"))?;
         let kind = words.natural(cursor, "the type of elements")?;
-        let kind = Kind::new(cursor, kind)?;
+        let kind = kind_of(cursor, kind)?;
         let size = words.natural(cursor, "a number of elements")?;
         block_fits(cursor, size, count - done, "elements")?;
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;

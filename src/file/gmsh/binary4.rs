@@ -1,10 +1,11 @@
 //! The sections of version 4.1 in binary: blocks, one per entity of the model.
 
-use super::kind::Kind;
+use super::kind::kind_of;
 use super::words::Words;
-use super::{Element, Sink, all_in_blocks, block_fits};
+use super::{all_in_blocks, block_fits};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 
 /// The bytes of a block's header: three `int` and a `size_t`.
@@ -26,7 +27,7 @@ pub(super) fn nodes(
         words.int(); // The entity's own tag.
         let parametric = words.int() != 0;
         if parametric && dimension >= 2 {
-            sink.parametric();
+            sink.note(super::PARAMETRIC);
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
@@ -61,7 +62,7 @@ pub(super) fn elements(
         words.int(); // The entity's dimension.
         let region = [i64::from(words.int()), 0];
         let kind = words.natural(cursor, "the type of an element block")?;
-        let kind = Kind::new(cursor, kind)?;
+        let kind = kind_of(cursor, kind)?;
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
         let row = 8 * (1 + kind.nodes());

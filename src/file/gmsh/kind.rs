@@ -1,63 +1,35 @@
 //! Which of gmsh's element types can be read.
 
 use crate::error::ReadError;
+use crate::file::sink::Kind;
 use crate::file::text::Cursor;
 
-/// The element types that are read: triangles to smooth, and others whose vertices stay fixed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    Point,
-    Line,
-    Triangle,
-    Quadrilateral,
+/// The kind that has this number in gmsh, or an error on the current line.
+pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
+    match number {
+        15 => Ok(Kind::Point),
+        1 => Ok(Kind::Line),
+        2 => Ok(Kind::Triangle),
+        3 => Ok(Kind::Quadrilateral),
+        _ => Err(refusal(cursor, number)),
+    }
 }
 
-impl Kind {
-    /// The kind that has this number in gmsh, or an error on the current line.
-    pub(super) fn new(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
-        match number {
-            15 => Ok(Kind::Point),
-            1 => Ok(Kind::Line),
-            2 => Ok(Kind::Triangle),
-            3 => Ok(Kind::Quadrilateral),
-            _ => Err(Self::refusal(cursor, number)),
-        }
-    }
-
-    #[cold]
-    fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
-        match number {
-            4..=7 | 11..=14 | 17..=19 | 29..=33 | 35 => cursor.error(
-                format!("element type {number} makes this a volume mesh"),
-                "Save a mesh of the plane only (gmsh -2)",
-            ),
-            8..=10 | 16 | 20..=28 | 36..=66 => cursor.error(
-                format!("element type {number} is of higher order, and only corners are moved"),
-                "Make the mesh of first order (Mesh.ElementOrder=1)",
-            ),
-            _ => cursor.error(
-                format!("element type {number} is not known"),
-                "Save points, lines, triangles and quadrilaterals only",
-            ),
-        }
-    }
-
-    pub(super) fn nodes(self) -> usize {
-        match self {
-            Kind::Point => 1,
-            Kind::Line => 2,
-            Kind::Triangle => 3,
-            Kind::Quadrilateral => 4,
-        }
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Kind::Point => "point",
-            Kind::Line => "line",
-            Kind::Triangle => "triangle",
-            Kind::Quadrilateral => "quadrilateral",
-        }
+#[cold]
+fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
+    match number {
+        4..=7 | 11..=14 | 17..=19 | 29..=33 | 35 => cursor.error(
+            format!("element type {number} makes this a volume mesh"),
+            "Save a mesh of the plane only (gmsh -2)",
+        ),
+        8..=10 | 16 | 20..=28 | 36..=66 => cursor.error(
+            format!("element type {number} is of higher order, and only corners are moved"),
+            "Make the mesh of first order (Mesh.ElementOrder=1)",
+        ),
+        _ => cursor.error(
+            format!("element type {number} is not known"),
+            "Save points, lines, triangles and quadrilaterals only",
+        ),
     }
 }
 

@@ -1,4 +1,4 @@
-//! gmsh's `.msh`, versions 2.2 and 4.1, in ASCII and in binary.
+//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary (not 4.0).
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
 //! `$MeshFormat`, `$Nodes` and `$Elements` are read. `$Entities`, which in version 4.1 lists the physical groups of each
@@ -7,25 +7,30 @@
 mod binary2;
 mod binary4;
 mod kind;
-mod reader;
-mod tags;
 mod text2;
 mod text4;
+mod text40;
 mod words;
-
-pub(super) use reader::{parse, triangle_places, vertex_places};
 
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
 use crate::file::parallel_rows::take_rows;
+use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
-use kind::Kind;
+use crate::mesh::Precision;
+
+/// A remark for the user.
+const PARAMETRIC: &str =
+    "nodes have parameters on surfaces of the model, which stay as they are where nodes move";
 
 /// How the sections are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Version {
     V2,
+    V40,
     V4,
 }
 
@@ -37,37 +42,27 @@ struct Encoding {
     order: Option<Order>,
 }
 
-/// One element, as the file has it.
-struct Element {
-    tag: u64,
-    kind: Kind,
-    /// What names its region. In version 2.2: its physical group and its geometrical entity, zero where it has none. In
-    /// version 4.1: the entity of its block, and zero.
-    region: [i64; 2],
-    /// As many node tags as the kind has.
-    nodes: [u64; 4],
-}
+/// gmsh's `.msh`.
+pub(crate) struct Gmsh;
 
-/// Takes what the sections hold, in the order of the file.
-trait Sink {
-    /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
-    /// another cursor. Where it returns an error it must not have changed.
-    const TAKES_AHEAD: bool = false;
-    /// Announces about how many nodes follow.
-    fn expect_nodes(&mut self, _count: usize) {}
-    /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
-    /// where the file says so.
-    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
-    /// Notes that the file has parameters of nodes on surfaces of the model.
-    fn parametric(&mut self) {}
-    /// Ends the list of nodes.
-    fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
-        Ok(())
+impl Walk for Gmsh {
+    const VERTICES: &'static str = "$Nodes";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let Encoding { version, order } = walk(source, sink)?;
+        let format = match (version, order) {
+            (Version::V2, None) => Format::Gmsh22,
+            (Version::V2, Some(_)) => Format::Gmsh22Binary,
+            (Version::V40, _) => Format::Gmsh40,
+            (Version::V4, None) => Format::Gmsh41,
+            (Version::V4, Some(_)) => Format::Gmsh41Binary,
+        };
+        let numbers = match order {
+            None => Numbers::TEXT,
+            Some(order) => Numbers::adjacent(order, Precision::Double),
+        };
+        Ok(Layout::in_place(format, numbers))
     }
-    /// Announces about how many elements follow.
-    fn expect_elements(&mut self, _count: usize) {}
-    /// Takes an element that was just read.
-    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
 }
 
 /// Feeds a file's nodes and elements to the sink.
@@ -91,10 +86,11 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
-                    sink.parametric();
+                    sink.note(PARAMETRIC);
                 }
                 let count = match (version, order) {
                     (Version::V2, None) => text2::nodes(cursor, sink)?,
+                    (Version::V40, _) => text40::nodes(cursor, sink)?,
                     (Version::V4, None) => text4::nodes(cursor, sink)?,
                     (Version::V2, Some(order)) => binary2::nodes(cursor, order, parametric, sink)?,
                     (Version::V4, Some(order)) => binary4::nodes(cursor, order, sink)?,
@@ -112,6 +108,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
+                    (Version::V40, _) => text40::elements(cursor, sink)?,
                     (Version::V4, None) => text4::elements(cursor, sink)?,
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
                     (Version::V4, Some(order)) => binary4::elements(cursor, order, sink)?,
@@ -140,6 +137,7 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     let name = cursor.token().unwrap_or_default();
     let version = match name {
         b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
+        b"4" | b"4.0" => Version::V40,
         b"4.1" => Version::V4,
         _ => {
             let problem = format!("gmsh's format version {} is not read", quoted(name));
@@ -149,6 +147,11 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     };
     match cursor.integer("the file type")? {
         0 => Ok(Encoding { version, order: None }),
+        1 if version == Version::V40 => {
+            let problem = "binary files of version 4.0 are not read";
+            let remedy = "Save as version 4.1 (gmsh old.msh -save -format msh41 -o new.msh)";
+            Err(cursor.error(problem, remedy))
+        }
         1 => match cursor.integer("the size of a number")? {
             8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {

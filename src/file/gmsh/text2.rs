@@ -1,8 +1,9 @@
 //! The sections of version 2.2: one line per node and per element.
 
-use super::kind::{Kind, node_tags};
-use super::{Element, Sink, ahead, row};
+use super::kind::{kind_of, node_tags};
+use super::{ahead, row};
 use crate::error::ReadError;
+use crate::file::sink::{Element, Sink};
 use crate::file::text::{CORRECT, Cursor};
 
 /// Reads `$Nodes` after its first line. Returns their number.
@@ -52,7 +53,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<(u64, (usize, [f64; 2])), ReadError> 
 fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     let tag = cursor.integer("an element tag")?;
     let kind = cursor.integer(format_args!("the type of element {tag}"))?;
-    let kind = Kind::new(cursor, kind)?;
+    let kind = kind_of(cursor, kind)?;
     let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
     let mut region = [0; 2];
     for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {

@@ -1,8 +1,9 @@
 //! The sections of version 4.1: blocks, one per entity of the model.
 
-use super::kind::{Kind, node_tags};
-use super::{Element, Sink, ahead, all_in_blocks, block_fits, row};
+use super::kind::{kind_of, node_tags};
+use super::{ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
+use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 use std::fmt::Display;
 
@@ -20,7 +21,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         cursor.token(); // The entity's own tag, which may be negative.
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
         if parametric && dimension >= 2 {
-            sink.parametric();
+            sink.note(super::PARAMETRIC);
         }
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;
@@ -63,7 +64,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
         cursor.token(); // The entity's dimension.
         let entity = cursor.signed("the entity of an element block")?;
         let kind = cursor.integer("the type of an element block")?;
-        let kind = Kind::new(cursor, kind)?;
+        let kind = kind_of(cursor, kind)?;
         let size = cursor.integer("the number of elements of a block")?;
         block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>| {

@@ -1,50 +1,47 @@
 //! Makes a mesh of a file's nodes and elements, or finds where one of them stands.
 
-use super::kind::Kind;
-use super::tags::TagMap;
-use super::{Element, Encoding, Sink, Version, walk};
 use crate::error::{Location, ReadError};
-use crate::file::format::Format;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk};
 use crate::file::source::Source;
+use crate::file::tags::TagMap;
 use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
 
 /// Reads a mesh.
-pub(in crate::file) fn parse(source: &Source) -> Result<Parsed, ReadError> {
-    let mut reader = Reader::default();
-    let Encoding { version, order } = walk(source, &mut reader)?;
-    let format = match (version, order) {
-        (Version::V2, None) => Format::Gmsh22,
-        (Version::V2, Some(_)) => Format::Gmsh22Binary,
-        (Version::V4, None) => Format::Gmsh41,
-        (Version::V4, Some(_)) => Format::Gmsh41Binary,
-    };
-    let Reader { mesh, x_at, regions, quadrilaterals, parametric, on_lower, .. } = reader;
-    let mut notes = Vec::new();
+pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
+    let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
+    let Layout { format, numbers, encoded } = W::walk(source, &mut reader)?;
+    let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, on_lower, .. } = reader;
     if quadrilaterals > 0 {
-        notes.push(fixed_note(quadrilaterals, "quadrilateral", ""));
+        notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
     }
-    if parametric {
-        let note = "nodes have parameters on surfaces of the model, which stay as they are where nodes move";
-        notes.push(note.into());
-    }
-    if on_lower == mesh.points.len() {
+    if on_lower > 0 && on_lower == mesh.points.len() {
         let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
         notes.push(note.into());
     }
-    Ok(Parsed { format, mesh, x_at, order, regions: regions.finish(), notes })
+    let precision = numbers.precision();
+    for (vertex, point) in mesh.points.iter_mut().enumerate() {
+        *point = point.map(|x| precision.rounded(x));
+        if !point.iter().all(|x| x.is_finite()) {
+            let (location, label) = vertex_places::<W>(source, &[vertex])[0];
+            let problem =
+                format!("a coordinate of vertex {label} is too large for single precision");
+            return Err(source.error_at(location, problem, CORRECT));
+        }
+    }
+    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions: regions.finish(), notes })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
-pub(in crate::file) fn vertex_places(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
-    find(source, indices, &[])
+pub(crate) fn vertex_places<W: Walk>(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
+    find::<W>(source, indices, &[])
 }
 
 /// Location and tag of the triangles with these indices, ascending, in a file that was read before.
-pub(in crate::file) fn triangle_places(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
-    find(source, &[], indices)
+pub(crate) fn triangle_places<W: Walk>(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
+    find::<W>(source, &[], indices)
 }
 
 #[derive(Default)]
@@ -57,7 +54,9 @@ struct Reader {
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
     quadrilaterals: u64,
-    parametric: bool,
+    notes: Vec<String>,
+    /// Where the file lists its vertices, for messages.
+    vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
 }
@@ -84,8 +83,10 @@ impl Sink for Reader {
         self.mesh.points.push(at);
     }
 
-    fn parametric(&mut self) {
-        self.parametric = true;
+    fn note(&mut self, note: &str) {
+        if !self.notes.iter().any(|before| before == note) {
+            self.notes.push(note.to_owned());
+        }
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
@@ -117,7 +118,8 @@ impl Sink for Reader {
             let index = self.map.as_ref().and_then(|map| map.index(node));
             *vertex = index.ok_or_else(|| {
                 let kind = kind.name();
-                let problem = format!("{kind} {tag} has node {node}, which $Nodes does not list");
+                let list = self.vertices_of;
+                let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
                 cursor.error(problem, CORRECT)
             })?;
         }
@@ -157,12 +159,12 @@ struct Wanted<'a> {
     next: usize,
 }
 
-fn find(source: &Source, nodes: &[usize], triangles: &[usize]) -> Vec<(Location, u64)> {
+fn find<W: Walk>(source: &Source, nodes: &[usize], triangles: &[usize]) -> Vec<(Location, u64)> {
     let wanted = |left| Wanted { left, next: 0 };
     let places = Vec::with_capacity(nodes.len() + triangles.len());
     let mut locator = Locator { nodes: wanted(nodes), triangles: wanted(triangles), places };
     // There is no error to handle: the file was read before without one.
-    let _ = walk(source, &mut locator);
+    let _ = W::walk(source, &mut locator);
     locator.places
 }
 

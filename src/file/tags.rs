@@ -1,10 +1,10 @@
-//! Finds the vertex index of a gmsh node tag; tags are arbitrary numbers.
+//! Finds the index of a vertex by the number its file gives it, its tag; tags are arbitrary numbers.
 
 use std::collections::HashMap;
 
 /// Finds the index of a tag.
-pub(super) enum TagMap {
-    /// Consecutive tags, as gmsh writes them unless told otherwise.
+pub(crate) enum TagMap {
+    /// Consecutive tags, as most files have them.
     Run { first: u64, count: u64 },
     /// Tags with few gaps: the index of each tag from `first` on, [`ABSENT`] in the gaps.
     Dense { first: u64, indices: Vec<u32> },
@@ -18,7 +18,7 @@ const ABSENT: u32 = u32::MAX;
 impl TagMap {
     /// Maps each tag to its position, of which there are at most `u32::MAX`. Fails with the
     /// position of the first tag that was there before.
-    pub(super) fn new(tags: &[u64]) -> Result<TagMap, usize> {
+    pub(crate) fn new(tags: &[u64]) -> Result<TagMap, usize> {
         let first = tags.iter().copied().min().unwrap_or(0);
         let last = tags.iter().copied().max().unwrap_or(0);
         let count = tags.len() as u64;
@@ -47,7 +47,7 @@ impl TagMap {
     }
 
     #[inline]
-    pub(super) fn index(&self, tag: u64) -> Option<u32> {
+    pub(crate) fn index(&self, tag: u64) -> Option<u32> {
         match self {
             TagMap::Run { first, count } => {
                 tag.checked_sub(*first).filter(|index| index < count).map(|index| index as u32)

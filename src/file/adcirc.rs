@@ -1,0 +1,65 @@
+//! The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
+//!
+//! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
+//! The third number of a node's row is its depth. The lists of boundaries at the end are not read: their nodes are on the
+//! boundary of the mesh, weirs included, and do not move anyway.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::source::Source;
+use crate::file::text::Cursor;
+
+pub(crate) struct Adcirc;
+
+impl Walk for Adcirc {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        // The first line is a title of any text, or of none.
+        cursor.line();
+        cursor.row(0, 1, "lines of counts")?;
+        let elements = cursor.integer("the number of elements")?;
+        let count = cursor.vertex_count()?;
+        sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+        each_row(
+            cursor,
+            count,
+            "nodes",
+            sink,
+            |cursor| {
+                let tag = cursor.integer("the number of a node")?;
+                let owner = format_args!("node {tag}");
+                let point = cursor.point(owner)?;
+                cursor.coordinate('z', owner)?;
+                Ok((tag, point))
+            },
+            |cursor, sink, _, (tag, (x_at, at))| {
+                sink.node(cursor, tag, 2, x_at, at);
+                Ok(())
+            },
+        )?;
+        sink.end_nodes(cursor)?;
+        sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
+        each_row(
+            cursor,
+            elements,
+            "elements",
+            sink,
+            |cursor| {
+                let tag = cursor.integer("the number of an element")?;
+                let corners = cursor.integer(format_args!("how many nodes element {tag} has"))?;
+                let Some(kind) = Kind::of_polygon(corners).filter(|kind| kind.nodes() > 2) else {
+                    let problem = format!("element {tag} has {corners} nodes");
+                    return Err(cursor.error(problem, "Elements of three and four nodes are read"));
+                };
+                Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+            },
+            |cursor, sink, _, element| sink.element(cursor, &element),
+        )?;
+        sink.note("depths stay with their nodes: where those move, they no longer fit");
+        Ok(Layout::in_place(Format::Adcirc, Numbers::TEXT))
+    }
+}

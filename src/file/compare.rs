@@ -1,0 +1,148 @@
+//! Whether two files of a mesh differ in nothing but coordinates. Nothing here is used to write files.
+
+use crate::error::Location;
+use crate::file::mesh_file::{MeshFile, Place};
+use crate::file::numbers::Numbers;
+use crate::file::text::{quoted, skip_to_token, token_end};
+use std::ops::Range;
+
+/// The first place at which two files of a mesh differ in more than coordinates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Where, in the first of the two.
+    pub place: Place,
+    /// Where, in the second.
+    pub other_place: Place,
+    /// What is different there.
+    pub what: String,
+}
+
+impl MeshFile {
+    /// The first difference to another file of the mesh, coordinates apart: `None` if both are of one format, list the same
+    /// triangles, and every byte of them is the same but those of coordinates.
+    ///
+    /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
+    /// themselves compared; so are the offsets of what stands after them.
+    pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
+        let (mine, theirs) = (self.sources(), other.sources());
+        let place = |file: &MeshFile, part: usize, at: usize| {
+            let source = &file.sources()[part];
+            let location = match file.numbers() {
+                Numbers::Text { .. } => Location::Line(source.line_of(at)),
+                Numbers::Binary { .. } => Location::Byte(at),
+            };
+            Place { path: source.path.clone(), location, label: 0 }
+        };
+        let differ = |part: usize, at: [usize; 2], what: String| {
+            let (place, other_place) = (place(self, part, at[0]), place(other, part, at[1]));
+            Some(Difference { place, other_place, what })
+        };
+        if self.format() != other.format() {
+            let what = format!("the formats are {} and {}", self.format(), other.format());
+            return differ(0, [0; 2], what);
+        }
+        if mine.len() != theirs.len() {
+            let what = format!("a mesh of {} files and one of {}", mine.len(), theirs.len());
+            return differ(0, [0; 2], what);
+        }
+        let counts = [self, other].map(|file| file.mesh().points.len());
+        if counts[0] != counts[1] {
+            return differ(0, [0; 2], format!("{} vertices and {}", counts[0], counts[1]));
+        }
+        if self.mesh().triangles != other.mesh().triangles {
+            return differ(0, [0; 2], "the triangles are not the same".into());
+        }
+        if let [Some(mine), Some(theirs)] = [self, other].map(MeshFile::encoded_bytes) {
+            let ranges = [self, other].map(|file| file.coordinates());
+            if unequal([mine, theirs], ranges).is_some() {
+                return differ(0, [0; 2], "third coordinates are not the same".into());
+            }
+        }
+        for (part, (mine, theirs)) in mine.iter().zip(theirs).enumerate() {
+            let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
+            let ranges = [self, other].map(|file| file.changeable(part));
+            if let Some(at) = unequal(bytes, ranges) {
+                let text = |side: usize| match self.numbers() {
+                    _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
+                    Numbers::Text { .. } => {
+                        let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
+                        let line = &bytes[side][start.map_or(0, |start| start + 1)..];
+                        let line = line.split(|&byte| byte == b'\n').next().unwrap_or_default();
+                        format!("`{}`", quoted(line.trim_ascii()))
+                    }
+                    Numbers::Binary { .. } => format!("the byte {}", bytes[side][at[side]]),
+                };
+                return differ(part, at, format!("{} and {}", text(0), text(1)));
+            }
+        }
+        None
+    }
+
+    /// The ranges of coordinates in the bytes that hold them, ascending.
+    fn coordinates(&self) -> Vec<Range<usize>> {
+        let x_at = self.x_at();
+        let mut ranges = Vec::with_capacity(2 * x_at.len());
+        match self.numbers() {
+            Numbers::Text { .. } => {
+                let bytes = &self.sources()[0].bytes;
+                for &x in x_at {
+                    let x_end = token_end(bytes, x);
+                    let y = skip_to_token(bytes, x_end);
+                    ranges.extend([x..x_end, y..token_end(bytes, y)]);
+                }
+            }
+            Numbers::Binary { precision, y_after, .. } => {
+                let size = precision.bytes();
+                ranges.extend(x_at.iter().flat_map(|&x| [x, x + y_after].map(|at| at..at + size)));
+                ranges.sort_unstable_by_key(|range| range.start);
+            }
+        }
+        ranges
+    }
+
+    /// The ranges of a file that may change where vertices move, ascending.
+    fn changeable(&self, part: usize) -> Vec<Range<usize>> {
+        match (part, self.encoded_ranges()) {
+            (0, Some(ranges)) => ranges,
+            (0, None) => self.coordinates(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Where two texts first differ outside of these ranges, of which both have as many if they are equal.
+fn unequal(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> Option<[usize; 2]> {
+    let [a, b] = bytes;
+    let mut at = [0, 0];
+    let ends = [a.len()..a.len(), b.len()..b.len()];
+    let [mine, theirs] = ranges.map(Vec::into_iter);
+    for (mine, theirs) in mine.zip(theirs).chain([ends.into()]) {
+        let (Some(mine_before), Some(theirs_before)) =
+            (a.get(at[0]..mine.start), b.get(at[1]..theirs.start))
+        else {
+            return Some(at);
+        };
+        if mine_before != theirs_before {
+            let same = mine_before.iter().zip(theirs_before).take_while(|(a, b)| a == b).count();
+            return Some(at.map(|at| at + same));
+        }
+        at = [mine.end, theirs.end];
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_between_ranges_is_compared() {
+        let (x, y) = (vec![2..3, 4..5], vec![2..4, 5..6]);
+        let find = |a: &[u8], b: &[u8]| unequal([a, b], [x.clone(), y.clone()]);
+        assert_eq!(find(b"v 1 2 z", b"v 10 2 z"), None);
+        assert_eq!(find(b"v 1 2 z", b"v 10 2 zz"), Some([7, 8]));
+        assert_eq!(find(b"v 1\t2 z", b"v 10 2 z"), Some([3, 4]));
+        assert_eq!(find(b"w 1 2 z", b"v 10 2 z"), Some([0, 0]));
+        assert_eq!(find(b"v 1 2", b"v 10 2"), None);
+    }
+}

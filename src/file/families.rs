@@ -1,0 +1,162 @@
+//! What each format is known by, and its reader.
+
+use crate::error::{Location, ReadError};
+use crate::file::format::Format;
+use crate::file::parsed::Parsed;
+use crate::file::sink::Walk;
+use crate::file::source::{Source, file_name};
+use crate::file::{
+    adcirc, assemble, freefem, gmsh, medit, meditb, obj, off, ply, selafin, sms, su2, vtk, vtu,
+};
+use std::path::Path;
+
+/// Finds location and tag of items by their indices, ascending, in a file that was read before.
+type Places = fn(&Source, &[usize]) -> Vec<(Location, u64)>;
+
+/// The functions of a reader of a format that keeps a mesh in one file.
+pub(crate) struct Reader {
+    pub(crate) parse: fn(&Source) -> Result<Parsed, ReadError>,
+    pub(crate) vertex_places: Places,
+    pub(crate) triangle_places: Places,
+}
+
+const fn reader<W: Walk>() -> Option<Reader> {
+    Some(Reader {
+        parse: assemble::parse::<W>,
+        vertex_places: assemble::vertex_places::<W>,
+        triangle_places: assemble::triangle_places::<W>,
+    })
+}
+
+/// Formats that one reader reads, or that messages name though there is none. A new format is a row of this kind, a variant of
+/// [`Format`] and a file with its [`Walk`].
+pub(crate) struct Family {
+    pub(crate) name: &'static str,
+    /// Endings of file names that promise this format, the usual one first.
+    pub(crate) endings: &'static [&'static str],
+    /// What a file of the format may start with, after blanks and comment lines. Empty for formats that are told by
+    /// the numbers of their first rows.
+    pub(crate) opens: &'static [&'static [u8]],
+    /// None for Triangle, which has two files, and for formats that are not read.
+    pub(crate) reader: Option<Reader>,
+}
+
+impl Family {
+    /// The family of a format.
+    pub(crate) fn of(format: Format) -> &'static Family {
+        match format {
+            Format::Triangle => &TRIANGLE,
+            Format::Gmsh22
+            | Format::Gmsh22Binary
+            | Format::Gmsh40
+            | Format::Gmsh41
+            | Format::Gmsh41Binary => &GMSH,
+            Format::Vtk | Format::VtkBinary => &VTK,
+            Format::Vtu => &VTK_XML,
+            Format::Su2 => &SU2,
+            Format::Medit => &MEDIT,
+            Format::MeditBinary => &MEDIT_BINARY,
+            Format::Obj => &OBJ,
+            Format::Off => &OFF,
+            Format::Ply | Format::PlyBinary => &PLY,
+            Format::Adcirc => &ADCIRC,
+            Format::Sms2dm => &SMS,
+            Format::FreeFem => &FREEFEM,
+            Format::Selafin => &SELAFIN,
+        }
+    }
+
+    /// Whether meshes of it are read.
+    pub(crate) fn is_read(&self) -> bool {
+        self.reader.is_some() || std::ptr::eq(self, &TRIANGLE)
+    }
+
+    /// Whether the path ends as files of this family do. The case does not matter.
+    pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
+        let name = file_name(path).to_ascii_lowercase();
+        self.endings.iter().any(|ending| name.ends_with(ending))
+    }
+}
+
+const fn family(
+    name: &'static str,
+    endings: &'static [&'static str],
+    opens: &'static [&'static [u8]],
+    reader: Option<Reader>,
+) -> Family {
+    Family { name, endings, opens, reader }
+}
+
+pub(crate) static TRIANGLE: Family = family("Triangle .node/.ele", &[".node", ".ele"], &[], None);
+static GMSH: Family =
+    family("gmsh", &[".msh"], &[b"$MeshFormat", b"$Comments"], reader::<gmsh::Gmsh>());
+static VTK: Family =
+    family("legacy VTK", &[".vtk"], &[b"# vtk DataFile", b"# VTK DataFile"], reader::<vtk::Vtk>());
+static SU2: Family =
+    family("SU2", &[".su2"], &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"], reader::<su2::Su2>());
+static MEDIT: Family =
+    family("Medit", &[".mesh"], &[b"MeshVersionFormatted"], reader::<medit::Medit>());
+static MEDIT_BINARY: Family = family(
+    "binary Medit",
+    &[".meshb"],
+    &[&[1, 0, 0, 0], &[0, 0, 0, 1]],
+    reader::<meditb::MeditBinary>(),
+);
+static OBJ: Family = family(
+    "Wavefront OBJ",
+    &[".obj"],
+    &[b"v ", b"v\t", b"mtllib ", b"o ", b"g ", b"vn ", b"vt "],
+    reader::<obj::Obj>(),
+);
+static OFF: Family =
+    family("OFF", &[".off"], &[b"OFF", b"COFF", b"NOFF", b"CNOFF"], reader::<off::Off>());
+pub(crate) static ADCIRC: Family = family(
+    "ADCIRC or SCHISM grid",
+    &["fort.14", ".14", ".gr3", ".grd"],
+    &[],
+    reader::<adcirc::Adcirc>(),
+);
+static SMS: Family = family("SMS 2dm", &[".2dm"], &[b"MESH2D"], reader::<sms::Sms>());
+pub(crate) static FREEFEM: Family =
+    family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
+static SELAFIN: Family = family(
+    "SELAFIN",
+    &[".slf", ".sel", ".selafin"],
+    &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
+    reader::<selafin::Selafin>(),
+);
+static VTK_XML: Family = family(
+    "VTK XML",
+    &[".vtu", ".vtp", ".pvtu", ".pvd"],
+    &[b"<VTKFile", b"<?xml"],
+    reader::<vtu::Vtu>(),
+);
+static STL: Family = family("STL", &[".stl"], &[b"solid "], None);
+static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
+static ABAQUS: Family =
+    family("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"], None);
+static HDF: Family =
+    family("netCDF or HDF5", &[".exo", ".med", ".cgns"], &[b"CDF", b"\x89HDF"], None);
+static GMSH_1: Family = family("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], None);
+
+/// Every family, in the order in which contents are compared with them.
+pub(crate) static FAMILIES: [&Family; 18] = [
+    &TRIANGLE,
+    &GMSH,
+    &VTK,
+    &SU2,
+    &MEDIT,
+    &MEDIT_BINARY,
+    &OBJ,
+    &OFF,
+    &ADCIRC,
+    &SMS,
+    &FREEFEM,
+    &SELAFIN,
+    &VTK_XML,
+    &STL,
+    &PLY,
+    &ABAQUS,
+    &HDF,
+    &GMSH_1,
+];

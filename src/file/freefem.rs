@@ -1,0 +1,59 @@
+//! FreeFem's `.msh` of the plane.
+//!
+//! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
+//! for a Mesh". All numbers start at one.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::source::Source;
+use crate::file::text::Cursor;
+
+pub(crate) struct FreeFem;
+
+impl Walk for FreeFem {
+    const VERTICES: &'static str = "the list of vertices";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        cursor.row(0, 1, "lines of counts")?;
+        let vertices = cursor.vertex_count()?;
+        let triangles = cursor.integer("the number of triangles")?;
+        let edges = cursor.integer("the number of edges")?;
+        sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        each_row(
+            cursor,
+            vertices,
+            "vertices",
+            sink,
+            |cursor| {
+                let point = cursor.point("a vertex")?;
+                cursor.signed("the label of a vertex")?;
+                Ok(point)
+            },
+            |cursor, sink, done, (x_at, at)| {
+                sink.node(cursor, done + 1, 2, x_at, at);
+                Ok(())
+            },
+        )?;
+        sink.end_nodes(cursor)?;
+        sink.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
+        for (kind, count, what) in
+            [(Kind::Triangle, triangles, "triangles"), (Kind::Line, edges, "edges")]
+        {
+            each_row(
+                cursor,
+                count,
+                what,
+                sink,
+                |cursor| Ok((nodes(cursor, kind)?, cursor.signed("a label")?)),
+                |cursor, sink, done, (nodes, label)| {
+                    let element = Element { tag: done + 1, kind, region: [label, 0], nodes };
+                    sink.element(cursor, &element)
+                },
+            )?;
+        }
+        Ok(Layout::in_place(Format::FreeFem, Numbers::TEXT))
+    }
+}

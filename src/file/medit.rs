@@ -1,0 +1,154 @@
+//! Medit's `.mesh`, as text.
+//!
+//! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and mmg's and libMeshb's
+//! documentation. Edges, corners and required vertices stay fixed; required edges and ridges are edges.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::source::Source;
+use crate::file::text::{CUT_OFF, Cursor, quoted};
+
+pub(crate) struct Medit;
+
+/// A list of elements that was passed over, as they may stand before the vertices.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    count: u64,
+    kind: Kind,
+}
+
+impl Walk for Medit {
+    const VERTICES: &'static str = "Vertices";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let mut lists: Vec<List<'_>> = Vec::new();
+        let mut dimension = 2;
+        let mut vertices_seen = false;
+        while cursor.next_word() {
+            let keyword = cursor.token().unwrap_or_default();
+            match keyword {
+                b"End" => break,
+                b"MeshVersionFormatted" => {
+                    value(cursor, "the version")?;
+                }
+                b"Dimension" => {
+                    dimension = value(cursor, "the dimension")?;
+                    if dimension != 2 && dimension != 3 {
+                        let problem = format!("the dimension is {dimension}");
+                        return Err(cursor.error(problem, "It is 2, or 3 with a third coordinate"));
+                    }
+                }
+                b"Vertices" => {
+                    if std::mem::replace(&mut vertices_seen, true) {
+                        let problem = "this is the second list of Vertices";
+                        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                    }
+                    vertices(cursor, dimension, sink)?;
+                }
+                b"Tetrahedra" | b"Hexahedra" | b"Prisms" | b"Pyramids" => {
+                    if value(cursor, "a count")? > 0 {
+                        return Err(volume(cursor, &quoted(keyword)));
+                    }
+                }
+                keyword => {
+                    if let Some(kind) = kind_of(keyword) {
+                        let count = value(cursor, "the number of elements")?;
+                        lists.push(List { cursor: cursor.clone(), count, kind });
+                    }
+                    // What a list holds is numbers: the next keyword starts with a letter.
+                    skip_numbers(cursor);
+                }
+            }
+        }
+        if !vertices_seen {
+            let problem = "it has no list of Vertices";
+            return Err(source.error(problem, "Save the mesh again"));
+        }
+        sink.end_nodes(cursor)?;
+        for List { mut cursor, count, kind } in lists {
+            let cursor = &mut cursor;
+            if kind == Kind::Triangle {
+                sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
+            }
+            each_row(
+                cursor,
+                count,
+                "elements",
+                sink,
+                |cursor| {
+                    let nodes = nodes(cursor, kind)?;
+                    let reference = match kind {
+                        Kind::Point => 0,
+                        _ => cursor.signed("the reference of an element")?,
+                    };
+                    Ok((nodes, reference))
+                },
+                |cursor, sink, done, (nodes, reference)| {
+                    let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
+                    sink.element(cursor, &element)
+                },
+            )?;
+        }
+        Ok(Layout::in_place(Format::Medit, Numbers::TEXT))
+    }
+}
+
+fn kind_of(keyword: &[u8]) -> Option<Kind> {
+    match keyword {
+        b"Corners" | b"RequiredVertices" => Some(Kind::Point),
+        b"Edges" => Some(Kind::Line),
+        b"Triangles" => Some(Kind::Triangle),
+        b"Quadrilaterals" => Some(Kind::Quadrilateral),
+        _ => None,
+    }
+}
+
+/// Reads the number after a keyword, on its row or the next.
+fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error(format!("the file ends before {what}"), CUT_OFF));
+    }
+    cursor.integer(what)
+}
+
+fn vertices(
+    cursor: &mut Cursor<'_>,
+    dimension: u64,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error("the file ends before the number of vertices", CUT_OFF));
+    }
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    each_row(
+        cursor,
+        count,
+        "vertices",
+        sink,
+        |cursor| {
+            let point = cursor.point("a vertex")?;
+            if dimension == 3 {
+                cursor.coordinate('z', "a vertex")?;
+            }
+            cursor.signed("the reference of a vertex")?;
+            Ok(point)
+        },
+        |cursor, sink, done, (x_at, at)| {
+            sink.node(cursor, done + 1, 2, x_at, at);
+            Ok(())
+        },
+    )
+}
+
+/// Moves to the last row before the next keyword.
+fn skip_numbers(cursor: &mut Cursor<'_>) {
+    let mut next = cursor.clone();
+    while next.next_row() && !next.is_at_letter() {
+        *cursor = next.clone();
+    }
+    cursor.rest();
+}

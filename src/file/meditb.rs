@@ -1,0 +1,223 @@
+//! Medit's `.meshb`, versions 1 to 4, in either byte order.
+//!
+//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: each keyword is followed by the place of the
+//! next one. Version 1 has coordinates in single precision, version 3 places of 8 bytes, version 4 all whole numbers of 8.
+
+use crate::error::ReadError;
+use crate::file::binary::Order;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, volume};
+use crate::file::source::Source;
+use crate::file::text::{CUT_OFF, Cursor};
+use crate::mesh::Precision;
+
+pub(crate) struct MeditBinary;
+
+/// How wide the numbers of a version are.
+#[derive(Clone, Copy)]
+struct Widths {
+    order: Order,
+    precision: Precision,
+    place: usize,
+    integer: usize,
+}
+
+/// A list of elements that was passed over, as they may stand before the vertices.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    bytes: &'a [u8],
+    kind: Kind,
+    /// Whether each element has a reference after its vertices.
+    referred: bool,
+}
+
+const DIMENSION: i32 = 3;
+const VERTICES: i32 = 4;
+const END: i32 = 54;
+
+impl Walk for MeditBinary {
+    const VERTICES: &'static str = "Vertices";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let order = if source.bytes.first() == Some(&1) { Order::Little } else { Order::Big };
+        let small = Widths { order, precision: Precision::Single, place: 4, integer: 4 };
+        integer(cursor, small, 4, "the code")?;
+        let widths = match integer(cursor, small, 4, "the version")? {
+            1 => small,
+            2 => Widths { precision: Precision::Double, ..small },
+            3 => Widths { precision: Precision::Double, place: 8, ..small },
+            4 => Widths { precision: Precision::Double, place: 8, integer: 8, order },
+            other => {
+                let problem = format!("the version is {other}");
+                return Err(cursor.error(problem, "Versions 1 to 4 are read"));
+            }
+        };
+        let mut dimension = 0;
+        let mut lists: Vec<List<'_>> = Vec::new();
+        let mut vertices_seen = false;
+        loop {
+            let keyword = integer(cursor, widths, 4, "a keyword")?;
+            if keyword == i64::from(END) {
+                break;
+            }
+            let next = integer(cursor, widths, widths.place, "the place of the next list")?;
+            let list = Cursor::clone(cursor);
+            match i32::try_from(keyword).unwrap_or(-1) {
+                DIMENSION => {
+                    dimension = integer(cursor, widths, 4, "the dimension")?;
+                    if dimension != 2 && dimension != 3 {
+                        let problem = format!("the dimension is {dimension}");
+                        return Err(cursor.error(problem, "It is 2, or 3 with a third coordinate"));
+                    }
+                }
+                VERTICES if vertices_seen => {
+                    let problem = "this is the second list of Vertices";
+                    return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                }
+                VERTICES => {
+                    vertices_seen = true;
+                    vertices(cursor, widths, dimension, sink)?;
+                }
+                8..=10 | 49 => {
+                    if integer(cursor, widths, widths.integer, "a count")? > 0 {
+                        return Err(volume(cursor, "elements of a volume"));
+                    }
+                }
+                keyword => {
+                    let of = match keyword {
+                        5 => Some((Kind::Line, true)),
+                        6 => Some((Kind::Triangle, true)),
+                        7 => Some((Kind::Quadrilateral, true)),
+                        13 | 15 => Some((Kind::Point, false)),
+                        _ => None,
+                    };
+                    if let Some((kind, referred)) = of {
+                        let count = integer(cursor, widths, widths.integer, "a count")?;
+                        let size = (kind.nodes() + usize::from(referred)) * widths.integer;
+                        let bytes = items(cursor, count, size, "elements")?;
+                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred });
+                    }
+                }
+            }
+            if next == 0 {
+                break;
+            }
+            let place = usize::try_from(next).ok().filter(|&place| place > list.at_byte());
+            match place {
+                Some(place) if place <= source.bytes.len() => {
+                    *cursor = list;
+                    cursor.pass(place - cursor.at_byte());
+                }
+                _ => {
+                    let problem = format!("the next list is said to be at byte {next}");
+                    return Err(list.error(problem, CUT_OFF));
+                }
+            }
+        }
+        if !vertices_seen {
+            return Err(source.error("it has no list of Vertices", "Save the mesh again"));
+        }
+        sink.end_nodes(cursor)?;
+        for list in lists {
+            elements(&list, widths, sink)?;
+        }
+        let numbers = Numbers::adjacent(order, widths.precision);
+        Ok(Layout::in_place(Format::MeditBinary, numbers))
+    }
+}
+
+/// Takes a whole number of 4 or 8 bytes.
+fn integer(
+    cursor: &mut Cursor<'_>,
+    widths: Widths,
+    size: usize,
+    what: &str,
+) -> Result<i64, ReadError> {
+    let start = cursor.clone();
+    let bytes = cursor.take(size);
+    let bytes = bytes.ok_or_else(|| start.error(format!("the file ends before {what}"), CUT_OFF));
+    bytes.map(|bytes| number(bytes, widths.order))
+}
+
+fn number(bytes: &[u8], order: Order) -> i64 {
+    match bytes.len() {
+        4 => i64::from(order.i32(bytes.try_into().expect("4 bytes"))),
+        _ => order.u64(bytes.try_into().expect("8 bytes")).cast_signed(),
+    }
+}
+
+/// Takes the items of a list.
+fn items<'a>(
+    cursor: &mut Cursor<'a>,
+    count: i64,
+    size: usize,
+    what: &str,
+) -> Result<&'a [u8], ReadError> {
+    let start = cursor.clone();
+    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+    let bytes = bytes.and_then(|bytes| cursor.take(bytes));
+    bytes.ok_or_else(|| start.error(format!("the file ends before its {count} {what}"), CUT_OFF))
+}
+
+fn vertices(
+    cursor: &mut Cursor<'_>,
+    widths: Widths,
+    dimension: i64,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    let count = integer(cursor, widths, widths.integer, "the number of vertices")?;
+    cursor.check_vertex_count(u64::try_from(count).unwrap_or(0))?;
+    if dimension == 0 {
+        return Err(cursor.error("Vertices stand before the Dimension", "Save the mesh again"));
+    }
+    let size = widths.precision.bytes();
+    let item = dimension as usize * size + widths.integer;
+    let bytes = items(cursor, count, item, "vertices")?;
+    let start = cursor.taken();
+    sink.expect_nodes(bytes.len() / item);
+    for (index, vertex) in bytes.chunks_exact(item).enumerate() {
+        let [x, y] = [0, 1].map(|axis| {
+            let bytes = &vertex[axis * size..][..size];
+            match widths.precision {
+                Precision::Single => {
+                    f64::from(widths.order.f32(bytes.try_into().expect("4 bytes")))
+                }
+                Precision::Double => widths.order.f64(bytes.try_into().expect("8 bytes")),
+            }
+        });
+        let tag = index as u64 + 1;
+        if !x.is_finite() || !y.is_finite() {
+            let problem = format!("a coordinate of vertex {tag} is not a finite number");
+            return Err(cursor.error(problem, "Write the mesh again"));
+        }
+        let place = &Cursor::at_byte_of(cursor.source, start + index * item);
+        sink.node(place, tag, 2, start + index * item, [x, y]);
+    }
+    Ok(())
+}
+
+fn elements(list: &List<'_>, widths: Widths, sink: &mut impl Sink) -> Result<(), ReadError> {
+    let List { cursor, bytes, kind, referred } = list;
+    let (kind, size) = (*kind, widths.integer);
+    let item = (kind.nodes() + usize::from(*referred)) * size;
+    if kind == Kind::Triangle {
+        sink.expect_elements(bytes.len() / item);
+    }
+    for (index, element) in bytes.chunks_exact(item).enumerate() {
+        let mut numbers = [0; 5];
+        for (value, bytes) in numbers.iter_mut().zip(element.chunks_exact(size)) {
+            *value = number(bytes, widths.order);
+        }
+        let mut nodes = [0; 4];
+        for (node, &number) in nodes.iter_mut().zip(&numbers[..kind.nodes()]) {
+            *node = u64::try_from(number).unwrap_or(0);
+        }
+        let reference = if *referred { numbers[kind.nodes()] } else { 0 };
+        let element = Element { tag: index as u64 + 1, kind, region: [reference, 0], nodes };
+        let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + index * item);
+        sink.element(place, &element)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,165 @@
+//! Wavefront's `.obj`, of a mesh in the plane.
+//!
+//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from one as they come; faces and lines may
+//! name them by negative numbers too, counted back from the last one before them. Texture coordinates and normals are
+//! not read.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::regions::Numbering;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, Cursor, integer, quoted};
+
+pub(crate) struct Obj;
+
+/// A row that is used.
+enum Row<'a> {
+    Vertex(usize, [f64; 2]),
+    /// The vertices of a face.
+    Face(Vec<i64>),
+    /// The vertices of a line, or those that are points.
+    Points(Vec<i64>),
+    /// The start of a group, object or material, all of the row.
+    Name(&'a [u8]),
+    Other,
+}
+
+impl Walk for Obj {
+    const VERTICES: &'static str = "the list of v rows";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let rows = Cursor::new(source).rows();
+        let cursor = &mut Cursor::new(source);
+        let mut count = 0;
+        each_row(cursor, rows, "rows", sink, vertex, |cursor, sink, _, row| {
+            if let Row::Vertex(x_at, at) = row {
+                count += 1;
+                sink.node(cursor, count, 2, x_at, at);
+            }
+            Ok(())
+        })?;
+        cursor.check_vertex_count(count)?;
+        sink.end_nodes(cursor)?;
+        let cursor = &mut Cursor::new(source);
+        let (mut before, mut faces) = (0, 0);
+        let mut names = Numbering::default();
+        let mut region = [0; 2];
+        each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
+            match row {
+                Row::Vertex(..) => before += 1,
+                Row::Name(name) => {
+                    let number = i64::from(names.number(name.to_vec())) + 1;
+                    region[usize::from(!name.starts_with(b"usemtl"))] = number;
+                }
+                Row::Face(corners) => {
+                    let tag = faces + 1;
+                    let nodes = counted(cursor, &corners, before)?;
+                    face(cursor, sink, tag, region, &nodes)?;
+                    faces = tag;
+                }
+                Row::Points(points) => {
+                    let nodes = counted(cursor, &points, before)?;
+                    hold(cursor, sink, 0, region, &nodes)?;
+                }
+                Row::Other => {}
+            }
+            Ok(())
+        })?;
+        Ok(Layout::in_place(Format::Obj, Numbers::TEXT))
+    }
+}
+
+/// The numbers of vertices, those that are counted back made to count from the first one.
+fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64>, ReadError> {
+    let number = |&vertex: &i64| {
+        let number = match vertex {
+            0.. => Some(vertex.unsigned_abs()),
+            _ => (before + 1).checked_sub(vertex.unsigned_abs()),
+        };
+        let problem = || format!("vertex {vertex} stands before the first one");
+        number.ok_or_else(|| cursor.error(problem(), CORRECT))
+    };
+    vertices.iter().map(number).collect()
+}
+
+/// Hands on a face. Polygons of more than four corners keep their vertices fixed.
+fn face(
+    cursor: &Cursor<'_>,
+    sink: &mut impl Sink,
+    tag: u64,
+    region: [i64; 2],
+    corners: &[u64],
+) -> Result<(), ReadError> {
+    match Kind::of_polygon(corners.len() as u64) {
+        Some(kind @ (Kind::Triangle | Kind::Quadrilateral)) => {
+            let mut nodes = [0; 4];
+            nodes[..corners.len()].copy_from_slice(corners);
+            sink.element(cursor, &Element { tag, kind, region, nodes })
+        }
+        _ => hold(cursor, sink, tag, region, corners),
+    }
+}
+
+/// Hands on vertices that stay fixed.
+fn hold(
+    cursor: &Cursor<'_>,
+    sink: &mut impl Sink,
+    tag: u64,
+    region: [i64; 2],
+    vertices: &[u64],
+) -> Result<(), ReadError> {
+    vertices.iter().try_for_each(|&vertex| {
+        let (kind, nodes) = (Kind::Point, [vertex, 0, 0, 0]);
+        sink.element(cursor, &Element { tag, kind, region, nodes })
+    })
+}
+
+/// Reads a row if it is a vertex's.
+#[inline]
+fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
+    if cursor.token() != Some(b"v") {
+        return Ok(Row::Other);
+    }
+    let (x_at, at) = cursor.point("a vertex")?;
+    cursor.coordinate('z', "a vertex")?;
+    Ok(Row::Vertex(x_at, at))
+}
+
+/// Reads a row if it is not a vertex's.
+#[inline]
+fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
+    let mut row = cursor.clone();
+    match cursor.token() {
+        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2])),
+        Some(kind @ (b"f" | b"l" | b"p")) => {
+            let mut corners = Vec::with_capacity(3);
+            while let Some(token) = cursor.token() {
+                let end = memchr::memchr(b'/', token).unwrap_or(token.len());
+                corners.push(signed(&token[..end]).ok_or_else(|| {
+                    let problem = format!("a vertex is `{}`, not a whole number", quoted(token));
+                    cursor.error(problem, CORRECT)
+                })?);
+            }
+            if corners.is_empty() {
+                return Err(cursor.error("an element without vertices", CORRECT));
+            }
+            Ok(if kind == b"f" { Row::Face(corners) } else { Row::Points(corners) })
+        }
+        Some(b"g" | b"o" | b"usemtl") => Ok(Row::Name(row.rest())),
+        Some(b"curv" | b"curv2" | b"surf") => {
+            let problem = "curves and surfaces of free form are not read";
+            Err(cursor.error(problem, "Save the mesh as triangles"))
+        }
+        _ => Ok(Row::Other),
+    }
+}
+
+fn signed(token: &[u8]) -> Option<i64> {
+    let (digits, sign) = match token.strip_prefix(b"-") {
+        Some(digits) => (digits, -1),
+        None => (token, 1),
+    };
+    Some(sign * i64::try_from(integer(digits)?).ok()?)
+}

@@ -1,0 +1,303 @@
+//! PLY, as text and in binary of either byte order.
+//!
+//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. Of the vertices x and y are
+//! read, of the faces `vertex_indices` (or `vertex_index`), of edges `vertex1` and `vertex2`; other elements and properties are
+//! passed over. Coordinates of the type `float` are of single precision in text too.
+
+use crate::error::ReadError;
+use crate::file::binary::Order;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
+use crate::mesh::Precision;
+
+pub(crate) struct Ply;
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq)]
+enum Number {
+    Integer { size: usize, signed: bool },
+    Float,
+    Double,
+}
+
+/// What each item of a list of the file has.
+struct Property<'a> {
+    name: &'a [u8],
+    /// The type of the length of a list.
+    length: Option<Number>,
+    number: Number,
+}
+
+struct List<'a> {
+    name: &'a [u8],
+    count: u64,
+    properties: Vec<Property<'a>>,
+}
+
+/// Reads items, as text or in binary.
+#[derive(Clone, Copy)]
+struct Items {
+    order: Option<Order>,
+}
+
+impl Walk for Ply {
+    const VERTICES: &'static str = "the list of vertices";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let (items, lists) = header(cursor)?;
+        let Some(vertices) = lists.iter().position(|list| list.name == b"vertex") else {
+            return Err(cursor.error("it has no element vertex", "Save the mesh again"));
+        };
+        if lists[..vertices].iter().any(|list| list.name == b"face" || list.name == b"edge") {
+            let problem = "faces stand before the vertices";
+            return Err(cursor.error(problem, "Save the vertices first"));
+        }
+        let mut layout = None;
+        for list in &lists {
+            match list.name {
+                b"vertex" => layout = Some(items.vertices(cursor, list, sink)?),
+                b"face" => {
+                    items.elements(cursor, list, &[b"vertex_indices", b"vertex_index"], sink)?
+                }
+                b"edge" => items.elements(cursor, list, &[b"vertex1", b"vertex2"], sink)?,
+                b"tristrips" => {
+                    let problem = "strips of triangles are not read";
+                    return Err(cursor.error(problem, "Save them as faces"));
+                }
+                _ => items.each(cursor, list, |_, _, _| Ok(()))?,
+            }
+        }
+        layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
+    }
+}
+
+fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>>), ReadError> {
+    cursor.line();
+    let mut items = Items { order: None };
+    let mut lists: Vec<List<'a>> = Vec::new();
+    loop {
+        cursor.row(0, 1, "lines of the header")?;
+        match cursor.token().unwrap_or_default() {
+            b"format" => {
+                items.order = match cursor.token().unwrap_or_default() {
+                    b"ascii" => None,
+                    b"binary_little_endian" => Some(Order::Little),
+                    b"binary_big_endian" => Some(Order::Big),
+                    other => {
+                        let problem = format!("the format is `{}`", quoted(other));
+                        return Err(cursor.error(problem, CORRECT));
+                    }
+                }
+            }
+            b"element" => {
+                let name = cursor.token().unwrap_or_default();
+                let count = cursor.integer("the number of elements")?;
+                lists.push(List { name, count, properties: Vec::new() });
+            }
+            b"property" => {
+                let first = cursor.token().unwrap_or_default();
+                let (length, number) = match first {
+                    b"list" => (Some(number(cursor)?), number(cursor)?),
+                    kind => (None, number_of(cursor, kind)?),
+                };
+                let name = cursor.token().unwrap_or_default();
+                match lists.last_mut() {
+                    Some(list) => list.properties.push(Property { name, length, number }),
+                    None => return Err(cursor.error("a property of no element", CORRECT)),
+                }
+            }
+            b"end_header" => return Ok((items, lists)),
+            _ => {}
+        }
+    }
+}
+
+fn number(cursor: &mut Cursor<'_>) -> Result<Number, ReadError> {
+    let kind = cursor.token().unwrap_or_default();
+    number_of(cursor, kind)
+}
+
+fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
+    let integer = |size, signed| Ok(Number::Integer { size, signed });
+    match kind {
+        b"char" | b"int8" => integer(1, true),
+        b"uchar" | b"uint8" => integer(1, false),
+        b"short" | b"int16" => integer(2, true),
+        b"ushort" | b"uint16" => integer(2, false),
+        b"int" | b"int32" => integer(4, true),
+        b"uint" | b"uint32" => integer(4, false),
+        b"float" | b"float32" => Ok(Number::Float),
+        b"double" | b"float64" => Ok(Number::Double),
+        other => Err(cursor.error(format!("`{}` is no type of PLY", quoted(other)), CORRECT)),
+    }
+}
+
+impl Number {
+    fn size(self) -> usize {
+        match self {
+            Number::Integer { size, .. } => size,
+            Number::Float => 4,
+            Number::Double => 8,
+        }
+    }
+}
+
+impl Items {
+    /// Hands all numbers of each item to `take`, with the places of the first number of each property.
+    fn each<'a>(
+        self,
+        cursor: &mut Cursor<'a>,
+        list: &List<'_>,
+        mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
+    ) -> Result<(), ReadError> {
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); list.properties.len()];
+        let mut places = vec![0; list.properties.len()];
+        for done in 0..list.count {
+            if self.order.is_none() {
+                cursor.row(done, list.count, "items")?;
+            }
+            let mut item = None;
+            for (index, property) in list.properties.iter().enumerate() {
+                values[index].clear();
+                let length = match property.length {
+                    None => 1,
+                    Some(length) => self.value(cursor, length, &mut item)?.0 as u64,
+                };
+                for n in 0..length {
+                    let (value, at) = self.value(cursor, property.number, &mut item)?;
+                    if n == 0 {
+                        places[index] = at;
+                    }
+                    values[index].push(value);
+                }
+            }
+            match item {
+                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places)?,
+                None => take(cursor, &values, &places)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a number. Returns it, and where it starts. `item` becomes where the first number of an item in binary starts.
+    fn value(
+        self,
+        cursor: &mut Cursor<'_>,
+        number: Number,
+        item: &mut Option<usize>,
+    ) -> Result<(f64, usize), ReadError> {
+        let Some(order) = self.order else {
+            let at = cursor.at();
+            return Ok((cursor.coordinate('n', "an item")?, at));
+        };
+        let size = number.size();
+        let Some(bytes) = cursor.take(size) else {
+            return Err(cursor.error("the file ends within its lists", CUT_OFF));
+        };
+        let at = cursor.taken();
+        item.get_or_insert(at);
+        let value = match number {
+            Number::Float => f64::from(order.f32(bytes.try_into().expect("four bytes"))),
+            Number::Double => order.f64(bytes.try_into().expect("eight bytes")),
+            Number::Integer { signed, .. } => {
+                let mut wide = [0; 8];
+                match order {
+                    Order::Little => wide[8 - size..].copy_from_slice(bytes),
+                    Order::Big => wide[..size].copy_from_slice(bytes),
+                }
+                // The number fills the upper bytes; shifting them down repeats the sign.
+                let shift = 64 - 8 * size as u32;
+                match signed {
+                    true => (order.u64(wide).cast_signed() >> shift) as f64,
+                    false => (order.u64(wide) >> shift) as f64,
+                }
+            }
+        };
+        Ok((value, at))
+    }
+
+    fn vertices(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        sink: &mut impl Sink,
+    ) -> Result<Layout, ReadError> {
+        cursor.check_vertex_count(list.count)?;
+        let named =
+            |name: &[u8]| list.properties.iter().position(|p| p.name == name && p.length.is_none());
+        let (Some(x), Some(y)) = (named(b"x"), named(b"y")) else {
+            return Err(cursor.error("vertices without x and y", "Save the mesh again"));
+        };
+        let number = list.properties[x].number;
+        let precision = match number {
+            Number::Float => Precision::Single,
+            Number::Double => Precision::Double,
+            Number::Integer { .. } => {
+                let problem = "coordinates are whole numbers";
+                return Err(cursor.error(problem, "Save them as float or double"));
+            }
+        };
+        if list.properties[y].number != number || y != x + 1 {
+            let problem = "y does not follow x with the same type";
+            return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
+        }
+        let mut tag = 0;
+        self.each(cursor, list, |place, values, places| {
+            let at = [values[x][0], values[y][0]];
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("a coordinate of vertex {tag} is not a finite number");
+                return Err(place.error(problem, CORRECT));
+            }
+            sink.node(place, tag, 2, places[x], at);
+            tag += 1;
+            Ok(())
+        })?;
+        sink.end_nodes(cursor)?;
+        Ok(match self.order {
+            None => Layout::in_place(Format::Ply, Numbers::Text { precision }),
+            Some(order) => Layout::in_place(Format::PlyBinary, Numbers::adjacent(order, precision)),
+        })
+    }
+
+    /// Reads elements whose corners are the numbers of the properties of these names.
+    fn elements(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        names: &[&[u8]],
+        sink: &mut impl Sink,
+    ) -> Result<(), ReadError> {
+        let mut tag = 0;
+        let properties = &list.properties;
+        self.each(cursor, list, |place, values, _| {
+            let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
+            let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
+            // No vertex has a number that is negative, or not whole.
+            let node = |&corner: &f64| match corner >= 0.0 && corner.fract() == 0.0 {
+                true => corner as u64,
+                false => u64::MAX,
+            };
+            let region = [0; 2];
+            match Kind::of_polygon(corners.len() as u64) {
+                Some(kind) => {
+                    let mut nodes = [0; 4];
+                    for (to, corner) in nodes.iter_mut().zip(&corners) {
+                        *to = node(corner);
+                    }
+                    sink.element(place, &Element { tag, kind, region, nodes })?;
+                }
+                None => {
+                    for nodes in corners.iter().map(|corner| [node(corner), 0, 0, 0]) {
+                        sink.element(place, &Element { tag, kind: Kind::Point, region, nodes })?;
+                    }
+                }
+            }
+            tag += 1;
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! What readers make of a file, item by item, and who takes it.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::{Encoded, Numbers};
+use crate::file::parallel_rows::take_rows;
+use crate::file::source::Source;
+use crate::file::text::Cursor;
+
+/// The kinds of elements: triangles to smooth, and others whose vertices stay fixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Point,
+    Line,
+    Triangle,
+    Quadrilateral,
+}
+
+impl Kind {
+    pub(crate) fn nodes(self) -> usize {
+        match self {
+            Kind::Point => 1,
+            Kind::Line => 2,
+            Kind::Triangle => 3,
+            Kind::Quadrilateral => 4,
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Kind::Point => "point",
+            Kind::Line => "line",
+            Kind::Triangle => "triangle",
+            Kind::Quadrilateral => "quadrilateral",
+        }
+    }
+
+    /// The kind of a polygon with so many corners, if it is one.
+    pub(crate) fn of_polygon(corners: u64) -> Option<Kind> {
+        [Kind::Point, Kind::Line, Kind::Triangle, Kind::Quadrilateral]
+            .into_iter()
+            .find(|kind| kind.nodes() as u64 == corners)
+    }
+}
+
+/// One element, as the file has it.
+pub(crate) struct Element {
+    /// The file's number for it; where it has none, its position in the list, counted as the file counts.
+    pub(crate) tag: u64,
+    pub(crate) kind: Kind,
+    /// What names its region, of what the format has for that; zeros where it has nothing.
+    pub(crate) region: [i64; 2],
+    /// As many node tags as the kind has.
+    pub(crate) nodes: [u64; 4],
+}
+
+/// Takes what a file lists: first all nodes, then all elements, each in the order of the file.
+pub(crate) trait Sink {
+    /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
+    /// another cursor. Where it returns an error it must not have changed.
+    const TAKES_AHEAD: bool = false;
+    /// Announces about how many nodes follow.
+    fn expect_nodes(&mut self, _count: usize) {}
+    /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
+    /// where the file says so; else 2.
+    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    /// Ends the list of nodes.
+    fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+    /// Announces about how many elements follow.
+    fn expect_elements(&mut self, _count: usize) {}
+    /// Takes an element that was just read.
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
+    /// Takes a remark for the user, one line.
+    fn note(&mut self, _note: &str) {}
+}
+
+/// How a file has its numbers, known once it was read.
+pub(crate) struct Layout {
+    pub(crate) format: Format,
+    pub(crate) numbers: Numbers,
+    /// The points, if they are encoded. Places of coordinates are then those in its bytes.
+    pub(crate) encoded: Option<Box<dyn Encoded>>,
+}
+
+impl Layout {
+    /// Of a file that has its coordinates in place.
+    pub(crate) fn in_place(format: Format, numbers: Numbers) -> Layout {
+        Layout { format, numbers, encoded: None }
+    }
+}
+
+/// A format of one file, by the way through it.
+pub(crate) trait Walk {
+    /// Where the file lists its vertices, for messages.
+    const VERTICES: &'static str;
+    /// Feeds the file's nodes and elements to the sink.
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError>;
+}
+
+/// Reads a list of one row an item and hands the items to the sink with their positions: on all threads as far as its
+/// rows are plain and the sink allows that, and then row by row.
+pub(crate) fn each_row<'a, S: Sink, T: Send>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    what: &str,
+    sink: &mut S,
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
+    mut take: impl FnMut(&Cursor<'a>, &mut S, u64, T) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let mut done = 0;
+    if S::TAKES_AHEAD {
+        // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
+        let nowhere = &Cursor::new(cursor.source);
+        take_rows(cursor, count, &read, |item| {
+            let taken = take(nowhere, sink, done, item).is_ok();
+            done += u64::from(taken);
+            taken
+        });
+    }
+    while done < count {
+        cursor.row(done, count, what)?;
+        let item = read(cursor)?;
+        take(cursor, sink, done, item)?;
+        done += 1;
+    }
+    Ok(())
+}
+
+/// Reads the numbers of an element's nodes.
+#[inline]
+pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: Kind) -> Result<[u64; 4], ReadError> {
+    let mut nodes = [0; 4];
+    for node in &mut nodes[..kind.nodes()] {
+        *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;
+    }
+    Ok(nodes)
+}
+
+/// The error that a file holds elements of a volume.
+#[cold]
+pub(crate) fn volume(cursor: &Cursor<'_>, what: &str) -> ReadError {
+    let problem = format!("{what} make this a volume mesh");
+    cursor.error(problem, "Only triangles of the plane are smoothed: save a mesh of the plane")
+}

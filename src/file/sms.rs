@@ -1,0 +1,116 @@
+//! SMS's `.2dm`.
+//!
+//! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
+//! order. Nodes of node strings (NS) stay fixed.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, Cursor};
+
+pub(crate) struct Sms;
+
+/// A row that is used.
+enum Row {
+    Node(u64, usize, [f64; 2]),
+    Element(Element),
+    /// The nodes of a node string.
+    String(Vec<u64>),
+    Other,
+}
+
+impl Walk for Sms {
+    const VERTICES: &'static str = "the list of ND rows";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let rows = Cursor::new(source).rows();
+        let nodes_first = &mut Cursor::new(source);
+        each_row(nodes_first, rows, "rows", sink, node, |cursor, sink, _, row| {
+            if let Row::Node(tag, x_at, at) = row {
+                sink.node(cursor, tag, 2, x_at, at);
+            }
+            Ok(())
+        })?;
+        sink.end_nodes(nodes_first)?;
+        let cursor = &mut Cursor::new(source);
+        let mut strings: Vec<u64> = Vec::new();
+        each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
+            match row {
+                Row::Element(element) => sink.element(cursor, &element)?,
+                Row::String(nodes) => {
+                    for &node in &nodes {
+                        let nodes = [node, 0, 0, 0];
+                        let point = Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes };
+                        sink.element(cursor, &point)?;
+                    }
+                    strings.extend(nodes);
+                }
+                _ => {}
+            }
+            Ok(())
+        })?;
+        if !strings.is_empty() {
+            strings.sort_unstable();
+            strings.dedup();
+            sink.note(&format!("{} nodes of node strings stay fixed", strings.len()));
+        }
+        sink.note("elevations stay with their nodes: where those move, they no longer fit");
+        Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
+    }
+}
+
+/// Reads a row if it is a node's.
+#[inline]
+fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    if cursor.token() != Some(b"ND") {
+        return Ok(Row::Other);
+    }
+    let tag = cursor.integer("the number of a node")?;
+    let owner = format_args!("node {tag}");
+    let (x_at, at) = cursor.point(owner)?;
+    cursor.coordinate('z', owner)?;
+    Ok(Row::Node(tag, x_at, at))
+}
+
+/// Reads a row if it is that of an element or a node string.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    let kind = match cursor.token() {
+        Some(b"E3T") => Kind::Triangle,
+        Some(b"E4Q") => Kind::Quadrilateral,
+        Some(b"E2L") => Kind::Line,
+        Some(b"NS") => return string(cursor),
+        Some(b"E6T" | b"E8Q" | b"E9Q" | b"E3L") => {
+            let problem = "elements with nodes on their sides, which are not moved with them";
+            return Err(cursor.error(problem, "Save linear elements (E3T, E4Q)"));
+        }
+        Some(b"E4T" | b"E6W" | b"E8H" | b"E5P") => {
+            let problem = "elements of a volume";
+            return Err(cursor.error(problem, "Only triangles of the plane are smoothed"));
+        }
+        _ => return Ok(Row::Other),
+    };
+    let tag = cursor.integer("the number of an element")?;
+    let nodes = nodes(cursor, kind)?;
+    // A material is a number. Some programs leave it out.
+    let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
+    Ok(Row::Element(Element { tag, kind, region: [material, 0], nodes }))
+}
+
+/// Reads the nodes of a row of a node string. The last node of a string is negative; what follows is its name.
+#[cold]
+fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    let mut nodes = Vec::new();
+    while !cursor.is_at_end() {
+        let node = cursor.signed("a node of a node string")?;
+        nodes.push(node.unsigned_abs());
+        match node {
+            0 => return Err(cursor.error("a node string has node 0", CORRECT)),
+            ..0 => break,
+            _ => {}
+        }
+    }
+    Ok(Row::String(nodes))
+}

@@ -1,0 +1,133 @@
+//! SU2's `.su2`.
+//!
+//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list; the index
+//! at the end of a row is not read. Every zone of a multi-zone mesh has points of its own, numbered from zero.
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::numbers::Numbers;
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, Cursor, integer, quoted};
+
+pub(crate) struct Su2;
+
+/// A list of elements that was passed over, as they may stand before the points.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    count: u64,
+    zone: usize,
+}
+
+impl Walk for Su2 {
+    const VERTICES: &'static str = "NPOIN";
+
+    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).with_comments(b'%');
+        let mut lists: Vec<List<'_>> = Vec::new();
+        // The number of points before each zone, and how many there are.
+        let (mut zones, mut points) = (vec![0], 0_u64);
+        while cursor.next_row() {
+            let (key, value) = key_and_value(cursor);
+            match key {
+                b"NDIME" => match integer(value) {
+                    Some(2) => {}
+                    Some(3) => return Err(volume(cursor, "three dimensions (NDIME= 3)")),
+                    _ => return Err(wrong(cursor, "NDIME", value)),
+                },
+                b"IZONE" if points > zones[zones.len() - 1] => zones.push(points),
+                b"NPOIN" => {
+                    let count = number(cursor, "NPOIN", value)?;
+                    cursor.check_vertex_count(points.saturating_add(count))?;
+                    sink.expect_nodes(cursor.capacity(count, "0 0\n".len()));
+                    let first = points;
+                    each_row(
+                        cursor,
+                        count,
+                        "points",
+                        sink,
+                        |cursor| cursor.point("a point"),
+                        |cursor, sink, done, (x_at, at)| {
+                            sink.node(cursor, first + done, 2, x_at, at);
+                            Ok(())
+                        },
+                    )?;
+                    points += count;
+                }
+                b"NELEM" | b"MARKER_ELEMS" => {
+                    let name = if key == b"NELEM" { "NELEM" } else { "MARKER_ELEMS" };
+                    let count = number(cursor, name, value)?;
+                    let zone = zones.len() - 1;
+                    lists.push(List { cursor: cursor.clone(), count, zone });
+                    // Not `row`, so that the error comes from the list itself, which knows more.
+                    for _ in 0..count {
+                        if !cursor.next_row() {
+                            break;
+                        }
+                    }
+                }
+                // Names of markers, counts of other lists, boxes of free-form deformation.
+                _ => {}
+            }
+        }
+        sink.end_nodes(cursor)?;
+        for List { mut cursor, count, zone } in lists {
+            let (first, cursor) = (zones[zone], &mut cursor);
+            let last = zones.get(zone + 1).copied().unwrap_or(points);
+            sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
+            each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
+                let (kind, nodes) = read;
+                let listed = &nodes[..kind.nodes()];
+                if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
+                    let kind = kind.name();
+                    let problem =
+                        format!("{kind} {done} has node {point}, which NPOIN does not list");
+                    return Err(cursor.error(problem, CORRECT));
+                }
+                let nodes = nodes.map(|node| node.saturating_add(first));
+                sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+            })?;
+        }
+        Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
+    }
+}
+
+/// The two sides of the equals sign of a row. The row itself and nothing if there is none.
+fn key_and_value<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
+    let row = cursor.rest();
+    match memchr::memchr(b'=', row) {
+        None => (row, &[]),
+        Some(at) => {
+            let value = row[at + 1..].trim_ascii();
+            let end = value.iter().position(|&byte| byte <= b' ').unwrap_or(value.len());
+            (row[..at].trim_ascii(), &value[..end])
+        }
+    }
+}
+
+fn number(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> Result<u64, ReadError> {
+    integer(value).ok_or_else(|| wrong(cursor, name, value))
+}
+
+#[cold]
+fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
+    cursor.error(format!("{name} is `{}`", quoted(value)), CORRECT)
+}
+
+/// Reads the row of an element, whose type is a number of VTK's.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
+    let kind = match cursor.integer("the type of an element")? {
+        1 => Kind::Point,
+        3 => Kind::Line,
+        5 => Kind::Triangle,
+        9 => Kind::Quadrilateral,
+        10..=14 => return Err(volume(cursor, "elements of a volume")),
+        other => {
+            let problem = format!("element type {other} is not known");
+            let remedy = "Lines (3), triangles (5) and quadrilaterals (9) are read";
+            return Err(cursor.error(problem, remedy));
+        }
+    };
+    Ok((kind, nodes(cursor, kind)?))
+}

@@ -1,0 +1,220 @@
+//! Data of points and cells of a legacy VTK file: what names the regions of cells is read, the rest passed over.
+
+use crate::error::ReadError;
+use crate::file::text::{CUT_OFF, Cursor, quoted};
+use crate::file::vtk::take;
+
+/// Names of arrays by which programs tell the regions of cells, in lower case: gmsh and meshio, VTK's own readers, and
+/// what solvers call materials.
+const REGIONS: [&[u8]; 18] = [
+    b"gmsh:physical",
+    b"gmsh:geometrical",
+    b"medit:ref",
+    b"cell_tags",
+    b"cellentityids",
+    b"materialids",
+    b"material",
+    b"materials",
+    b"material_id",
+    b"elementblockids",
+    b"blockid",
+    b"region",
+    b"regions",
+    b"regionid",
+    b"regionids",
+    b"domain",
+    b"subdomain",
+    b"reference",
+];
+
+/// Whether an array of cell data of this name tells the cells' regions.
+pub(in crate::file) fn names_regions(name: &[u8]) -> bool {
+    REGIONS.contains(&name.to_ascii_lowercase().as_slice())
+}
+
+/// The regions of cells by the first two arrays that name any, from a POINT_DATA or CELL_DATA that was just read. Data that
+/// are damaged or unknown end the search without an error: the mesh does not depend on them.
+pub(super) fn regions(cursor: &mut Cursor<'_>, binary: bool, keyword: &[u8]) -> Vec<Vec<i64>> {
+    let mut found = Vec::new();
+    let mut data = Data { binary, of_cells: keyword == b"CELL_DATA", count: 0, found: &mut found };
+    let Ok(count) = cursor.integer("a count") else {
+        return found;
+    };
+    data.count = count;
+    while cursor.next_word() {
+        if data.attribute(cursor).is_none() {
+            break;
+        }
+    }
+    found.truncate(2);
+    found
+}
+
+struct Data<'f> {
+    binary: bool,
+    of_cells: bool,
+    count: u64,
+    found: &'f mut Vec<Vec<i64>>,
+}
+
+impl Data<'_> {
+    /// Reads one attribute.
+    fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
+        let keyword = cursor.token()?.to_ascii_uppercase();
+        match keyword.as_slice() {
+            b"POINT_DATA" | b"CELL_DATA" => {
+                self.of_cells = keyword == b"CELL_DATA";
+                self.count = cursor.integer("a count").ok()?;
+            }
+            b"SCALARS" => {
+                let (name, kind) = (cursor.token()?, cursor.token()?);
+                let components = cursor.integer_or(1, "the number of components").ok()?;
+                let mut ahead = cursor.clone();
+                if ahead.next_row() && ahead.token()?.eq_ignore_ascii_case(b"LOOKUP_TABLE") {
+                    *cursor = ahead;
+                    cursor.rest();
+                }
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"VECTORS" | b"NORMALS" | b"TENSORS" | b"TENSORS6" | b"GLOBAL_IDS"
+            | b"PEDIGREE_IDS" => {
+                let components = match keyword.as_slice() {
+                    b"TENSORS" => 9,
+                    b"TENSORS6" => 6,
+                    b"VECTORS" | b"NORMALS" => 3,
+                    _ => 1,
+                };
+                let (name, kind) = (cursor.token()?, cursor.token()?);
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"TEXTURE_COORDINATES" => {
+                let name = cursor.token()?;
+                let components = cursor.integer("the dimension").ok()?;
+                let kind = cursor.token()?;
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"COLOR_SCALARS" => {
+                let name = cursor.token()?;
+                let components = cursor.integer("the number of colors").ok()?;
+                self.array(cursor, name, b"unsigned_char", components, self.count)?;
+            }
+            b"LOOKUP_TABLE" => {
+                let name = cursor.token()?;
+                let size = cursor.integer("the size of a table").ok()?;
+                self.array(cursor, name, b"unsigned_char", 4, size)?;
+            }
+            b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
+            b"FIELD" => {
+                cursor.token()?;
+                for _ in 0..cursor.integer("the number of arrays").ok()? {
+                    cursor.next_row().then_some(())?;
+                    let name = array_name(cursor)?;
+                    let components = cursor.integer("the number of components").ok()?;
+                    let tuples = cursor.integer("the number of tuples").ok()?;
+                    let kind = cursor.token()?;
+                    self.array(cursor, name, kind, components, tuples)?;
+                }
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// Reads an array if it names regions, and passes over it if not.
+    fn array(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        name: &[u8],
+        kind: &[u8],
+        components: u64,
+        tuples: u64,
+    ) -> Option<()> {
+        let wanted = self.of_cells && components == 1 && tuples == self.count;
+        if !(wanted && names_regions(name)) {
+            return pass(cursor, self.binary, kind, components.checked_mul(tuples)?).ok();
+        }
+        let mut regions = Vec::new();
+        if self.binary {
+            let size = size_of(kind)?;
+            let is_float = matches!(kind, b"float" | b"double");
+            for bytes in take(cursor, tuples, size).ok()?.chunks_exact(size) {
+                let number = bytes.iter().fold(0, |n: i64, &byte| n << 8 | i64::from(byte));
+                // Numbers that are not whole are names as good as any, by their bits.
+                regions.push(if is_float {
+                    number
+                } else {
+                    number << (64 - 8 * size) >> (64 - 8 * size)
+                });
+            }
+        } else {
+            for _ in 0..tuples {
+                cursor.next_word().then_some(())?;
+                let number = cursor.coordinate('r', "a region").ok()?;
+                // Adding zero takes the sign off a negative zero.
+                regions.push((number + 0.0).to_bits().cast_signed());
+            }
+        }
+        self.found.push(regions);
+        Some(())
+    }
+}
+
+/// Passes over a list of numbers.
+fn pass(cursor: &mut Cursor<'_>, binary: bool, kind: &[u8], count: u64) -> Result<(), ReadError> {
+    if !binary || kind == b"string" {
+        for _ in 0..count {
+            if !cursor.next_word() {
+                return Err(cursor.error("the file ends within an array", CUT_OFF));
+            }
+            cursor.token();
+        }
+        return Ok(());
+    }
+    match size_of(kind) {
+        Some(size) => take(cursor, count, size).map(|_| ()),
+        None => {
+            let problem = format!("an array of the type `{}`", quoted(kind));
+            Err(cursor.error(problem, "Save without it"))
+        }
+    }
+}
+
+/// How many bytes a number of this type has.
+fn size_of(kind: &[u8]) -> Option<usize> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"char" | b"unsigned_char" | b"signed_char" => Some(1),
+        b"short" | b"unsigned_short" => Some(2),
+        b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" => Some(4),
+        b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64" => Some(8),
+        _ => None,
+    }
+}
+
+/// Reads the name of an array, and before it what describes the array before.
+fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
+    loop {
+        let name = cursor.token()?;
+        if !name.eq_ignore_ascii_case(b"METADATA") {
+            return Some(name);
+        }
+        while cursor.line().is_some_and(|line| !line.is_empty()) {}
+        cursor.next_row().then_some(())?;
+    }
+}
+
+/// Passes over the arrays of a field of the dataset.
+pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
+    cursor.token();
+    let arrays = cursor.integer("the number of arrays of a field")?;
+    for done in 0..arrays {
+        cursor.row(done, arrays, "arrays of a field")?;
+        if array_name(cursor).is_none() {
+            return Err(cursor.error("the file ends within a field", CUT_OFF));
+        }
+        let components = cursor.integer("the number of components")?;
+        let tuples = cursor.integer("the number of tuples")?;
+        let kind = cursor.token().unwrap_or_default();
+        pass(cursor, binary, kind, components.saturating_mul(tuples))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,245 @@
+//! Arrays of a VTK XML file as bytes: base64, and blocks that are compressed.
+
+use crate::file::binary::Order;
+use crate::parallel::map_parts;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::{ZlibDecoder, ZlibEncoder};
+use std::io::Read;
+
+/// How blocks are compressed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Compressor {
+    Zlib,
+    Lz4,
+}
+
+/// How the bytes of an array are wrapped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wrapping {
+    pub(super) order: Order,
+    /// How many bytes a number of the header has.
+    pub(super) header: usize,
+    pub(super) compressor: Option<Compressor>,
+    pub(super) base64: bool,
+}
+
+/// An array that was unwrapped.
+pub(super) struct Unwrapped {
+    pub(super) bytes: Vec<u8>,
+    /// How many bytes of the file it took.
+    pub(super) taken: usize,
+    /// The size of a block before compression; 0 if there is none.
+    block: usize,
+    /// Whether the length of an array that is not compressed is in base64 apart from its content.
+    header_apart: bool,
+}
+
+/// The most bytes that a compressed one may stand for. More is no compressor's work; counts that say so are wrong.
+const MOST: usize = 1100;
+
+impl Wrapping {
+    /// The bytes of the array that starts `input`. None if they are damaged or end too early.
+    pub(super) fn unwrap(&self, input: &[u8]) -> Option<Unwrapped> {
+        match self.compressor {
+            None => self.unwrap_plain(input),
+            Some(compressor) => self.unwrap_compressed(compressor, input),
+        }
+    }
+
+    fn unwrap_plain(&self, input: &[u8]) -> Option<Unwrapped> {
+        if !self.base64 {
+            let length = self.number(input.get(..self.header)?)?;
+            let bytes = input.get(self.header..)?.get(..length)?.to_vec();
+            let taken = self.header + length;
+            return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
+        }
+        let apart = encoded(self.header);
+        // As much padding as the header alone has; with a few bytes after it there is less.
+        let padding = 3 - self.header % 3;
+        let header_apart = input.get(apart - padding..apart)? == &b"=="[..padding];
+        let first = decode(input.get(..apart)?)?;
+        let length = self.number(first.get(..self.header)?)?;
+        let (mut bytes, taken) = match header_apart {
+            true => (decode(input.get(apart..)?.get(..encoded(length))?)?, apart + encoded(length)),
+            false => {
+                let taken = encoded(self.header.checked_add(length)?);
+                (decode(input.get(..taken)?)?.split_off(self.header), taken)
+            }
+        };
+        bytes.truncate(length);
+        Some(Unwrapped { bytes, taken, block: 0, header_apart })
+    }
+
+    fn unwrap_compressed(&self, compressor: Compressor, input: &[u8]) -> Option<Unwrapped> {
+        let counts = self.numbers(input, 3)?;
+        let [blocks, size, last] = [counts[0], counts[1], counts[2]];
+        // As many numbers follow as there are blocks.
+        let counts = self.numbers(input, blocks.checked_add(3)?)?;
+        let header = self.header * counts.len();
+        let compressed: usize = counts[3..].iter().try_fold(0_usize, |a, &b| a.checked_add(b))?;
+        let (content, taken) = match self.base64 {
+            false => {
+                let content = input.get(header..)?.get(..compressed)?;
+                (content.to_vec(), header + compressed)
+            }
+            true => {
+                let content = input.get(encoded(header)..)?.get(..encoded(compressed))?;
+                (decode(content)?, encoded(header) + encoded(compressed))
+            }
+        };
+        let mut left = content.get(..compressed)?;
+        let mut packed = Vec::with_capacity(blocks);
+        for (index, &length) in counts[3..].iter().enumerate() {
+            let (block, rest) = left.split_at_checked(length)?;
+            left = rest;
+            let expected = if index + 1 == blocks && last > 0 { last } else { size };
+            if expected > length.saturating_mul(MOST) {
+                return None;
+            }
+            packed.push((block, expected));
+        }
+        let unpacked = map_parts(packed, |_, (block, expected)| {
+            let bytes = decompress(compressor, block, expected)?;
+            (bytes.len() == expected).then_some(bytes)
+        });
+        let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
+        Some(Unwrapped { bytes, taken, block: size, header_apart: true })
+    }
+
+    /// Wraps new bytes as those of `old` were wrapped.
+    pub(super) fn wrap(&self, old: &Unwrapped, bytes: &[u8]) -> Vec<u8> {
+        let Some(compressor) = self.compressor else {
+            let header = self.bytes_of(bytes.len());
+            return match (self.base64, old.header_apart) {
+                (false, _) => [header.as_slice(), bytes].concat(),
+                (true, false) => STANDARD.encode([header.as_slice(), bytes].concat()).into_bytes(),
+                (true, true) => (STANDARD.encode(header) + &STANDARD.encode(bytes)).into_bytes(),
+            };
+        };
+        let size = old.block.max(1);
+        let blocks = map_parts(bytes.chunks(size), |_, block| compress(compressor, block));
+        let last = bytes.len() % size;
+        let counts = [blocks.len(), old.block, last];
+        let counts = counts.into_iter().chain(blocks.iter().map(Vec::len));
+        let header: Vec<u8> = counts.flat_map(|count| self.bytes_of(count)).collect();
+        match self.base64 {
+            false => [header, blocks.concat()].concat(),
+            true => (STANDARD.encode(header) + &STANDARD.encode(blocks.concat())).into_bytes(),
+        }
+    }
+
+    /// The first numbers of a header that stands apart.
+    fn numbers(&self, input: &[u8], count: usize) -> Option<Vec<usize>> {
+        let length = count.checked_mul(self.header)?;
+        let decoded;
+        let bytes = match self.base64 {
+            false => input.get(..length)?,
+            true => {
+                decoded = decode(input.get(..encoded(length))?)?;
+                decoded.get(..length)?
+            }
+        };
+        bytes.chunks_exact(self.header).map(|number| self.number(number)).collect()
+    }
+
+    fn number(&self, bytes: &[u8]) -> Option<usize> {
+        let byte = |n: usize, &byte: &u8| n << 8 | usize::from(byte);
+        match self.order {
+            Order::Big => Some(bytes.iter().fold(0, byte)),
+            Order::Little => Some(bytes.iter().rev().fold(0, byte)),
+        }
+    }
+
+    fn bytes_of(&self, number: usize) -> Vec<u8> {
+        let number = number as u64;
+        match self.order {
+            Order::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
+            Order::Little => number.to_le_bytes()[..self.header].to_vec(),
+        }
+    }
+}
+
+/// The length of so many bytes in base64.
+fn encoded(bytes: usize) -> usize {
+    bytes.div_ceil(3).saturating_mul(4)
+}
+
+/// The bytes of a text in base64. The text may be longer than its padding says, where the header is not apart.
+fn decode(text: &[u8]) -> Option<Vec<u8>> {
+    STANDARD.decode(text).ok()
+}
+
+fn decompress(compressor: Compressor, block: &[u8], expected: usize) -> Option<Vec<u8>> {
+    match compressor {
+        Compressor::Zlib => {
+            let mut bytes = Vec::new();
+            ZlibDecoder::new(block).take(expected as u64).read_to_end(&mut bytes).ok()?;
+            Some(bytes)
+        }
+        Compressor::Lz4 => lz4_flex::block::decompress(block, expected).ok(),
+    }
+}
+
+fn compress(compressor: Compressor, block: &[u8]) -> Vec<u8> {
+    match compressor {
+        Compressor::Zlib => {
+            let mut out = Vec::new();
+            let mut encoder = ZlibEncoder::new(block, Compression::default());
+            encoder.read_to_end(&mut out).expect("memory can be read");
+            out
+        }
+        Compressor::Lz4 => lz4_flex::block::compress(block),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrapped_is_unwrapped() {
+        let bytes: Vec<u8> = (0..10_007_u32).map(|n| (n * n / 7 % 251) as u8).collect();
+        for order in [Order::Little, Order::Big] {
+            for header in [4, 8] {
+                for base64 in [false, true] {
+                    for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
+                        for header_apart in [false, true] {
+                            let wrapping = Wrapping { order, header, compressor, base64 };
+                            let old = Unwrapped {
+                                bytes: Vec::new(),
+                                taken: 0,
+                                block: 1000,
+                                header_apart,
+                            };
+                            for bytes in [&bytes[..], &bytes[..3000], &bytes[..1]] {
+                                let mut wrapped = wrapping.wrap(&old, bytes);
+                                let length = wrapped.len();
+                                wrapped.extend_from_slice(b"   </DataArray>");
+                                let back = wrapping.unwrap(&wrapped).unwrap();
+                                assert!(back.bytes == bytes, "{wrapping:?} {header_apart}");
+                                assert_eq!(back.taken, length, "{wrapping:?} {header_apart}");
+                                assert!(wrapping.unwrap(&wrapped[..length - 1]).is_none());
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_lengths_take_no_memory() {
+        for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
+            for base64 in [false, true] {
+                let wrapping = Wrapping { order: Order::Little, header: 8, compressor, base64 };
+                for byte in [b'/', b'A', 0xFF, 1] {
+                    assert!(
+                        wrapping.unwrap(&[byte; 64]).is_none_or(|found| found.bytes.len() < 64)
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! The elements of a VTK XML file, and where they stand.
+
+use crate::error::{Location, ReadError};
+use crate::file::binary::Order;
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::file::vtu::blocks::Compressor;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use std::ops::Range;
+
+/// What the tags of a file say.
+pub(super) struct Document {
+    pub(super) order: Order,
+    /// How many bytes a number has that tells the length of a block.
+    pub(super) header: usize,
+    pub(super) compressor: Option<Compressor>,
+    pub(super) points: u64,
+    pub(super) cells: u64,
+    pub(super) arrays: Vec<Array>,
+    pub(super) appended: Option<Appended>,
+}
+
+/// A `DataArray`.
+pub(super) struct Array {
+    /// The element it stands in: `Points`, `Cells`, `PointData` and so on.
+    pub(super) section: String,
+    pub(super) name: String,
+    pub(super) number: String,
+    pub(super) components: u64,
+    pub(super) format: Coding,
+    /// Where its text stands; empty if it is appended.
+    pub(super) content: Range<usize>,
+    /// Of an appended array, where it starts in the appended data and where the file says so.
+    pub(super) offset: Option<(usize, Range<usize>)>,
+    /// Where its tag starts.
+    pub(super) at: usize,
+}
+
+/// How an array is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Coding {
+    Ascii,
+    Base64,
+    Appended,
+}
+
+/// The data at the end of the file.
+#[derive(Clone, Copy)]
+pub(super) struct Appended {
+    /// Where it starts, after the underscore.
+    pub(super) start: usize,
+    pub(super) base64: bool,
+}
+
+impl Document {
+    pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
+        let mut reader = Reader::from_reader(source.bytes.as_slice());
+        reader.config_mut().check_end_names = false;
+        let mut document = Document {
+            order: Order::Little,
+            header: 4,
+            compressor: None,
+            points: 0,
+            cells: 0,
+            arrays: Vec::new(),
+            appended: None,
+        };
+        let mut open: Vec<String> = Vec::new();
+        let mut seen = false;
+        loop {
+            let at = reader.buffer_position() as usize;
+            let event = reader.read_event().map_err(|error| {
+                let place = Location::Line(source.line_of(at.min(source.bytes.len())));
+                source.error_at(place, format!("it is no XML: {error}"), CORRECT)
+            })?;
+            let after = reader.buffer_position() as usize;
+            match event {
+                Event::Eof => break,
+                Event::End(_) => {
+                    open.pop();
+                }
+                Event::Start(tag) | Event::Empty(tag) => {
+                    let tag = Tag { source, at, tag };
+                    let name = String::from_utf8_lossy(tag.tag.name().as_ref()).into_owned();
+                    let is_empty = source.bytes[at..after].ends_with(b"/>");
+                    match name.as_str() {
+                        "VTKFile" => {
+                            seen = true;
+                            document.header_of(&tag)?;
+                        }
+                        "Piece" => document.piece(&tag)?,
+                        "DataArray" | "Array" => {
+                            let section = open.last().cloned().unwrap_or_default();
+                            let array = tag.array(section, after, is_empty)?;
+                            document.arrays.push(array);
+                        }
+                        "AppendedData" => {
+                            document.appended = Some(tag.appended(after)?);
+                            // What follows need not be XML.
+                            break;
+                        }
+                        _ => {}
+                    }
+                    if !is_empty {
+                        open.push(name);
+                    }
+                }
+                _ => {}
+            }
+        }
+        if !seen {
+            return Err(source.error("it has no VTKFile element", "Save the mesh again"));
+        }
+        Ok(document)
+    }
+
+    fn header_of(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+        let kind = tag.attribute("type")?.unwrap_or_default();
+        if kind != "UnstructuredGrid" {
+            let problem = format!("a VTK file of the type {}", quoted(kind.as_bytes()));
+            let remedy = "Save as an unstructured grid in one file (.vtu)";
+            return Err(tag.error(problem, remedy));
+        }
+        if tag.attribute("byte_order")?.as_deref() == Some("BigEndian") {
+            self.order = Order::Big;
+        }
+        if tag.attribute("header_type")?.as_deref() == Some("UInt64") {
+            self.header = 8;
+        }
+        self.compressor = match tag.attribute("compressor")?.as_deref() {
+            None | Some("") => None,
+            Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
+            Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
+            Some(other) => {
+                let problem = format!("it is compressed by {}", quoted(other.as_bytes()));
+                return Err(tag.error(problem, "Save with zlib, LZ4 or no compression"));
+            }
+        };
+        Ok(())
+    }
+
+    fn piece(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+        let points = tag.number("NumberOfPoints")?;
+        if points == 0 {
+            return Ok(());
+        }
+        if self.points > 0 {
+            let problem = "the mesh is in several pieces";
+            return Err(tag.error(problem, "Merge the pieces, and save as one"));
+        }
+        self.points = points;
+        self.cells = tag.number("NumberOfCells")?;
+        Ok(())
+    }
+}
+
+/// A tag, and where it stands.
+struct Tag<'a> {
+    source: &'a Source,
+    at: usize,
+    tag: BytesStart<'a>,
+}
+
+impl Tag<'_> {
+    fn attribute(&self, name: &str) -> Result<Option<String>, ReadError> {
+        for attribute in self.tag.attributes().with_checks(false) {
+            let attribute =
+                attribute.map_err(|error| self.error(format!("an attribute: {error}"), CORRECT))?;
+            if attribute.key.as_ref() == name.as_bytes() {
+                return Ok(Some(String::from_utf8_lossy(&attribute.value).into_owned()));
+            }
+        }
+        Ok(None)
+    }
+
+    fn number(&self, name: &str) -> Result<u64, ReadError> {
+        let text = self.attribute(name)?.unwrap_or_default();
+        text.trim().parse().map_err(|_| {
+            let problem = format!("{name} is `{}`, not a whole number", quoted(text.as_bytes()));
+            self.error(problem, CORRECT)
+        })
+    }
+
+    fn array(&self, section: String, after: usize, is_empty: bool) -> Result<Array, ReadError> {
+        let bytes = &self.source.bytes;
+        let format = match self.attribute("format")?.as_deref() {
+            Some("binary") => Coding::Base64,
+            Some("appended") => Coding::Appended,
+            None | Some("ascii") => Coding::Ascii,
+            Some(other) => {
+                let problem = format!("an array of the format {}", quoted(other.as_bytes()));
+                return Err(self.error(problem, "Save the mesh again"));
+            }
+        };
+        let end = match is_empty {
+            true => after,
+            false => match memchr::memchr(b'<', &bytes[after..]) {
+                Some(length) => after + length,
+                None => return Err(self.error("an array without an end", CUT_OFF)),
+            },
+        };
+        let offset = match format {
+            Coding::Appended => {
+                let value = self.number("offset")?;
+                let offset = usize::try_from(value).unwrap_or(usize::MAX);
+                Some((offset, self.place_of_value("offset", after)?))
+            }
+            _ => None,
+        };
+        let components = match self.attribute("NumberOfComponents")? {
+            None => 1,
+            Some(_) => self.number("NumberOfComponents")?,
+        };
+        Ok(Array {
+            section,
+            name: self.attribute("Name")?.unwrap_or_default(),
+            number: self.attribute("type")?.unwrap_or_default(),
+            components,
+            format,
+            content: after..end,
+            offset,
+            at: self.at,
+        })
+    }
+
+    /// Where the value of an attribute stands, that the tag is known to have.
+    fn place_of_value(&self, name: &str, after: usize) -> Result<Range<usize>, ReadError> {
+        let tag = &self.source.bytes[self.at..after];
+        let found = memchr::memmem::find_iter(tag, name).find_map(|at| {
+            let blank_before = at > 0 && tag[at - 1] <= b' ';
+            let rest = &tag[at + name.len()..];
+            let equals = rest.iter().position(|&byte| byte > b' ')?;
+            let quote_at = equals + 1 + rest[equals + 1..].iter().position(|&byte| byte > b' ')?;
+            let quote = rest[quote_at];
+            let is_value = blank_before && rest[equals] == b'=' && matches!(quote, b'"' | b'\'');
+            let start = at + name.len() + quote_at + 1;
+            let length = memchr::memchr(quote, &tag[start..])?;
+            is_value.then_some(self.at + start..self.at + start + length)
+        });
+        found.ok_or_else(|| self.error(format!("the place of {name} is not found"), CORRECT))
+    }
+
+    fn appended(&self, after: usize) -> Result<Appended, ReadError> {
+        let bytes = &self.source.bytes;
+        let base64 = match self.attribute("encoding")?.as_deref() {
+            Some("raw") => false,
+            None | Some("base64") => true,
+            Some(other) => {
+                let problem = format!("appended data encoded as {}", quoted(other.as_bytes()));
+                return Err(self.error(problem, "Save as raw or base64"));
+            }
+        };
+        let start = bytes[after..].iter().position(|&byte| byte > b' ');
+        match start {
+            Some(start) if bytes[after + start] == b'_' => {
+                Ok(Appended { start: after + start + 1, base64 })
+            }
+            _ => Err(self.error("appended data without an underscore before it", CUT_OFF)),
+        }
+    }
+
+    #[cold]
+    fn error(&self, problem: impl Into<String>, remedy: &str) -> ReadError {
+        let place = Location::Line(self.source.line_of(self.at));
+        self.source.error_at(place, problem, remedy)
+    }
+}

@@ -1,0 +1,93 @@
+//! `gpu-smooth compare`: what it proves from two files, and what it finds.
+
+use super::{Folder, assert_holds, disturbed, small, support};
+use std::fs;
+
+/// The row of a vertex of a `.node`, in words.
+fn words(text: &str, vertex: usize) -> Vec<&str> {
+    let is_vertex = |row: &&str| !row.starts_with('#') && !row.trim().is_empty();
+    text.lines().filter(is_vertex).nth(vertex + 1).unwrap().split_whitespace().collect()
+}
+
+/// The text with the row of a vertex replaced by one with the same blanks and another x.
+fn with_x(text: &str, vertex: usize, x: &str) -> String {
+    let old = words(text, vertex)[1];
+    let row = text.lines().find(|row| row.split_whitespace().eq(words(text, vertex))).unwrap();
+    text.replacen(row, &row.replacen(old, x, 1), 1)
+}
+
+#[test]
+fn a_smoothed_mesh_differs_in_coordinates_only() {
+    let folder = small();
+    folder.line("in.node out.node --engine cpu").clean();
+    let told = folder.line("compare in.node out.node").clean().out;
+    assert_holds(
+        &told,
+        &[
+            "only coordinates differ: 63 of 99 vertices have moved\n",
+            "every vertex that must stay has the same bits; none of 160 triangles is inverted or flat\n",
+            "the farthest has moved by ",
+            "out.node:",
+        ],
+    );
+    let told = folder.line("compare in.node in.node").clean().out;
+    assert_holds(&told, &["0 of 99 vertices have moved\n"]);
+}
+
+#[test]
+fn anything_else_that_changed_is_found() {
+    let folder = small();
+    let [node, ele] = ["in.node", "in.ele"].map(|name| folder.text(name));
+    let changed = |node: &str, ele: &str| {
+        fs::write(folder.path("b.node"), node).unwrap();
+        fs::write(folder.path("b.ele"), ele).unwrap();
+        folder.line("compare in.node b.node")
+    };
+    let comment = node.replace("made for a test", "made for the test");
+    changed(&comment, &ele).refused(&["in.node:", "more than coordinates is different", "for the"]);
+    changed(&format!("{node}# end\n"), &ele).refused(&["the end of the file"]);
+    let turned = ele.lines().last().unwrap();
+    let row: Vec<_> = turned.split_whitespace().collect();
+    let other = format!("{} {} {} {}", row[0], row[2], row[3], row[1]);
+    changed(&node, &ele.replace(turned, &other)).refused(&["the triangles are not the same"]);
+}
+
+#[test]
+fn vertices_that_must_stay_and_inverted_triangles_are_found() {
+    let folder = small();
+    let [node, ele] = ["in.node", "in.ele"].map(|name| folder.text(name));
+    fs::write(folder.path("b.ele"), ele).unwrap();
+    // A corner of the lattice, by as little as a double can.
+    let x: f64 = words(&node, 0)[1].parse().unwrap();
+    let next = f64::from_bits(x.to_bits() + 1);
+    fs::write(folder.path("b.node"), with_x(&node, 0, &format!("{next:?}"))).unwrap();
+    let label = words(&node, 0)[0];
+    folder.line("compare in.node b.node").refused(&[
+        "b.node: 1 vertex has moved that must not\n",
+        "b.node:",
+        &format!(": vertex {label}"),
+    ]);
+    // A vertex inside, far out of its patch.
+    let inner = 4 * 11 + 5;
+    fs::write(folder.path("b.node"), with_x(&node, inner, "1000.5")).unwrap();
+    let run = folder.line("compare in.node b.node");
+    run.refused(&["b.node: ", "triangles are inverted or flat\n", "b.ele:", ": triangle "]);
+}
+
+#[test]
+fn interfaces_may_move_if_that_is_said() {
+    let mesh = disturbed();
+    let half = mesh.triangles.len() / 2;
+    let regions: Vec<_> = (0..mesh.triangles.len()).map(|t| [i32::from(t < half), 7]).collect();
+    for files in support::write_regions(&mesh, &regions) {
+        let folder = Folder::new(&[]);
+        for (name, bytes) in &files {
+            fs::write(folder.path(name), bytes).unwrap();
+        }
+        let input = files[0].0;
+        let output = input.replace("in", "out");
+        folder.run([input, &output, "--engine", "cpu", "--free-interfaces"]).clean();
+        folder.run(["compare", input, &output]).refused(&["9 vertices have moved that must not"]);
+        folder.run(["compare", input, &output, "--free-interfaces"]).clean();
+    }
+}

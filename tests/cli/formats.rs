@@ -1,0 +1,114 @@
+//! Runs on files of other programs, as text and in single precision.
+
+use super::support::{self, Binary, check};
+use super::{Folder, assert_smoothed, disturbed, number};
+use gpu_smooth::{Format, Mesh, MeshFile, Precision};
+use std::fmt::Write;
+use std::fs;
+
+/// The small mesh far from the origin, where single precision has few digits left for it.
+fn far() -> Mesh {
+    let mut mesh = disturbed();
+    mesh.points.iter_mut().for_each(|[x, y]| (*x, *y) = (*x + 300.0, *y - 150.0));
+    mesh
+}
+
+fn su2(mesh: &Mesh) -> Vec<u8> {
+    let mut text = format!("% made for a test\nNDIME= 2\nNELEM= {}\n", mesh.triangles.len());
+    for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
+        writeln!(text, "5 {a} {b} {c} {i}").unwrap();
+    }
+    writeln!(text, "NPOIN= {}", mesh.points.len()).unwrap();
+    for (i, [x, y]) in mesh.points.iter().enumerate() {
+        writeln!(text, "{x:e}\t{y} {i}").unwrap();
+    }
+    (text + "NMARK= 0\n").into_bytes()
+}
+
+/// VTK's legacy format with points of single precision, as text with more digits than those.
+fn vtk_text(mesh: &Mesh) -> Vec<u8> {
+    let n = mesh.triangles.len();
+    let mut text =
+        "# vtk DataFile Version 3.0\nmade for a test\nASCII\nDATASET POLYDATA\n".to_owned();
+    writeln!(text, "POINTS {} float", mesh.points.len()).unwrap();
+    mesh.points.iter().for_each(|[x, y]| write!(text, "{x} {y} 0.5 ").unwrap());
+    writeln!(text, "\nPOLYGONS {n} {}", 4 * n).unwrap();
+    mesh.triangles.iter().for_each(|[a, b, c]| writeln!(text, "3 {a} {b} {c}").unwrap());
+    text.into_bytes()
+}
+
+/// The same in binary.
+fn vtk_binary(mesh: &Mesh) -> Vec<u8> {
+    let n = mesh.triangles.len();
+    let mut file = Binary::empty(true);
+    file.text("# vtk DataFile Version 3.0\nmade for a test\nBINARY\nDATASET POLYDATA\n");
+    file.text(&format!("POINTS {} float\n", mesh.points.len()));
+    mesh.points.iter().for_each(|[x, y]| file.reals(Precision::Single, &[*x, *y, 0.5]));
+    file.text(&format!("\nPOLYGONS {n} {}\n", 4 * n));
+    for t in &mesh.triangles {
+        file.ints(&[3]);
+        file.ints(&t.map(|v| v as i32));
+    }
+    file.text("\n");
+    file.bytes
+}
+
+/// Medit's binary format, of which version 1 has single precision.
+fn meshb(mesh: &Mesh) -> Vec<u8> {
+    let mut file = Binary::empty(false);
+    let (n, m) = (mesh.points.len() as i32, mesh.triangles.len() as i32);
+    let triangles_at = 32 + 12 * n;
+    file.ints(&[1, 1, 3, 20, 2, 4, triangles_at, n]);
+    for [x, y] in &mesh.points {
+        file.reals(Precision::Single, &[*x, *y]);
+        file.ints(&[0]);
+    }
+    file.ints(&[6, triangles_at + 12 + 16 * m, m]);
+    for t in &mesh.triangles {
+        file.ints(&t.map(|v| v as i32 + 1));
+        file.ints(&[1]);
+    }
+    file.ints(&[54, 0]);
+    file.bytes
+}
+
+#[test]
+fn what_a_file_holds_after_a_run_is_what_its_report_tells() {
+    let mesh = far();
+    let single = Precision::Single;
+    for (name, bytes, format, precision) in [
+        ("in.su2", su2(&mesh), Format::Su2, Precision::Double),
+        ("in.vtk", vtk_text(&mesh), Format::Vtk, single),
+        ("in.vtk", vtk_binary(&mesh), Format::VtkBinary, single),
+        ("in.meshb", meshb(&mesh), Format::MeditBinary, single),
+    ] {
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), &bytes).unwrap();
+        let out = name.replace("in", "out");
+        for options in ["", " --scheme edge", " --max-sweeps 1", " --desired 1.05 --fraction 0.8"] {
+            let line = format!("{name} {out} --engine cpu --report r.json{options}");
+            folder.line(&line).clean();
+            let file = MeshFile::read(&folder.path(&out)).unwrap();
+            assert_eq!((file.format(), file.precision()), (format, precision));
+            let (before, after) = (folder.mesh(name), file.mesh());
+            // By exact predicates, on the numbers of the file.
+            assert_smoothed(&before, after);
+            assert!(check::is_ccw(after));
+
+            let report = folder.json("r.json");
+            assert_eq!(report["mesh"]["format"], format.to_string());
+            assert_eq!(report["after"]["inverted"], 0);
+            for (state, mesh) in [("before", &before), ("after", after)] {
+                let told = number(&report[state]["f"]["imr"]);
+                let held = support::f_imr(mesh);
+                assert!((told / held - 1.0).abs() < 1e-9, "{line}: {told} of {held} {state}");
+            }
+            let quality = folder.line(&format!("quality {out} --json")).clean().out;
+            let quality: serde_json::Value = serde_json::from_str(&quality).unwrap();
+            for (metric, told) in report["after"]["f"].as_object().unwrap() {
+                let held = number(&quality["f"][metric]);
+                assert!((number(told) / held - 1.0).abs() < 1e-9, "{line}: {metric} is {held}");
+            }
+        }
+    }
+}

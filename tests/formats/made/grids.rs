@@ -1,0 +1,114 @@
+//! Grids of coastal models and of FreeFem, which are rows of numbers for the most part.
+
+use super::{
+    LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, points, region, regions,
+    z,
+};
+use gpu_smooth::{Format, Mesh};
+
+const VERTEX: usize = PROBED.0 as usize;
+const TRIANGLE: usize = PROBED.1;
+/// The row of the probed triangle among those of [`cells`].
+const CELL: usize = TRIANGLE + 1;
+
+pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
+    vec![fort_14(mesh), gr3(mesh), sms(mesh), sms_in_order(mesh), freefem(mesh)]
+}
+
+/// Numbers of nodes and elements that are not consecutive.
+fn sparse(vertices: &[u32]) -> String {
+    let numbers: Vec<_> = vertices.iter().map(|v| (100 + 3 * v).to_string()).collect();
+    numbers.join("  ")
+}
+
+fn fort_14(mesh: &Mesh) -> Made {
+    let mut text = Text::new("Bay of 3 islands, 2024 # first try\n ");
+    let cells = cells(mesh);
+    text.count(cells.len());
+    text.put("  ");
+    text.count(mesh.points.len());
+    text.put(" ! elements, nodes\n");
+    // As Fortran writes double precision.
+    let fortran = |x: f64| format!("{x:E}").replace('E', "D");
+    let vertices = text.rows(mesh.points.iter().enumerate().map(|(i, &[x, y])| {
+        format!("{:>9} {} {}  {}", 100 + 3 * i, fortran(x), fortran(y), fortran(z(i)))
+    }));
+    let triangles = text.rows(
+        cells
+            .iter()
+            .enumerate()
+            .map(|(i, c)| format!("{} {} {} {}", 9 + 2 * i, c.len(), sparse(c), i % 2)),
+    );
+    text.put("1 = Number of open boundaries\n2 = Total number of open boundary nodes\n");
+    text.put("2 = Number of nodes for open boundary 1\n100\n103\n0 = Number of land boundaries\n");
+    let mesh = fixing(mesh, QUADRILATERAL);
+    let probes = [(142, vertices[VERTEX]), (9 + 2 * CELL as u64, triangles[CELL])];
+    text.made("with boundaries", "fort.14", Format::Adcirc, mesh, probes)
+}
+
+fn gr3(mesh: &Mesh) -> Made {
+    let mut text = Text::new("hgrid\n");
+    text.count(mesh.triangles.len());
+    text.put(" ");
+    text.count(mesh.points.len());
+    text.put("\n");
+    let vertices = text.rows(points(mesh).map(|(i, point)| format!("{}\t{point} {}", i + 1, z(i))));
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(i, t)| format!("{} 3 {}", i + 1, joined(t, 1))));
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
+    text.made("without boundaries", "in.gr3", Format::Adcirc, mesh.clone(), probes)
+}
+
+/// The elements before the nodes, numbers that are not consecutive, materials and node strings.
+fn sms(mesh: &Mesh) -> Made {
+    let mut text = Text::new("MESH2D\nMESHNAME \"ND 1 bay\"\nNUM_MATERIALS_PER_ELEM 1\n");
+    let mut triangle = 0;
+    let triangles = text.rows(cells(mesh).into_iter().enumerate().map(|(i, cell)| {
+        let material = region(triangle);
+        triangle += usize::from(cell.len() == 3);
+        let kind = if cell.len() == 3 { "E3T" } else { "E4Q" };
+        format!("{kind}\t{}  {}   {material}", 9 + 2 * i, sparse(&cell))
+    }));
+    text.put(&format!("E2L 7 {} 5\n", sparse(&[POINT, 3])));
+    let rows = points(mesh);
+    let vertices = text.rows(rows.map(|(i, at)| format!("ND {:>6} {at} {}", 100 + 3 * i, z(i))));
+    let [a, b] = LINE.map(|v| 100 + 3 * v);
+    text.put(&format!(
+        "NS  {a} \nNS {b} 100\nNS 103 -106 1 \"shore 160\"\nBEGPARAMDEF\nGM \"Mesh\"\n"
+    ));
+    let regions = regions(mesh);
+    let fixed = [0, 1, 2, 3, POINT].into_iter().chain(LINE).chain(QUADRILATERAL);
+    let probes = [(142, vertices[VERTEX]), (9 + 2 * CELL as u64, triangles[CELL])];
+    let made = text.made("elements first", "in.2dm", Format::Sms2dm, fixing(mesh, fixed), probes);
+    Made { regions, ..made }
+}
+
+fn sms_in_order(mesh: &Mesh) -> Made {
+    let mut text = Text::new("MESH2D\n");
+    let vertices = text.rows(points(mesh).map(|(i, at)| format!("ND {} {at} 0.0", i + 1)));
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(i, t)| format!("E3T {} {}", i + 1, joined(t, 1))));
+    // A file that ends among the elements is a smaller mesh.
+    text.lists.pop();
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
+    text.made("nodes first", "in.2dm", Format::Sms2dm, mesh.clone(), probes)
+}
+
+fn freefem(mesh: &Mesh) -> Made {
+    let mut text = Text::new(" ");
+    text.count(mesh.points.len());
+    text.put("  ");
+    text.count(mesh.triangles.len());
+    text.put(" ");
+    text.count(2);
+    text.put("\n");
+    let vertices = text.rows(points(mesh).map(|(i, point)| format!("{point}  {}", i % 4)));
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(t, c)| format!("{}\t{}", joined(c, 1), region(t))));
+    text.rows([format!("{} -1", joined(&LINE, 1)), "1 2 4".into()]);
+    text.put("\n \n");
+    let regions = regions(mesh);
+    let mesh = fixing(mesh, [0, 1].into_iter().chain(LINE));
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
+    Made { regions, ..text.made("as it is written", "in.msh", Format::FreeFem, mesh, probes) }
+}
