@@ -1,5 +1,7 @@
 //! Numbers in binary files, in either byte order.
 
+use crate::mesh::Precision;
+
 /// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
@@ -37,6 +39,32 @@ impl Order {
             Order::Little => f32::from_le_bytes(bytes),
             Order::Big => f32::from_be_bytes(bytes),
         }
+    }
+
+    /// A coordinate of so many bytes as its precision takes.
+    #[inline]
+    pub(crate) fn real(self, precision: Precision, bytes: &[u8]) -> f64 {
+        match precision {
+            Precision::Single => f64::from(self.f32(bytes.try_into().expect("four bytes"))),
+            Precision::Double => self.f64(bytes.try_into().expect("eight bytes")),
+        }
+    }
+
+    /// A whole number of up to eight bytes, without a sign.
+    #[inline]
+    pub(crate) fn whole(self, bytes: &[u8]) -> u64 {
+        let append = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
+        match self {
+            Order::Big => bytes.iter().fold(0, append),
+            Order::Little => bytes.iter().rev().fold(0, append),
+        }
+    }
+
+    /// The same with a sign.
+    #[inline]
+    pub(crate) fn signed(self, bytes: &[u8]) -> i64 {
+        let unused = 64 - 8 * bytes.len();
+        self.whole(bytes).cast_signed() << unused >> unused
     }
 
     #[inline]

@@ -138,14 +138,7 @@ fn integer(
     let start = cursor.clone();
     let bytes = cursor.take(size);
     let bytes = bytes.ok_or_else(|| start.error(format!("the file ends before {what}"), CUT_OFF));
-    bytes.map(|bytes| number(bytes, widths.order))
-}
-
-fn number(bytes: &[u8], order: Order) -> i64 {
-    match bytes.len() {
-        4 => i64::from(order.i32(bytes.try_into().expect("4 bytes"))),
-        _ => order.u64(bytes.try_into().expect("8 bytes")).cast_signed(),
-    }
+    bytes.map(|bytes| widths.order.signed(bytes))
 }
 
 /// Takes the items of a list.
@@ -180,12 +173,7 @@ fn vertices(
     for (index, vertex) in bytes.chunks_exact(item).enumerate() {
         let [x, y] = [0, 1].map(|axis| {
             let bytes = &vertex[axis * size..][..size];
-            match widths.precision {
-                Precision::Single => {
-                    f64::from(widths.order.f32(bytes.try_into().expect("4 bytes")))
-                }
-                Precision::Double => widths.order.f64(bytes.try_into().expect("8 bytes")),
-            }
+            widths.order.real(widths.precision, bytes)
         });
         let tag = index as u64 + 1;
         if !x.is_finite() || !y.is_finite() {
@@ -208,7 +196,7 @@ fn elements(list: &List<'_>, widths: Widths, sink: &mut impl Sink) -> Result<(),
     for (index, element) in bytes.chunks_exact(item).enumerate() {
         let mut numbers = [0; 5];
         for (value, bytes) in numbers.iter_mut().zip(element.chunks_exact(size)) {
-            *value = number(bytes, widths.order);
+            *value = widths.order.signed(bytes);
         }
         let mut nodes = [0; 4];
         for (node, &number) in nodes.iter_mut().zip(&numbers[..kind.nodes()]) {

@@ -337,7 +337,21 @@ impl MeshFile {
         }
         Ok(match self.format {
             Format::Triangle => {
+                if path.is_file() && !TRIANGLE.has_ending_of(path) {
+                    let name = path.display();
+                    let problem = format!(
+                        "a file of this name is there, and would be read in place of {name}.node"
+                    );
+                    return refused(problem, "End the name in .node, or take another".into());
+                }
                 let Names { node, ele, poly } = Names::of(path);
+                if self.sources.len() == 2 && poly.exists() {
+                    let problem = format!(
+                        "{} of another mesh is there, and would be read with this one",
+                        poly.display()
+                    );
+                    return refused(problem, "Remove it, or take another name".into());
+                }
                 [node, ele, poly].into_iter().take(self.sources.len()).collect()
             }
             _ => vec![path.to_owned()],

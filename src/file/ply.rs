@@ -201,21 +201,10 @@ impl Items {
         let at = cursor.taken();
         item.get_or_insert(at);
         let value = match number {
-            Number::Float => f64::from(order.f32(bytes.try_into().expect("four bytes"))),
-            Number::Double => order.f64(bytes.try_into().expect("eight bytes")),
-            Number::Integer { signed, .. } => {
-                let mut wide = [0; 8];
-                match order {
-                    Order::Little => wide[8 - size..].copy_from_slice(bytes),
-                    Order::Big => wide[..size].copy_from_slice(bytes),
-                }
-                // The number fills the upper bytes; shifting them down repeats the sign.
-                let shift = 64 - 8 * size as u32;
-                match signed {
-                    true => (order.u64(wide).cast_signed() >> shift) as f64,
-                    false => (order.u64(wide) >> shift) as f64,
-                }
-            }
+            Number::Float => order.real(Precision::Single, bytes),
+            Number::Double => order.real(Precision::Double, bytes),
+            Number::Integer { signed: true, .. } => order.signed(bytes) as f64,
+            Number::Integer { signed: false, .. } => order.whole(bytes) as f64,
         };
         Ok((value, at))
     }

@@ -65,10 +65,7 @@ impl Walk for Selafin {
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
         let y_after = cursor.taken() - x_at;
         sink.expect_nodes(points as usize);
-        let number = |bytes: &[u8]| match precision {
-            Precision::Single => f64::from(order.f32(bytes.try_into().expect("4 bytes"))),
-            Precision::Double => order.f64(bytes.try_into().expect("8 bytes")),
-        };
+        let number = |bytes: &[u8]| order.real(precision, bytes);
         let size = precision.bytes();
         for (index, (x, y)) in xs.chunks_exact(size).zip(ys.chunks_exact(size)).enumerate() {
             let (at, tag) = ([number(x), number(y)], index as u64 + 1);

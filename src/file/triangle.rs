@@ -24,15 +24,25 @@ pub(crate) struct Names {
 impl Names {
     /// The files of the mesh that `path` names by its `.node`, by its `.ele`, or without either ending.
     pub(crate) fn of(path: &Path) -> Names {
-        let ending = path.extension().unwrap_or_default();
-        let upper = ending == "NODE" || ending == "ELE";
-        let named = ending.eq_ignore_ascii_case("node") || ending.eq_ignore_ascii_case("ele");
-        let stem = if named { path.with_extension("") } else { path.to_owned() };
-        let with = |ending: &str| {
-            let ending = if upper { ending.to_uppercase() } else { ending.to_owned() };
-            appended(&stem, &ending)
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        let is = |name: &str| ending.eq_ignore_ascii_case(name);
+        let stem = if is("node") || is("ele") { path.with_extension("") } else { path.to_owned() };
+        let with = |name: &str| match is(name) {
+            // As it was given, whatever its letters.
+            true => path.to_owned(),
+            false => appended(&stem, &format!(".{}", like(&ending, name))),
         };
-        Names { node: with(".node"), ele: with(".ele"), poly: with(".poly") }
+        Names { node: with("node"), ele: with("ele"), poly: with("poly") }
+    }
+}
+
+/// The name of an ending in letters as those of another ending: capitals, a capital and small ones, or small ones.
+fn like(other: &str, name: &str) -> String {
+    let (first, rest) = name.split_at(1);
+    match other.as_bytes() {
+        b"NODE" | b"ELE" => name.to_uppercase(),
+        b"Node" | b"Ele" => first.to_uppercase() + rest,
+        _ => name.to_owned(),
     }
 }
 
@@ -356,6 +366,14 @@ mod tests {
             assert_eq!(names.ele, Path::new("d/la.1.ele"), "{given}");
             assert_eq!(names.poly, Path::new("d/la.1.poly"), "{given}");
         }
-        assert_eq!(Names::of(Path::new("A.NODE")).ele, Path::new("A.ELE"));
+        for (given, node, ele, poly) in [
+            ("A.NODE", "A.NODE", "A.ELE", "A.POLY"),
+            ("A.Ele", "A.Node", "A.Ele", "A.Poly"),
+            ("A.nodE", "A.nodE", "A.ele", "A.poly"),
+        ] {
+            let names = Names::of(Path::new(given));
+            let expected = [node, ele, poly].map(Path::new);
+            assert_eq!([names.node, names.ele, names.poly], expected.map(Path::to_path_buf));
+        }
     }
 }

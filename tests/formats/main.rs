@@ -5,6 +5,7 @@ mod damage;
 mod errors;
 mod long;
 mod made;
+mod names;
 mod others;
 mod refused;
 mod regions;

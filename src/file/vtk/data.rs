@@ -1,6 +1,7 @@
 //! Data of points and cells of a legacy VTK file: what names the regions of cells is read, the rest passed over.
 
 use crate::error::ReadError;
+use crate::file::binary::Order;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::file::vtk::take;
 
@@ -136,16 +137,9 @@ impl Data<'_> {
         let mut regions = Vec::new();
         if self.binary {
             let size = size_of(kind)?;
-            let is_float = matches!(kind, b"float" | b"double");
-            for bytes in take(cursor, tuples, size).ok()?.chunks_exact(size) {
-                let number = bytes.iter().fold(0, |n: i64, &byte| n << 8 | i64::from(byte));
-                // Numbers that are not whole are names as good as any, by their bits.
-                regions.push(if is_float {
-                    number
-                } else {
-                    number << (64 - 8 * size) >> (64 - 8 * size)
-                });
-            }
+            // Numbers that are not whole are names as good as any, by their bits.
+            let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
+            regions.extend(numbers.map(|number| Order::Big.signed(number)));
         } else {
             for _ in 0..tuples {
                 cursor.next_word().then_some(())?;

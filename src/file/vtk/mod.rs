@@ -164,12 +164,7 @@ fn points(
         for (index, point) in bytes.chunks_exact(3 * width).enumerate() {
             let [x, y] = [0, 1].map(|axis| {
                 let number = &point[axis * width..][..width];
-                match precision {
-                    Precision::Single => {
-                        f64::from(Order::Big.f32(number.try_into().expect("4 bytes")))
-                    }
-                    Precision::Double => Order::Big.f64(number.try_into().expect("8 bytes")),
-                }
+                Order::Big.real(precision, number)
             });
             let x_at = start + index * 3 * width;
             let place = &Cursor::at_byte_of(cursor.source, x_at);
@@ -253,8 +248,7 @@ fn integers(
     match size {
         Some(size) => {
             let bytes = take(cursor, count, size)?;
-            let number = |bytes: &[u8]| bytes.iter().fold(0, |n, &b| n << 8 | u64::from(b));
-            Ok(bytes.chunks_exact(size).map(number).collect())
+            Ok(bytes.chunks_exact(size).map(|number| Order::Big.whole(number)).collect())
         }
         None => {
             let mut numbers = Vec::with_capacity(cursor.capacity(count, "0 ".len()));

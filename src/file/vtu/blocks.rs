@@ -145,11 +145,7 @@ impl Wrapping {
     }
 
     fn number(&self, bytes: &[u8]) -> Option<usize> {
-        let byte = |n: usize, &byte: &u8| n << 8 | usize::from(byte);
-        match self.order {
-            Order::Big => Some(bytes.iter().fold(0, byte)),
-            Order::Little => Some(bytes.iter().rev().fold(0, byte)),
-        }
+        usize::try_from(self.order.whole(bytes)).ok()
     }
 
     fn bytes_of(&self, number: usize) -> Vec<u8> {

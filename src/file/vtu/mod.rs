@@ -8,7 +8,6 @@ mod blocks;
 mod document;
 
 use crate::error::{Location, ReadError};
-use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers, Splice};
 use crate::file::sink::{Layout, Sink, Walk};
@@ -101,14 +100,7 @@ impl Walk for Vtu {
                 for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate() {
                     let number = |axis: usize| {
                         let bytes = &point[axis * wide..][..wide];
-                        match precision {
-                            Precision::Single => {
-                                f64::from(wrapping.order.f32(bytes.try_into().expect("four bytes")))
-                            }
-                            Precision::Double => {
-                                wrapping.order.f64(bytes.try_into().expect("eight bytes"))
-                            }
-                        }
+                        wrapping.order.real(precision, bytes)
                     };
                     let at = [number(0), number(1)];
                     if !at.iter().all(|x| x.is_finite()) {
@@ -228,12 +220,7 @@ impl File<'_> {
                 return Err(self.source.error_at(place, problem, "Save the mesh again"));
             }
         };
-        let byte = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
-        let number = |bytes: &[u8]| match wrapping.order {
-            Order::Big => bytes.iter().fold(0, byte),
-            Order::Little => bytes.iter().rev().fold(0, byte),
-        };
-        Ok(found.bytes.chunks_exact(size).map(number).collect())
+        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.whole(number)).collect())
     }
 
     /// The appended arrays that stand after this one.
