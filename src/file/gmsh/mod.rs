@@ -108,8 +108,9 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
-                    (Version::V40, _) => text40::elements(cursor, sink)?,
-                    (Version::V4, None) => text4::elements(cursor, sink)?,
+                    (Version::V40, _) | (Version::V4, None) => {
+                        text4::elements(cursor, version, sink)?
+                    }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
                     (Version::V4, Some(order)) => binary4::elements(cursor, order, sink)?,
                 };

@@ -1,7 +1,7 @@
 //! The sections of version 4.1: blocks, one per entity of the model.
 
 use super::kind::{kind_of, node_tags};
-use super::{ahead, all_in_blocks, block_fits, row};
+use super::{Version, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
 use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
@@ -52,8 +52,13 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
     Ok(count)
 }
 
-/// Reads `$Elements` after its first line. Returns their number.
-pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+/// Reads `$Elements` after its first line, in version 4.1 or 4.0, which differ in what comes first of a block. Returns
+/// their number.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    version: Version,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of element blocks")?;
     let count = cursor.integer("the number of elements")?;
@@ -61,8 +66,14 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
     let mut done = 0;
     for block in 0..blocks {
         row(cursor, block, blocks, "element blocks")?;
-        cursor.token(); // The entity's dimension.
+        // The dimension of the entity, which is not needed, stands before its tag in 4.1 and after it in 4.0.
+        if version == Version::V4 {
+            cursor.token();
+        }
         let entity = cursor.signed("the entity of an element block")?;
+        if version == Version::V40 {
+            cursor.token();
+        }
         let kind = cursor.integer("the type of an element block")?;
         let kind = kind_of(cursor, kind)?;
         let size = cursor.integer("the number of elements of a block")?;

@@ -1,9 +1,8 @@
-//! The sections of version 4.0: blocks, one per entity of the model, with the tag of each node before its coordinates.
+//! The nodes of version 4.0: blocks, one per entity of the model, with the tag of each node before its coordinates.
 
-use super::kind::{kind_of, node_tags};
 use super::{all_in_blocks, block_fits, row};
 use crate::error::ReadError;
-use crate::file::sink::{Element, Sink, each_row};
+use crate::file::sink::{Sink, each_row};
 use crate::file::text::Cursor;
 
 /// Reads `$Nodes` after its first line. Returns their number.
@@ -38,33 +37,5 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         done += size;
     }
     all_in_blocks(cursor, done, count, "nodes")?;
-    Ok(count)
-}
-
-/// Reads `$Elements` after its first line. Returns their number.
-pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
-    row(cursor, 0, 1, "counts")?;
-    let blocks = cursor.integer("the number of element blocks")?;
-    let count = cursor.integer("the number of elements")?;
-    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
-    let mut done = 0;
-    for block in 0..blocks {
-        row(cursor, block, blocks, "element blocks")?;
-        let entity = cursor.signed("the entity of an element block")?;
-        cursor.token(); // The entity's dimension.
-        let kind = cursor.integer("the type of an element block")?;
-        let kind = kind_of(cursor, kind)?;
-        let size = cursor.integer("the number of elements of a block")?;
-        block_fits(cursor, size, count - done, "elements")?;
-        let read = |cursor: &mut Cursor<'_>| {
-            let tag = cursor.integer("an element tag")?;
-            Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
-        };
-        each_row(cursor, size, "elements", sink, read, |cursor, sink, _, element| {
-            sink.element(cursor, &element)
-        })?;
-        done += size;
-    }
-    all_in_blocks(cursor, done, count, "elements")?;
     Ok(count)
 }
