@@ -7,6 +7,7 @@ mod clamp;
 mod connectivity;
 pub(crate) mod predicates;
 mod stars;
+mod turns;
 mod winding;
 
 pub use boundary::signed_area;

@@ -110,6 +110,20 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
                 _ => "Let those between regions move: --free-interfaces",
             }
         ),
+        MeshError::OverlappingStar { vertex, turns } => format!(
+            "{}: the triangles around vertex {} overlap: they wind {turns} times around it. Only meshes that lie \
+             flat are smoothed: separate the layers there",
+            file.vertex_place(vertex),
+            name(vertex)
+        ),
+        MeshError::BeyondPrecision { triangle, metric } => {
+            let place = file.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} is too flat, or too small beside the others, for double precision: its \
+                 quality by {metric} is not a finite number. Correct it, or smooth by area or edge",
+                place.label
+            )
+        }
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())
         }

@@ -17,15 +17,20 @@ pub(crate) struct Report {
     pub(crate) sweeps: u32,
     /// Corrections from coarser levels, each after a sweep.
     pub(crate) corrections: u32,
-    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat for the GPU.
+    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat or too small for
+    /// the GPU.
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
-    /// reached, converged, stalled, max-sweeps or cancelled.
+    /// reached, converged, stalled, held-back, max-sweeps or cancelled.
     pub(crate) stop: &'static str,
+    /// Vertices that the shape guard keeps from moving on, if the run ended for that.
+    pub(crate) held_back: usize,
+    /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
+    pub(crate) lost: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
@@ -243,6 +248,13 @@ impl Report {
             }
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
+            ("held-back", None) => {
+                let vertices = match self.held_back {
+                    1 => "1 vertex".to_owned(),
+                    n => format!("{n} vertices"),
+                };
+                format!("held back by the shape guard at {vertices} after {sweeps}")
+            }
             ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => {
                 format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
@@ -255,8 +267,17 @@ impl Report {
         }
         if self.opening_sweeps > 0 {
             let n = self.opening_sweeps;
-            let _ =
-                write!(text, "; the first {n} on the CPU, as triangles were too flat for the GPU");
+            let _ = write!(
+                text,
+                "; the first {n} on the CPU, as triangles were too flat or small for the GPU"
+            );
+        }
+        if self.lost > 0.01 {
+            let share = percent(self.lost);
+            let _ = write!(
+                text,
+                "; {share} % of the gain is lost to rounding, as coordinates have too few digits for this mesh"
+            );
         }
         if self.levels_left_out {
             text.push_str("; coarser levels of so large a mesh do not fit the GPU");

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Precision, Progress, SmoothError,
-    Smoother, Stop, output,
+    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother,
+    Stop, output,
 };
 use serde::Serialize;
 
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
-        let (outcome, taken) = smooth(args, show, &smoother, file.precision(), taken)?;
+        let (outcome, taken) = smooth(args, show, &smoother, &file, taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
@@ -80,6 +80,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             best_sweep: outcome.best_sweep,
             remaining: outcome.remaining,
             stop: outcome.stop.name(),
+            held_back: outcome.held_back,
+            lost: outcome.lost,
             goal: goal_report(&outcome),
             returned: outcome.returned,
             before: (&before).into(),
@@ -107,10 +109,10 @@ fn smooth(
     args: &SmoothArgs,
     show: &OutputArgs,
     smoother: &Smoother<'_>,
-    stored: Precision,
+    file: &MeshFile,
     mut taken: Taken,
 ) -> Result<(Outcome, Taken), String> {
-    let options = args.options(stored);
+    let options = args.options(file.precision());
     let mut bar = Bar::new(show, args.max_sweeps);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {
@@ -136,9 +138,12 @@ fn smooth(
         tell::note(show.quiet, text);
     }
     let outcome = outcome.map(|outcome| (outcome, taken));
-    outcome.map_err(|error: SmoothError| match engine::is_too_large(&error) {
-        true => format!("{error}. Smooth on the CPU: --engine cpu"),
-        false => error.to_string(),
+    outcome.map_err(|error: SmoothError| match &error {
+        SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        error if engine::is_too_large(error) => {
+            format!("{error}. Smooth on the CPU: --engine cpu")
+        }
+        error => error.to_string(),
     })
 }
 
