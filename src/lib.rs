@@ -94,6 +94,7 @@ mod quality;
 mod run;
 mod smoother;
 mod topology;
+mod untangle;
 
 /// Exact checks for inverted and flat triangles.
 pub mod validity {
@@ -125,4 +126,5 @@ pub use run::{
 };
 pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
 pub use topology::{Topology, signed_area};
+pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

@@ -10,7 +10,7 @@ use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::turns::overlapping_star;
-use crate::topology::winding::{NONE, are_positive, neighbors, wind};
+use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
 /// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
 /// consistent and counter-clockwise already.
@@ -34,6 +34,20 @@ impl<'m> Topology<'m> {
     /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
     /// [`check_smoothable`](Self::check_smoothable) checks whether the mesh is feasible and has a free vertex.
     pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
+        Self::wound(mesh, Majority::OfTriangles)
+    }
+
+    /// Finds the topology of a mesh that may be tangled. Windings are made consistent as in [`new`](Self::new), but such
+    /// that the signed areas of each part add up to a positive number. That is the area which its boundary encloses,
+    /// wherever the vertices inside are.
+    ///
+    /// # Errors
+    /// The same as those of [`new`](Self::new).
+    pub fn by_area(mesh: &'m Mesh) -> Result<Self, MeshError> {
+        Self::wound(mesh, Majority::OfArea)
+    }
+
+    fn wound(mesh: &'m Mesh, majority: Majority) -> Result<Self, MeshError> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let mut stars = stars(points.len(), triangles);
@@ -44,7 +58,7 @@ impl<'m> Topology<'m> {
             if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
                 Cow::Borrowed(triangles.as_slice())
             } else {
-                let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
+                let wound = wind(points, triangles, &neighbors(triangles, &stars)?, majority);
                 close(&wound, &mut stars, &mut free);
                 Cow::Owned(wound)
             };

@@ -14,3 +14,4 @@ pub use boundary::signed_area;
 pub use certify::certify;
 pub use connectivity::Topology;
 pub use predicates::infeasible;
+pub(crate) use turns::overlapping_star;

@@ -18,6 +18,7 @@ mod refusals;
 mod regions;
 mod report;
 mod schemes;
+mod untangle;
 
 use gpu_smooth::{Mesh, MeshFile};
 use serde_json::Value;

@@ -17,6 +17,7 @@ mod random;
 mod requests;
 mod safety;
 mod tolerance;
+mod untangle;
 
 use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};

@@ -72,7 +72,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
         MeshError::Infeasible { ref triangles } => {
-            let remedy = "Untangle the mesh first: smoothing keeps triangles from inverting, and cannot turn one back";
+            let remedy = "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back";
             let count = triangles.len();
             match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
                 [] => format!("{}: {error}. {remedy}", file.path().display()),

@@ -10,6 +10,7 @@ mod progress;
 mod report;
 mod smooth;
 mod tell;
+mod untangle;
 
 use std::process::ExitCode;
 

@@ -13,6 +13,9 @@ use crate::explain::BadTriangleReport;
 pub(crate) struct Report {
     pub(crate) engine: EngineReport,
     pub(crate) mesh: MeshReport,
+    /// How the mesh was untangled before the run, if it had to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
     pub(crate) sweeps: u32,
     /// Corrections from coarser levels, each after a sweep.
@@ -67,6 +70,16 @@ pub(crate) struct MeshReport {
     pub(crate) triangles: usize,
     pub(crate) free: usize,
     pub(crate) colors: usize,
+}
+
+/// What untangling did.
+#[derive(Serialize)]
+pub(crate) struct UntangleReport {
+    /// Triangles that were inverted or flat.
+    pub(crate) bad_before: usize,
+    pub(crate) sweeps: u32,
+    /// Vertices that it moved.
+    pub(crate) moved: usize,
 }
 
 #[derive(Serialize)]
@@ -157,6 +170,19 @@ impl Report {
             let _ = write!(text, ": {reason}");
         }
         text.push('\n');
+        if let Some(UntangleReport { bad_before, sweeps, moved }) = self.untangled {
+            let count = |n: usize, one: &str, many: &str| match n {
+                1 => format!("1 {one}"),
+                n => format!("{n} {many}"),
+            };
+            let _ = writeln!(
+                text,
+                "untangled {} in {}, which moved {}",
+                count(bad_before, "inverted or flat triangle", "inverted or flat triangles"),
+                count(sweeps as usize, "sweep", "sweeps"),
+                count(moved, "vertex", "vertices"),
+            );
+        }
         text.push('\n');
         let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
         let mut row = |name: &str, before: String, after: String| {

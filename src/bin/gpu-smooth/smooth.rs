@@ -15,8 +15,11 @@ use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
 use crate::progress::Bar;
-use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
+use crate::report::{
+    self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds, UntangleReport,
+};
 use crate::tell;
+use crate::untangle;
 
 /// Reads a mesh.
 pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
@@ -46,7 +49,17 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
         let opening =
             opening.unwrap_or_else(|| scope.spawn(move || Ok(engine::choose(args, size))));
-        let smoother = Smoother::new(mesh).map_err(|error| refusal(args, &file, &error))?;
+        let mended;
+        let (smoother, mending) = match Smoother::new(mesh) {
+            Ok(smoother) => (smoother, None),
+            Err(error) if args.untangle && untangle::can_mend(&error) => {
+                mended = untangle::mend(args, show, &file, out)?;
+                let smoother = Smoother::new(&mended.mesh);
+                let smoother = smoother.map_err(|error| explain::mesh_error(&file, &error))?;
+                (smoother, Some(&mended))
+            }
+            Err(error) => return Err(refusal(args, &file, &error)),
+        };
         let taken =
             opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
         let before = smoother.quality(&mesh.points).map_err(told)?;
@@ -72,6 +85,11 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let report = Report {
             engine: engine_report(&taken),
             mesh: mesh_report(&file, mesh, &smoother),
+            untangled: mending.map(|mended| UntangleReport {
+                bad_before: mended.bad_before,
+                sweeps: mended.sweeps,
+                moved: mended.moved,
+            }),
             scheme: args.scheme.to_string(),
             sweeps: outcome.sweeps,
             corrections: outcome.corrections,
