@@ -1,5 +1,6 @@
 //! A prepared mesh, and the outcome of a run.
 
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -441,7 +442,9 @@ impl Run<'_> {
             mean_excess(*metric, self.problem, from) * self.problem.triangles().len() as f64
         };
         let is_huge = |metric: &Metric| {
-            !metric.properties().is_inverse_mean_ratio && !(sum(metric) < MOST_ON_DEVICE)
+            let is_ratio = metric.properties().is_inverse_mean_ratio;
+            // A sum that is not a number is huge as well.
+            !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
         };
         if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
             return Ok((None, None));

@@ -16,8 +16,8 @@ const UNDERFLOW: f64 = 1e-289;
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let corners = corners.map(|v| points[v as usize]);
     let orientation = orient(corners);
-    // True for NaN as well.
-    if !(orientation.abs() < UNDERFLOW) { orientation } else { tiny_orientation(corners) }
+    // Not so for NaN.
+    if orientation.abs() < UNDERFLOW { tiny_orientation(corners) } else { orientation }
 }
 
 fn orient(corners: [[f64; 2]; 3]) -> f64 {

@@ -132,7 +132,7 @@ impl<'p> State<'p> {
         let area = |&t: &u32| self.triangle(t, |v| self.positions[v as usize]).area();
         let parts = map_parts(region.triangles.chunks(CHUNK), |_, part| {
             part.iter().map(area).fold(Assessment::EMPTY, |all, area| {
-                all.and(Assessment { least: area, bad: usize::from(!(area > 0.0)) })
+                all.and(Assessment { least: area, bad: usize::from(area.is_nan() || area <= 0.0) })
             })
         });
         parts.into_iter().fold(Assessment::EMPTY, Assessment::and)

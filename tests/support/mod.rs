@@ -12,6 +12,7 @@ pub mod rearrange;
 pub mod recipe;
 pub mod regions;
 pub mod rng;
+pub mod tangle;
 pub mod trig;
 pub mod write;
 

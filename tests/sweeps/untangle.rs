@@ -2,35 +2,11 @@
 
 use crate::{plate, support, with_points};
 use gpu_smooth::{Mesh, MeshError, Precision, Topology, Untangled, Untangling, untangle};
-use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-use support::SplitMix64;
+use support::{SplitMix64, tangle};
 
 fn mend(mesh: &Mesh) -> Untangled {
     untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
-}
-
-/// A mesh with its free vertices moved.
-fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
-    let held = support::check::held(mesh);
-    let mut moved = mesh.clone();
-    for (point, held) in moved.points.iter_mut().zip(held) {
-        if !held {
-            *point = to(*point);
-        }
-    }
-    moved
-}
-
-/// Rings between the unit circle and a hole, which is turned by a share of a full turn.
-fn turned_hole(around: usize, turn: f64) -> Mesh {
-    let mut mesh = support::graded(around, 0.3);
-    let first = mesh.points.len() - around;
-    let [cos, sin] = support::trig::on_circle(turn);
-    for p in &mut mesh.points[first..] {
-        *p = [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]];
-    }
-    mesh
 }
 
 /// Checks that a mesh is untangled, and that only free vertices have moved.
@@ -53,26 +29,19 @@ fn check(label: &str, mesh: &Mesh) -> Untangled {
 fn meshes_of_every_kind_of_tangle_are_untangled() {
     let plate = plate(700);
     for seed in 1..=5 {
-        let rng = &mut SplitMix64::new(seed);
-        let random = moved(&plate, |_| [rng.range(0.0, 2.0), rng.range(0.0, 1.0)]);
-        check(&format!("random places, seed {seed}"), &random);
-        let rng = &mut SplitMix64::new(seed);
-        let noise = moved(&plate, |p| p.map(|x| x + rng.range(-0.15, 0.15)));
-        check(&format!("noise over several edges, seed {seed}"), &noise);
+        for (kind, mesh) in [
+            ("random places", tangle::scattered(&plate, seed)),
+            ("noise over three edges", tangle::noisy(&plate, 3.0, seed)),
+            ("all at one place", tangle::collapsed(&plate, seed)),
+            ("a folded strip", tangle::folded(&plate, seed)),
+            ("turned inside", tangle::turned(&plate, seed as f64 / 10.0)),
+        ] {
+            check(&format!("{kind}, seed {seed}"), &mesh);
+        }
     }
-    check("all at one point", &moved(&plate, |_| [0.4, 0.3]));
-    check("all far outside", &moved(&plate, |_| [40.0, -30.0]));
-    check("mirrored inside", &moved(&plate, |[x, y]| [1.0 - x, y]));
-    let fold = |[x, y]: [f64; 2]| [if (0.3..0.7).contains(&x) { 1.0 - x } else { x }, y];
-    check(
-        "a folded strip",
-        &moved(&support::lattice(30, 20), |[x, y]| {
-            let [x, y] = fold([x / 30.0, y]);
-            [30.0 * x, y]
-        }),
-    );
+    check("all far outside", &tangle::moved(&plate, |_| [40.0, -30.0]));
     for turn in [30.0, 90.0, 180.0] {
-        check(&format!("a hole turned by {turn} degrees"), &turned_hole(60, turn / 360.0));
+        check(&format!("a hole turned by {turn} degrees"), &tangle::turned_hole(60, turn / 360.0));
     }
 }
 
@@ -116,7 +85,7 @@ fn what_no_move_can_mend_is_listed_and_the_rest_is_mended() {
         let corner = mesh.points[mesh.triangles[fixed][0] as usize];
         [0, 1].map(|i| middle[i] + 0.05 * (middle[i] - corner[i]))
     };
-    let tangled = moved(&mesh, |_| [3.0, 2.0]);
+    let tangled = tangle::moved(&mesh, |_| [3.0, 2.0]);
     let result = mend(&tangled);
     let list =
         |bad: &[gpu_smooth::BadTriangle]| bad.iter().map(|bad| bad.triangle).collect::<Vec<_>>();
@@ -145,7 +114,7 @@ fn a_tangle_that_cannot_be_undone_ends() {
 fn the_values_as_stored_are_untangled() {
     let far = [7e5, 4e6];
     let rng = &mut SplitMix64::new(3);
-    let mut mesh = moved(&plate(300), |p| p.map(|x| x + rng.range(-0.2, 0.2)));
+    let mut mesh = tangle::moved(&plate(300), |p| p.map(|x| x + rng.range(-0.2, 0.2)));
     let single = |x: f64| f64::from(x as f32);
     mesh.points.iter_mut().for_each(|p| *p = [0, 1].map(|i| single(1e3 * p[i] + far[i])));
     let result = untangle(&mesh, Precision::Single, &mut |_| ControlFlow::Continue(())).unwrap();
@@ -156,7 +125,7 @@ fn the_values_as_stored_are_untangled() {
 
 #[test]
 fn untangling_gives_the_same_bits_again_and_ends_when_told() {
-    let mesh = turned_hole(60, 0.25);
+    let mesh = tangle::turned_hole(60, 0.25);
     let [one, two] = [mend(&mesh), mend(&mesh)];
     assert!(one.points == two.points && one.sweeps == two.sweeps);
     let mut seen = Vec::new();
@@ -177,6 +146,4 @@ fn a_sound_mesh_is_left_alone_and_a_broken_one_refused() {
     let broken = Mesh { triangles: vec![[0, 1, 1]], ..mesh };
     let error = untangle(&broken, Precision::Double, &mut |_| ControlFlow::Continue(())).err();
     assert_eq!(error, Some(MeshError::RepeatedVertex { triangle: 0, vertex: 1 }));
-    // A turn by more than a full one is a tangle as any other.
-    assert!(!support::is_ccw(&turned_hole(24, TAU)));
 }
