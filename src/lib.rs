@@ -110,8 +110,12 @@ pub mod output {
 pub mod internal;
 
 pub use choice::Reason;
-pub use error::{BadTriangle, GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
-pub use file::{AbandonedWrites, Difference, Format, MeshFile, Place, abandon_writes};
+pub use error::{
+    BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
+};
+pub use file::{
+    AbandonedWrites, Difference, Format, Group, Groups, MeshFile, Place, abandon_writes,
+};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,

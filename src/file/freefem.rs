@@ -6,7 +6,7 @@
 use crate::error::ReadError;
 use crate::file::format::Format;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 
@@ -29,15 +29,19 @@ impl Walk for FreeFem {
             sink,
             |cursor| {
                 let point = cursor.point("a vertex")?;
-                cursor.signed("the label of a vertex")?;
-                Ok(point)
+                Ok((point, cursor.signed("the label of a vertex")?))
             },
-            |cursor, sink, done, (x_at, at)| {
+            |cursor, sink, done, ((x_at, at), label)| {
                 sink.node(cursor, done + 1, 2, x_at, at);
+                // Zero is what vertices have that were given no label.
+                if label != 0 {
+                    sink.node_within("label", label);
+                }
                 Ok(())
             },
         )?;
         sink.end_nodes(cursor)?;
+        sink.columns(vec![Column::tags("label", 1)]);
         sink.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
         for (kind, count, what) in
             [(Kind::Triangle, triangles, "triangles"), (Kind::Line, edges, "edges")]

@@ -5,8 +5,11 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 
@@ -17,6 +20,7 @@ struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
     kind: Kind,
+    keyword: &'a [u8],
 }
 
 impl Walk for Medit {
@@ -56,7 +60,7 @@ impl Walk for Medit {
                 keyword => {
                     if let Some(kind) = kind_of(keyword) {
                         let count = value(cursor, "the number of elements")?;
-                        lists.push(List { cursor: cursor.clone(), count, kind });
+                        lists.push(List { cursor: cursor.clone(), count, kind, keyword });
                     }
                     // What a list holds is numbers: the next keyword starts with a letter.
                     skip_numbers(cursor);
@@ -68,8 +72,12 @@ impl Walk for Medit {
             return Err(source.error(problem, "Save the mesh again"));
         }
         sink.end_nodes(cursor)?;
-        for List { mut cursor, count, kind } in lists {
+        sink.columns(vec![Column::tags("reference", 1)]);
+        for List { mut cursor, count, kind, keyword } in lists {
             let cursor = &mut cursor;
+            // Points have no reference: the list they stand in is what tells them apart.
+            let list = Within { what: "list", label: Label::name(keyword), dimension: None };
+            sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
             if kind == Kind::Triangle {
                 sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
             }
@@ -134,11 +142,14 @@ fn vertices(
             if dimension == 3 {
                 cursor.coordinate('z', "a vertex")?;
             }
-            cursor.signed("the reference of a vertex")?;
-            Ok(point)
+            Ok((point, cursor.signed("the reference of a vertex")?))
         },
-        |cursor, sink, done, (x_at, at)| {
+        |cursor, sink, done, ((x_at, at), reference)| {
             sink.node(cursor, done + 1, 2, x_at, at);
+            // Zero is what vertices have that were given no reference.
+            if reference != 0 {
+                sink.node_within("reference", reference);
+            }
             Ok(())
         },
     )

@@ -6,8 +6,9 @@
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, volume};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::mesh::Precision;
@@ -30,6 +31,8 @@ struct List<'a> {
     kind: Kind,
     /// Whether each element has a reference after its vertices.
     referred: bool,
+    /// The name of the list in text files.
+    name: &'static str,
 }
 
 const DIMENSION: i32 = 3;
@@ -87,17 +90,18 @@ impl Walk for MeditBinary {
                 }
                 keyword => {
                     let of = match keyword {
-                        5 => Some((Kind::Line, true)),
-                        6 => Some((Kind::Triangle, true)),
-                        7 => Some((Kind::Quadrilateral, true)),
-                        13 | 15 => Some((Kind::Point, false)),
+                        5 => Some((Kind::Line, true, "Edges")),
+                        6 => Some((Kind::Triangle, true, "Triangles")),
+                        7 => Some((Kind::Quadrilateral, true, "Quadrilaterals")),
+                        13 => Some((Kind::Point, false, "Corners")),
+                        15 => Some((Kind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
-                    if let Some((kind, referred)) = of {
+                    if let Some((kind, referred, name)) = of {
                         let count = integer(cursor, widths, widths.integer, "a count")?;
                         let size = (kind.nodes() + usize::from(referred)) * widths.integer;
                         let bytes = items(cursor, count, size, "elements")?;
-                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred });
+                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred, name });
                     }
                 }
             }
@@ -120,6 +124,7 @@ impl Walk for MeditBinary {
             return Err(source.error("it has no list of Vertices", "Save the mesh again"));
         }
         sink.end_nodes(cursor)?;
+        sink.columns(vec![Column::tags("reference", 1)]);
         for list in lists {
             elements(&list, widths, sink)?;
         }
@@ -182,12 +187,22 @@ fn vertices(
         }
         let place = &Cursor::at_byte_of(cursor.source, start + index * item);
         sink.node(place, tag, 2, start + index * item, [x, y]);
+        if sink.asks_for_groups() {
+            let reference = widths.order.signed(&vertex[item - widths.integer..]);
+            // Zero is what vertices have that were given no reference.
+            if reference != 0 {
+                sink.node_within("reference", reference);
+            }
+        }
     }
     Ok(())
 }
 
 fn elements(list: &List<'_>, widths: Widths, sink: &mut impl Sink) -> Result<(), ReadError> {
-    let List { cursor, bytes, kind, referred } = list;
+    let List { cursor, bytes, kind, referred, name } = list;
+    // Points have no reference: the list they stand in is what tells them apart.
+    let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };
+    sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
     if kind == Kind::Triangle {

@@ -1,6 +1,6 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
-use crate::error::{Location, ReadError, WriteError};
+use crate::error::{Location, MeshError, ReadError, WriteError};
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
@@ -171,6 +171,57 @@ impl MeshFile {
         let held = std::mem::take(&mut self.interfaces);
         let fixed = &mut self.mesh.fixed;
         fixed.truncate(fixed.len() - held.len());
+    }
+
+    /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. In any order,
+    /// repeats allowed.
+    ///
+    /// They are no [`interface_vertices`](Self::interface_vertices) from then on, so that
+    /// [`free_interfaces`](Self::free_interfaces) leaves them fixed, be it called before or after.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    pub fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let held = self.marked(vertices)?;
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Adds all vertices but these to [`Mesh::fixed`], as [`fix`](Self::fix) does. These are not freed where they are fixed
+    /// already.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    pub fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let mut held = self.marked(vertices)?;
+        held.iter_mut().for_each(|held| *held = !*held);
+        self.hold(held);
+        Ok(())
+    }
+
+    /// For each vertex of the mesh, whether it is among these.
+    fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
+        let mut marked = vec![false; self.mesh.points.len()];
+        for &vertex in vertices {
+            let count = marked.len();
+            *marked.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange {
+                triangle: None,
+                vertex,
+                vertices: count,
+            })? = true;
+        }
+        Ok(marked)
+    }
+
+    /// Adds the vertices for which this holds to those fixed for other reasons than lying between regions.
+    fn hold(&mut self, mut held: Vec<bool>) {
+        let Mesh { fixed, .. } = &mut self.mesh;
+        fixed.truncate(fixed.len() - self.interfaces.len());
+        self.interfaces.retain(|&vertex| !held[vertex as usize]);
+        // Those that are fixed already are not listed again.
+        fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
+        fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
+        fixed.extend_from_slice(&self.interfaces);
     }
 
     /// The format it was read in, and will be written in.

@@ -5,8 +5,11 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor, integer, quoted};
 
@@ -17,6 +20,8 @@ struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
     zone: usize,
+    /// The name of the marker whose elements these are.
+    marker: Option<&'a [u8]>,
 }
 
 impl Walk for Su2 {
@@ -27,6 +32,7 @@ impl Walk for Su2 {
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
         let (mut zones, mut points) = (vec![0], 0_u64);
+        let mut marker = None;
         while cursor.next_row() {
             let (key, value) = key_and_value(cursor);
             match key {
@@ -54,11 +60,13 @@ impl Walk for Su2 {
                     )?;
                     points += count;
                 }
+                b"MARKER_TAG" => marker = Some(value),
                 b"NELEM" | b"MARKER_ELEMS" => {
                     let name = if key == b"NELEM" { "NELEM" } else { "MARKER_ELEMS" };
                     let count = number(cursor, name, value)?;
                     let zone = zones.len() - 1;
-                    lists.push(List { cursor: cursor.clone(), count, zone });
+                    let marker = if key == b"NELEM" { None } else { marker };
+                    lists.push(List { cursor: cursor.clone(), count, zone, marker });
                     // Not `row`, so that the error comes from the list itself, which knows more.
                     for _ in 0..count {
                         if !cursor.next_row() {
@@ -66,12 +74,19 @@ impl Walk for Su2 {
                         }
                     }
                 }
-                // Names of markers, counts of other lists, boxes of free-form deformation.
+                // Counts of other lists, boxes of free-form deformation.
                 _ => {}
             }
         }
         sink.end_nodes(cursor)?;
-        for List { mut cursor, count, zone } in lists {
+        if zones.len() > 1 {
+            let label = |zone| Some(Label::Tag(zone + 1));
+            sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
+        }
+        for List { mut cursor, count, zone, marker } in lists {
+            let within =
+                |name| Within { what: "marker", label: Label::name(name), dimension: None };
+            sink.within(marker.map(within).as_slice());
             let (first, cursor) = (zones[zone], &mut cursor);
             let last = zones.get(zone + 1).copied().unwrap_or(points);
             sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));

@@ -10,6 +10,7 @@ mod bench;
 mod compare;
 mod files;
 mod formats;
+mod groups;
 mod interrupt;
 mod options;
 mod output;

@@ -3,6 +3,7 @@
 mod binary;
 mod damage;
 mod errors;
+mod groups;
 mod long;
 mod made;
 mod names;

@@ -49,6 +49,8 @@ pub(crate) struct OutputArgs {
 pub(crate) enum Command {
     /// Tells how good a mesh is
     Quality(QualityArgs),
+    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
+    Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     Compare(CompareArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
@@ -57,6 +59,15 @@ pub(crate) enum Command {
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
     Bench(BenchArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct GroupsArgs {
+    /// The mesh
+    pub(crate) mesh: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args)]

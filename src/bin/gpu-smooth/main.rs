@@ -5,6 +5,7 @@ mod cli;
 mod compare;
 mod engine;
 mod explain;
+mod groups;
 mod interrupt;
 mod progress;
 mod report;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
     let cli = Cli::read();
     let done = match &cli.command {
         Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
