@@ -28,7 +28,8 @@
 //!
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
 //! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
-//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files.
+//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; what may move is
+//! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]).
 //!
 //! # Inside an application
 //!
@@ -92,6 +93,7 @@ mod metric;
 mod parallel;
 mod quality;
 mod run;
+pub mod select;
 mod smoother;
 mod topology;
 

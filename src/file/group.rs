@@ -257,7 +257,7 @@ mod tests {
             ("", "", 0),
             ("", "ab", 2),
             ("inlet", "Inlet", 0),
-            ("inlet", "outlet", 2),
+            ("inlet", "outlet", 3),
             ("kitten", "sitting", 3),
         ] {
             assert_eq!((distance(a, b), distance(b, a)), (expected, expected), "{a} {b}");

@@ -12,6 +12,7 @@ mod files;
 mod formats;
 mod groups;
 mod interrupt;
+mod moving;
 mod options;
 mod output;
 mod plate;

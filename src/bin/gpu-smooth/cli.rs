@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use crate::moving::MoveArgs;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -22,6 +23,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme,
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
+                  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
                   gpu-smooth quality better.msh\n  \
                   gpu-smooth bench"
 )]
@@ -76,9 +78,9 @@ pub(crate) struct CompareArgs {
     pub(crate) before: PathBuf,
     /// The mesh after
     pub(crate) after: PathBuf,
-    /// Vertices between regions may have moved
-    #[arg(long)]
-    pub(crate) free_interfaces: bool,
+    /// What may have moved: the options of the run
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
 }
 
 #[derive(Args)]
@@ -136,10 +138,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
 
-    /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele, references,
-    /// materials. Without it they stay where they are
-    #[arg(long)]
-    pub(crate) free_interfaces: bool,
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
 
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
     /// done first, but no software adapter

@@ -7,6 +7,7 @@ mod engine;
 mod explain;
 mod groups;
 mod interrupt;
+mod moving;
 mod progress;
 mod report;
 mod smooth;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Precision, Progress, SmoothError,
-    Smoother, Stop, output,
+    Backend, Mesh, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
+    SmoothError, Smoother, Stop, output,
 };
 use serde::Serialize;
 
@@ -14,6 +14,7 @@ use crate::cli::{History, OutputArgs, SmoothArgs};
 use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
+use crate::moving::Choice;
 use crate::progress::Bar;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
 use crate::tell;
@@ -33,14 +34,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let mut file = read(input)?;
-        if args.free_interfaces {
-            file.free_interfaces();
-        }
+        let choice = args.moving.apply(&mut file)?;
         let file = file;
         let read_done = Instant::now();
         check_destinations(args, &file, out)?;
-        for remark in tell::remarks(&file) {
-            tell::note(show.quiet, &remark);
+        for remark in tell::remarks(&file).iter().chain(&choice.notes) {
+            tell::note(show.quiet, remark);
         }
         let mesh = file.mesh();
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -52,7 +51,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
-        let (outcome, taken) = smooth(args, show, &smoother, file.precision(), taken)?;
+        let options = options(args, &choice, file.precision());
+        let (outcome, taken) = smooth(args, &options, show, &smoother, taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
@@ -79,7 +79,9 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             levels_left_out: outcome.levels_left_out,
             best_sweep: outcome.best_sweep,
             remaining: outcome.remaining,
-            stop: outcome.stop.name(),
+            stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
+            nothing_to_do: choice.nothing_to_do,
+            choices: choice.notes,
             goal: goal_report(&outcome),
             returned: outcome.returned,
             before: (&before).into(),
@@ -102,15 +104,23 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     })
 }
 
+/// The options of the run; of one without sweeps if there is nothing to do.
+fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
+    let options = args.options(stored);
+    match choice.nothing_to_do {
+        Some(_) => Options { max_sweeps: 0, goal: None, ..options },
+        None => options,
+    }
+}
+
 /// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
 fn smooth(
     args: &SmoothArgs,
+    options: &Options,
     show: &OutputArgs,
     smoother: &Smoother<'_>,
-    stored: Precision,
     mut taken: Taken,
 ) -> Result<(Outcome, Taken), String> {
-    let options = args.options(stored);
     let mut bar = Bar::new(show, args.max_sweeps);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {
@@ -122,13 +132,13 @@ fn smooth(
             false => ControlFlow::Continue(()),
         }
     };
-    let mut outcome = smoother.run(&options, &taken.backend, &mut observe);
+    let mut outcome = smoother.run(options, &taken.backend, &mut observe);
     if let Err(error) = &outcome
         && engine::is_open(args)
         && engine::is_too_large(error)
     {
         taken = Taken { backend: Backend::Cpu, reason: Some(error.to_string()) };
-        outcome = smoother.run(&options, &taken.backend, &mut observe);
+        outcome = smoother.run(options, &taken.backend, &mut observe);
     }
     bar.clear();
     if interrupt::is_requested() {
@@ -165,6 +175,9 @@ fn check_report(args: &SmoothArgs) -> Result<(), String> {
 
 /// Why a mesh is not smoothed. Where triangles are inverted or flat, the report that was asked for lists all of them.
 fn refusal(args: &SmoothArgs, file: &MeshFile, error: &MeshError) -> String {
+    if let Some(message) = args.moving.nothing_free(file, error) {
+        return message;
+    }
     let message = explain::mesh_error(file, error);
     let MeshError::Infeasible { triangles } = error else { return message };
     if args.report.is_none() {
