@@ -8,8 +8,8 @@ use crate::file::parsed::Parsed;
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, freefem, gather, gmsh, medit, meditb, obj, off, ply, selafin, sms, su2, vtk,
-    vtu,
+    adcirc, assemble, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms,
+    su2, vtk, vtu,
 };
 use std::path::Path;
 
@@ -80,9 +80,9 @@ impl Family {
         self.reader.is_some() || std::ptr::eq(self, &TRIANGLE)
     }
 
-    /// Whether the path ends as files of this family do. The case does not matter.
+    /// Whether the path ends as files of this family do, be they compressed. The case does not matter.
     pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
-        let name = file_name(path).to_ascii_lowercase();
+        let name = packed::inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
         self.endings.iter().any(|ending| name.ends_with(ending))
     }
 }

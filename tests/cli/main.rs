@@ -20,6 +20,7 @@ mod refusals;
 mod regions;
 mod report;
 mod schemes;
+mod streams;
 
 use gpu_smooth::{Mesh, MeshFile};
 use serde_json::Value;

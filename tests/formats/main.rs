@@ -8,6 +8,7 @@ mod long;
 mod made;
 mod names;
 mod others;
+mod packed;
 mod refused;
 mod regions;
 mod special;

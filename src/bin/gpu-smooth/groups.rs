@@ -11,7 +11,7 @@ use crate::tell;
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
     let file = read(&args.mesh)?;
     let groups = file.groups().map_err(|error| error.to_string())?;
-    let (path, format) = (args.mesh.display(), file.format());
+    let (path, format) = (file.path().display(), file.format());
     if args.json {
         let spellings = groups.spellings();
         let list: Vec<_> = groups.iter().zip(&spellings).map(as_json).collect();

@@ -46,6 +46,8 @@ pub(crate) struct MoveArgs {
 pub(crate) struct Choice {
     /// What each option holds or lets move, one line each.
     pub(crate) notes: Vec<String>,
+    /// How many vertices would be free without the options, if any is given.
+    free_without: usize,
     /// Why there is nothing to smooth, if no triangle is as bad as the options ask for. The mesh is then left as it was.
     pub(crate) nothing_to_do: Option<String>,
 }
@@ -96,6 +98,7 @@ impl MoveArgs {
             return Ok(choice);
         }
         let chooser = Chooser::new(file)?;
+        choice.free_without = chooser.topology.free_count();
         let fixed = chooser.fixed(self, &mut choice)?;
         let movers = chooser.movers(self, &mut choice)?;
         let told = |error: MeshError| error.to_string();
@@ -105,10 +108,12 @@ impl MoveArgs {
         }
         Ok(choice)
     }
+}
 
-    /// The error of a mesh in which these options leave nothing to move.
+impl Choice {
+    /// The error of a mesh in which the options leave nothing to move.
     pub(crate) fn nothing_free(&self, file: &MeshFile, error: &MeshError) -> Option<String> {
-        let is_it = self.restricts() && matches!(error, MeshError::NothingFree { .. });
+        let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
         let path = file.path().display();
         is_it.then(|| {
             format!(

@@ -1,5 +1,6 @@
 //! `gpu-smooth IN OUT`.
 
+use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -19,9 +20,28 @@ use crate::progress::Bar;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
 use crate::tell;
 
-/// Reads a mesh.
+/// Reads a mesh, from the standard input if its name is `-`.
 pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
-    MeshFile::read(path).map_err(|error| error.to_string())
+    if !is_standard(path) {
+        return MeshFile::read(path).map_err(told);
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
+    MeshFile::from_bytes(Path::new("standard input"), bytes).map_err(told)
+}
+
+/// Whether a name stands for the standard input or output.
+fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes a mesh, to the standard output if its name is `-`.
+fn write(file: &MeshFile, out: &Path, points: &[[f64; 2]]) -> Result<(), String> {
+    let written = match is_standard(out) {
+        true => file.write_to(Path::new("standard output"), &mut std::io::stdout(), points),
+        false => file.write(out, points),
+    };
+    written.map_err(told)
 }
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
@@ -45,7 +65,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
         let opening =
             opening.unwrap_or_else(|| scope.spawn(move || Ok(engine::choose(args, size))));
-        let smoother = Smoother::new(mesh).map_err(|error| refusal(args, &file, &error))?;
+        let smoother =
+            Smoother::new(mesh).map_err(|error| refusal(args, &choice, &file, &error))?;
         let taken =
             opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
         let before = smoother.quality(&mesh.points).map_err(told)?;
@@ -59,7 +80,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
 
         // The destination may have changed during a long run.
         check_report(args)?;
-        file.write(out, &outcome.points).map_err(|error| error.to_string())?;
+        write(&file, out, &outcome.points)?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -91,14 +112,16 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         };
         write_report(args, &report)
             .map_err(|problem| format!("{problem}. The mesh was written"))?;
+        // The standard output is the mesh alone, where that is asked for.
+        let say = if is_standard(out) { tell::aside } else { tell::say };
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
-                tell::say(&format!("sweep {:<5} {metric:<5} f {:.10}", sweep.sweep, sweep.f));
+                say(&format!("sweep {:<5} {metric:<5} f {:.10}", sweep.sweep, sweep.f));
             }
         }
         if !show.quiet {
-            tell::say(&report.summary());
+            say(&report.summary());
         }
         Ok(())
     })
@@ -154,9 +177,17 @@ fn smooth(
 
 /// Refuses destinations that cannot be written before the work is done.
 fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
-    file.check_destination(out).map_err(|error| error.to_string())?;
+    let written = match is_standard(out) {
+        true if file.paths().count() > 1 => {
+            return Err("a Triangle mesh is of several files: name OUT".into());
+        }
+        true => Vec::new(),
+        false => {
+            file.check_destination(out).map_err(told)?;
+            file.destinations(out).map_err(told)?
+        }
+    };
     let Some(report) = &args.report else { return Ok(()) };
-    let written = file.destinations(out).map_err(|error| error.to_string())?;
     let mut of_meshes = file.paths().chain(written.iter().map(PathBuf::as_path));
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
@@ -174,8 +205,8 @@ fn check_report(args: &SmoothArgs) -> Result<(), String> {
 }
 
 /// Why a mesh is not smoothed. Where triangles are inverted or flat, the report that was asked for lists all of them.
-fn refusal(args: &SmoothArgs, file: &MeshFile, error: &MeshError) -> String {
-    if let Some(message) = args.moving.nothing_free(file, error) {
+fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshError) -> String {
+    if let Some(message) = choice.nothing_free(file, error) {
         return message;
     }
     let message = explain::mesh_error(file, error);
