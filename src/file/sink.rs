@@ -184,6 +184,10 @@ pub(crate) fn each_row<'a, S: Sink, T: Send>(
             done += u64::from(taken);
             taken
         });
+        if done == count && done > 0 {
+            // It stands on the last row, before its words. A reader that goes on by words is to find none of them.
+            cursor.rest();
+        }
     }
     while done < count {
         cursor.row(done, count, what)?;
