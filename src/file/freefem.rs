@@ -22,6 +22,7 @@ impl Walk for FreeFem {
         let triangles = cursor.integer("the number of triangles")?;
         let edges = cursor.integer("the number of edges")?;
         sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        let before = &mut cursor.clone();
         each_row(
             cursor,
             vertices,
@@ -29,17 +30,25 @@ impl Walk for FreeFem {
             sink,
             |cursor| {
                 let point = cursor.point("a vertex")?;
-                Ok((point, cursor.signed("the label of a vertex")?))
+                cursor.signed("the label of a vertex")?;
+                Ok(point)
             },
-            |cursor, sink, done, ((x_at, at), label)| {
+            |cursor, sink, done, (x_at, at)| {
                 sink.node(cursor, done + 1, 2, x_at, at);
-                // Zero is what vertices have that were given no label.
-                if label != 0 {
-                    sink.node_within("label", label);
-                }
                 Ok(())
             },
         )?;
+        if sink.asks_for_groups() {
+            for vertex in 0..vertices {
+                before.row(vertex, vertices, "vertices")?;
+                before.tokens(2);
+                let label = before.signed("the label of a vertex")?;
+                // Zero is what vertices have that were given no label.
+                if label != 0 {
+                    sink.node_within(vertex as u32, "label", label);
+                }
+            }
+        }
         sink.end_nodes(cursor)?;
         sink.columns(vec![Column::tags("label", 1)]);
         sink.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));

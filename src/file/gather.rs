@@ -138,10 +138,9 @@ impl Sink for Gatherer {
         self.within_groups = [None, None, None];
     }
 
-    fn node_within(&mut self, what: &str, tag: i64) {
-        let vertex = self.tags.len() as u32 - 1;
+    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
         let group = self.table.number(what, 0, &Label::Tag(tag));
-        self.table.add_vertex(group, vertex);
+        self.table.add_vertex(group, node);
     }
 
     fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {

@@ -132,6 +132,7 @@ fn vertices(
     }
     let count = cursor.vertex_count()?;
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    let before = &mut cursor.clone();
     each_row(
         cursor,
         count,
@@ -142,17 +143,26 @@ fn vertices(
             if dimension == 3 {
                 cursor.coordinate('z', "a vertex")?;
             }
-            Ok((point, cursor.signed("the reference of a vertex")?))
+            cursor.signed("the reference of a vertex")?;
+            Ok(point)
         },
-        |cursor, sink, done, ((x_at, at), reference)| {
+        |cursor, sink, done, (x_at, at)| {
             sink.node(cursor, done + 1, 2, x_at, at);
-            // Zero is what vertices have that were given no reference.
-            if reference != 0 {
-                sink.node_within("reference", reference);
-            }
             Ok(())
         },
-    )
+    )?;
+    if sink.asks_for_groups() {
+        for vertex in 0..count {
+            before.row(vertex, count, "vertices")?;
+            before.tokens(dimension);
+            let reference = before.signed("the reference of a vertex")?;
+            // Zero is what vertices have that were given no reference.
+            if reference != 0 {
+                sink.node_within(vertex as u32, "reference", reference);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Moves to the last row before the next keyword.

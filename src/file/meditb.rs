@@ -187,11 +187,13 @@ fn vertices(
         }
         let place = &Cursor::at_byte_of(cursor.source, start + index * item);
         sink.node(place, tag, 2, start + index * item, [x, y]);
-        if sink.asks_for_groups() {
+    }
+    if sink.asks_for_groups() {
+        for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {
             let reference = widths.order.signed(&vertex[item - widths.integer..]);
             // Zero is what vertices have that were given no reference.
             if reference != 0 {
-                sink.node_within("reference", reference);
+                sink.node_within(index, "reference", reference);
             }
         }
     }

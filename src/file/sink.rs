@@ -129,8 +129,8 @@ pub(crate) trait Sink {
     fn columns(&mut self, _columns: Vec<Column>) {}
     /// Takes the groups that the elements that follow belong to besides, until it is called again.
     fn within(&mut self, _groups: &[Within<'_>]) {}
-    /// Takes the tag of a group that the node belongs to which was taken last.
-    fn node_within(&mut self, _what: &str, _tag: i64) {}
+    /// Takes the tag of a group that a node belongs to, by the position of the node among those that were taken.
+    fn node_within(&mut self, _node: u32, _what: &str, _tag: i64) {}
     /// Takes the name of the groups of a tag, of one dimension or of all.
     fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 

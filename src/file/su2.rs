@@ -12,6 +12,7 @@ use crate::file::sink::{
 };
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor, integer, quoted};
+use std::ops::Range;
 
 pub(crate) struct Su2;
 
@@ -87,24 +88,33 @@ impl Walk for Su2 {
             let within =
                 |name| Within { what: "marker", label: Label::name(name), dimension: None };
             sink.within(marker.map(within).as_slice());
-            let (first, cursor) = (zones[zone], &mut cursor);
             let last = zones.get(zone + 1).copied().unwrap_or(points);
-            sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
-            each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
-                let (kind, nodes) = read;
-                let listed = &nodes[..kind.nodes()];
-                if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
-                    let kind = kind.name();
-                    let problem =
-                        format!("{kind} {done} has node {point}, which NPOIN does not list");
-                    return Err(cursor.error(problem, CORRECT));
-                }
-                let nodes = nodes.map(|node| node.saturating_add(first));
-                sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
-            })?;
+            elements(&mut cursor, count, zone, zones[zone]..last, sink)?;
         }
         Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
     }
+}
+
+/// Hands on the elements of a list, whose nodes are those of a zone.
+fn elements(
+    cursor: &mut Cursor<'_>,
+    count: u64,
+    zone: usize,
+    Range { start: first, end: last }: Range<u64>,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
+    each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
+        let (kind, nodes) = read;
+        let listed = &nodes[..kind.nodes()];
+        if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
+            let kind = kind.name();
+            let problem = format!("{kind} {done} has node {point}, which NPOIN does not list");
+            return Err(cursor.error(problem, CORRECT));
+        }
+        let nodes = nodes.map(|node| node.saturating_add(first));
+        sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+    })
 }
 
 /// The two sides of the equals sign of a row. The row itself and nothing if there is none.
