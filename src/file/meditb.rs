@@ -8,6 +8,7 @@ use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
+use crate::file::parsed::fixed_note;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
@@ -37,6 +38,7 @@ struct List<'a> {
 
 const DIMENSION: i32 = 3;
 const VERTICES: i32 = 4;
+const REQUIRED_TRIANGLES: i32 = 17;
 const END: i32 = 54;
 
 impl Walk for MeditBinary {
@@ -59,6 +61,7 @@ impl Walk for MeditBinary {
         };
         let mut dimension = 0;
         let mut lists: Vec<List<'_>> = Vec::new();
+        let mut required: Vec<u64> = Vec::new();
         let mut vertices_seen = false;
         loop {
             let keyword = integer(cursor, widths, 4, "a keyword")?;
@@ -82,6 +85,12 @@ impl Walk for MeditBinary {
                 VERTICES => {
                     vertices_seen = true;
                     vertices(cursor, widths, dimension, sink)?;
+                }
+                REQUIRED_TRIANGLES => {
+                    let count = integer(cursor, widths, widths.integer, "a count")?;
+                    let bytes = items(cursor, count, widths.integer, "required triangles")?;
+                    let numbers = bytes.chunks_exact(widths.integer);
+                    required.extend(numbers.map(|number| widths.order.whole(number)));
                 }
                 8..=10 | 49 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
@@ -125,8 +134,11 @@ impl Walk for MeditBinary {
         }
         sink.end_nodes(cursor)?;
         sink.columns(vec![Column::tags("reference", 1)]);
-        for list in lists {
-            elements(&list, widths, sink)?;
+        for list in &lists {
+            elements(list, widths, sink)?;
+        }
+        if !required.is_empty() {
+            hold_required(&lists, required, widths, sink)?;
         }
         let numbers = Numbers::adjacent(order, widths.precision);
         Ok(Layout::in_place(Format::MeditBinary, numbers))
@@ -196,6 +208,38 @@ fn vertices(
                 sink.node_within(index, "reference", reference);
             }
         }
+    }
+    Ok(())
+}
+
+/// Hands on the vertices of triangles with these numbers, which mmg is not to change, as corners.
+fn hold_required(
+    lists: &[List<'_>],
+    mut required: Vec<u64>,
+    widths: Widths,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    required.sort_unstable();
+    required.dedup();
+    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let size = widths.integer;
+    let mut before = 0;
+    for List { cursor, bytes, .. } in lists.iter().filter(|list| list.kind == Kind::Triangle) {
+        let count = (bytes.len() / (4 * size)) as u64;
+        let own = required.iter().filter(|&&tag| tag > before && tag - before <= count);
+        for &tag in own {
+            let at = (tag - before - 1) as usize * 4 * size;
+            let number = |index: usize| widths.order.signed(&bytes[at + index * size..][..size]);
+            let (corners, region) = ([0, 1, 2].map(number), [number(3), 0]);
+            let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            for corner in corners {
+                let nodes = [u64::try_from(corner).unwrap_or(0), 0, 0, 0];
+                sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
+            }
+        }
+        before += count;
     }
     Ok(())
 }

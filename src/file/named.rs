@@ -19,7 +19,7 @@ impl MeshFile {
     /// |---|---|
     /// | gmsh | `physical`, with their names, and `entity`; parts of an entity, for partitions, are the one they are parts of |
     /// | SU2 | `marker`, and `zone` if there are several |
-    /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners and RequiredVertices |
+    /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
     /// | FreeFem | `label` of vertices, triangles and edges |
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
     /// | OBJ | `material`, `object` and `group` |

@@ -81,7 +81,8 @@ NMARK= 2\nMARKER_TAG= shore\nMARKER_ELEMS= 2\n3 0 1\n3 1 2\nSEND_RECV= 0\nMARKER
 const MEDIT: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n5\n0 0 3\n1 0 3\n1 1 0\n0 1 0\n.5 .5 0\n\
 Corners\n2\n1\n2\nEdges\n1\n1 2 3\nTriangles\n4\n1 2 5 0\n2 3 5 0\n3 4 5 -3\n4 1 5 -3\nRequiredVertices\n1\n5\nEnd\n";
 
-fn meditb() -> Vec<u8> {
+/// `last` is the keyword of a list and the number in it.
+fn meditb(last: [i32; 2]) -> Vec<u8> {
     let mut file = Binary::empty(false);
     // Each list has its keyword, the place of the next one and its length before it.
     file.ints(&[1, 2, 3, 20, 2]);
@@ -103,7 +104,7 @@ fn meditb() -> Vec<u8> {
     list(13, 2, &|file| file.ints(&[1, 2]));
     list(5, 1, &|file| file.ints(&[1, 2, 3]));
     list(6, 4, &|file| file.ints(&[1, 2, 5, 0, 2, 3, 5, 0, 3, 4, 5, -3, 4, 1, 5, -3]));
-    list(15, 1, &|file| file.ints(&[5]));
+    list(last[0], 1, &|file| file.ints(&last[1..]));
     file.ints(&[54, 0]);
     file.bytes
 }
@@ -283,9 +284,36 @@ fn medit_and_freefem_have_references_of_each_kind() {
     medit.push("RequiredVertices = list point RequiredVertices: [1, 0, 0, 0] [4]".into());
     let medit: Vec<_> = medit.iter().map(String::as_str).collect();
     assert_groups("in.mesh", MEDIT.as_bytes(), &medit);
-    assert_groups("in.meshb", &meditb(), &medit);
+    assert_groups("in.meshb", &meditb([15, 5]), &medit);
     let labels = references("label");
     assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
+}
+
+/// As mmg leaves them alone.
+#[test]
+fn vertices_of_required_triangles_stay() {
+    let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n3\n3");
+    assert_ne!(text, MEDIT);
+    for (name, bytes) in [("in.mesh", text.into_bytes()), ("in.meshb", meditb([17, 3]))] {
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), bytes).unwrap();
+        let file = folder.read(name);
+        let mut fixed = file.mesh().fixed.clone();
+        fixed.sort_unstable();
+        fixed.dedup();
+        assert_eq!(fixed, [0, 1, 2, 3, 4], "{name}");
+        assert!(file.interface_vertices().is_empty(), "{name}");
+        assert_eq!(file.notes(), ["1 required triangle: its vertices stay fixed"]);
+        let list = "RequiredTriangles = list surface RequiredTriangles: [0, 0, 0, 0] [2, 3, 4]";
+        let told = told(&file);
+        assert!(told.contains(&list.to_owned()), "{told:?}");
+        let references = "-3 = reference surface -3: [0, 0, 2, 0] [0, 2, 3, 4]";
+        assert!(told.contains(&references.to_owned()), "{told:?}");
+    }
+    // A number of no triangle is none of ours to judge.
+    let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n1\n99");
+    let folder = Folder::new(&[("in.mesh", &text)]);
+    assert_eq!(folder.read("in.mesh").interface_vertices(), [4]);
 }
 
 #[test]
@@ -410,7 +438,7 @@ fn no_damage_makes_the_search_for_groups_panic() {
         ("in.msh", GMSH22.into()),
         ("in.2dm", SMS.into()),
         ("in.mesh", MEDIT.into()),
-        ("in.meshb", meditb()),
+        ("in.meshb", meditb([17, 3])),
         ("in.vtk", vtk_binary()),
         ("in.vtk", VTK.into()),
     ];
