@@ -56,6 +56,25 @@ impl fmt::Display for Place {
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
 /// [`Mesh::fixed`], so that regions keep their shapes. Two surfaces of a model are two regions even where they belong to
 /// one physical group. [`free_interfaces`](Self::free_interfaces) takes these vertices out of the list.
+///
+/// # What may move
+/// What a user names is fixed beside what the file fixes:
+///
+/// ```no_run
+/// # use gpu_smooth::{MeshFile, Topology, select};
+/// # use std::path::Path;
+/// # fn f() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut file = MeshFile::read(Path::new("part.msh"))?;
+/// let groups = file.groups()?;
+/// // The vertices of a group stay where they are,
+/// file.fix(groups.find("inlet")?.vertices())?;
+/// // and of all others only those inside of a region may move.
+/// let steel = groups.find("physical:surface:2")?;
+/// let inside = select::vertices_inside(&Topology::new(file.mesh())?, steel.triangles());
+/// file.fix_all_but(&inside)?;
+/// # Ok(())
+/// # }
+/// ```
 pub struct MeshFile {
     mesh: Mesh,
     format: Format,
