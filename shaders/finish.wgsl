@@ -28,10 +28,11 @@ fn judge(last: u32) -> u32 {
         return STOP_REACHED;
     }
     if last >= 2u * params.window && (params.has_target != 0u || params.tolerance > 0.0) {
-        let scale = sum.x + params.ideal_sum;
+        let scale = max(sum.x + params.ideal_sum, LEAST_SCALE * f32(params.triangles));
         let still = abs(gain(last - params.window, last)) <= NOISE * scale;
         if still || last - control.best_sweep >= 2u * params.window {
-            if still && params.has_target == 0u {
+            let level = still || pair_difference(sum, control.best_sum) <= JITTER * scale;
+            if level && params.has_target == 0u {
                 return STOP_CONVERGED;
             }
             return STOP_STALLED;

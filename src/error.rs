@@ -191,6 +191,26 @@ pub enum MeshError {
         /// All inverted or flat triangles, in ascending order.
         triangles: Vec<BadTriangle>,
     },
+    /// The triangles around a free vertex overlap, though none is inverted: they wind more than once around it.
+    #[error("the triangles around vertex {vertex} overlap: they wind {turns} times around it")]
+    OverlappingStar {
+        /// The first such vertex.
+        vertex: u32,
+        /// How many times the triangles wind around it.
+        turns: u32,
+    },
+    /// The objective of the mesh is not a finite number, because of a triangle that is too flat, or too small beside the
+    /// others.
+    #[error(
+        "triangle {triangle} is too flat, or too small beside the others, for double precision: \
+         its quality by {metric} is not a finite number"
+    )]
+    BeyondPrecision {
+        /// The worst triangle.
+        triangle: usize,
+        /// The name of the metric that judges the run.
+        metric: &'static str,
+    },
     /// A list of positions does not have exactly one for each vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {

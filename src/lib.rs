@@ -96,6 +96,7 @@ mod run;
 pub mod select;
 mod smoother;
 mod topology;
+mod untangle;
 
 /// Exact checks for inverted and flat triangles.
 pub mod validity {
@@ -131,4 +132,5 @@ pub use run::{
 };
 pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
 pub use topology::{Topology, signed_area};
+pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

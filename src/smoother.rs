@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use crate::cpu::{CpuEngine, mean_excess};
+use crate::cpu::{CpuEngine, held_back, mean_excess};
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, GpuEngine, MeshSize, Waiting};
 use crate::layout::Problem;
@@ -14,12 +14,16 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::quality::Quality;
-use crate::run::opening::{self, Opened};
+use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    Desired, Goal, Method, NOISE, Objectives, Observer, Options, Phase, Plan, Sharpness, Stop,
-    Strategy, drive, shape_guard,
+    Desired, Goal, JITTER, Method, NOISE, Objectives, Observer, Options, Phase, Plan, Sharpness,
+    Stop, Strategy, drive, shape_guard,
 };
 use crate::topology::{Topology, certify};
+
+/// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
+/// powers of what they are made of.
+const MOST_ON_DEVICE: f64 = 1e15;
 
 /// The processor that does the sweeps.
 pub enum Backend {
@@ -50,8 +54,8 @@ pub struct Outcome {
     pub sweeps: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`].
     pub corrections: u32,
-    /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat for single
-    /// precision: the first sweeps, or all if the first ones did not open every triangle.
+    /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
+    /// single precision: the first sweeps, or all if the first ones did not open every triangle.
     pub opening_sweeps: u32,
     /// Whether [`Method::Auto`] did without corrections because the coarser levels do not fit the
     /// device's limits.
@@ -63,6 +67,11 @@ pub struct Outcome {
     /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
     /// if they do not decay or are too few.
     pub remaining: Option<f64>,
+    /// Number of vertices that the shape guard keeps from moving on, if that is why the run ended ([`Stop::HeldBack`]).
+    pub held_back: usize,
+    /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
+    /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.
+    pub lost: f64,
     /// How far the run went toward its goal, if it had one.
     pub goal: Option<GoalOutcome>,
     /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
@@ -188,6 +197,11 @@ impl<'a> Smoother<'a> {
         }
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
+        if !initial.is_finite() {
+            let triangle = self.quality(&self.mesh.points)?.worst_triangle;
+            let metric = base.properties().name;
+            return Err(MeshError::BeyondPrecision { triangle, metric }.into());
+        }
         let goal = match options.goal {
             Some(goal) => match self.aim(goal, options, device, observe).await? {
                 Some(aimed) => Some(aimed),
@@ -216,8 +230,14 @@ impl<'a> Smoother<'a> {
         let mut returned = self.certify(&mut points)?;
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
+        let swept = f(&end.history[best_sweep]);
         let written = self.objective(base, &self.problem.normalized(&points, end.positions));
         let gains = initial - written > NOISE * initial;
+        // Of a smaller gain, the errors of f on a device would be a share to speak of.
+        let lost = match initial - swept > 100.0 * JITTER * initial {
+            true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
+            false => 0.0,
+        };
         if !gains {
             points.clone_from(&self.mesh.points);
             returned = 0;
@@ -237,6 +257,8 @@ impl<'a> Smoother<'a> {
             levels_left_out: end.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             remaining: end.remaining,
+            held_back: end.held_back,
+            lost,
             history: end.history,
             goal,
             returned,
@@ -257,6 +279,8 @@ impl<'a> Smoother<'a> {
             levels_left_out: false,
             best_sweep: 0,
             remaining: None,
+            held_back: 0,
+            lost: 0.0,
             history: vec![objectives],
             goal: None,
             returned: 0,
@@ -334,6 +358,7 @@ struct Ran {
     opening_sweeps: u32,
     levels_left_out: bool,
     remaining: Option<f64>,
+    held_back: usize,
     stop: Stop,
 }
 
@@ -371,6 +396,15 @@ impl Run<'_> {
             }
         };
         let remaining = end.history.remaining();
+        let mut stop = end.stop;
+        let mut held = 0;
+        let step = plan.base_step(1.0);
+        if stop == Stop::Converged && step.shape_guard.is_finite() {
+            held = held_back(problem, &end.positions, &step);
+            if held > 0 {
+                stop = Stop::HeldBack;
+            }
+        }
         let (history, positions) = match opened {
             Some(opened) => opened.followed_by(end.history, end.positions),
             None => (end.history.into_log(), end.positions),
@@ -386,20 +420,36 @@ impl Run<'_> {
             opening_sweeps,
             levels_left_out: end.levels_left_out,
             remaining,
-            stop: end.stop,
+            held_back: held,
+            stop,
         })
     }
 
     /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these
-    /// sweeps, if there were any. If they do not open every triangle, there is no device: the whole run is done on the
-    /// CPU.
+    /// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, there is no
+    /// device: the whole run is done on the CPU.
     async fn opened(
         &self,
         plan: &Plan,
         from: &[DVec2],
     ) -> Result<(Option<(&Gpu, Waiting)>, Option<Opened>), SmoothError> {
-        if self.device.is_none() || !opening::is_needed(self.problem, from) {
-            return Ok((self.device, None));
+        if self.device.is_none() {
+            return Ok((None, None));
+        }
+        // The sums of some metrics leave the range of single precision where sizes are very different.
+        let sum = |metric: &Metric| {
+            mean_excess(*metric, self.problem, from) * self.problem.triangles().len() as f64
+        };
+        let is_huge = |metric: &Metric| {
+            !metric.properties().is_inverse_mean_ratio && !(sum(metric) < MOST_ON_DEVICE)
+        };
+        if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
+            return Ok((None, None));
+        }
+        match opening::obstacle(self.problem, from) {
+            Obstacle::None => return Ok((self.device, None)),
+            Obstacle::Flat => {}
+            Obstacle::Small => return Ok((None, None)),
         }
         let engine = CpuEngine::new(self.problem, from.to_vec(), plan);
         Ok(match opening::open(self.problem, engine, plan).await? {

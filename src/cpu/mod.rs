@@ -11,3 +11,5 @@ mod vcycle;
 
 pub(crate) use engine::CpuEngine;
 pub(crate) use objective::mean_excess;
+pub(crate) use sweep::held_back;
+pub(crate) use vcycle::correction;

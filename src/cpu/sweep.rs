@@ -83,6 +83,29 @@ pub(crate) fn gradient(
     }
 }
 
+/// A vertex is held back if its step is shorter because of the shape guard by more than this share of an edge.
+const HELD_BACK: f64 = 1e-3;
+
+/// Number of free vertices that the shape guard of `step` keeps from moving on.
+pub(crate) fn held_back(problem: &Problem, positions: &[DVec2], step: &Step) -> usize {
+    let free = Step { shape_guard: f64::INFINITY, ..*step };
+    let (mut guarded, mut unguarded) = (Vec::new(), Vec::new());
+    let mut held = 0;
+    for color in problem.colors() {
+        let first = color.start as usize;
+        for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
+            moved.resize(color.len(), DVec2::ZERO);
+            visit(problem, positions, first, step, moved);
+        }
+        let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
+            let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
+            kept.distance(*wanted) > HELD_BACK * edge.length()
+        };
+        held += color.clone().zip(guarded.iter().zip(&unguarded)).filter(is_held).count();
+    }
+    held
+}
+
 /// Visits the vertices from `first` on, in parallel, and writes the results to `found`.
 fn visit<T: Found>(
     problem: &Problem,

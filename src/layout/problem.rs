@@ -23,9 +23,10 @@ const LONG: usize = 1 << 14;
 /// some triangle uses. Within a color they are in blocks along a space-filling curve, and within a block by the number
 /// of their neighbors.
 ///
-/// Positions are centered and scaled by a power of two (which rounds nothing) such that the mean area of the triangles
-/// is in [0.5, 2]. So single precision serves meshes of any size at any place,
-/// and areas far below or above the mean neither vanish nor overflow.
+/// Positions are scaled by a power of two such that the mean area of the triangles is in [0.5, 2], and the center of a
+/// mesh far from the origin is subtracted. Neither rounds, so elements keep all digits that the mesh has, however
+/// small they are. Single precision serves meshes of any size at any place, and areas far
+/// below or above the mean neither vanish nor overflow.
 #[derive(Clone, Debug)]
 pub struct Problem {
     positions: Vec<DVec2>,
@@ -133,7 +134,7 @@ impl Problem {
         &self.vertices
     }
 
-    /// The center and the scale of the normalization: normalized positions are (x - center) · scale.
+    /// The center and the scale of the normalization: normalized positions are (x - center) · scale, without rounding.
     pub fn normalization(&self) -> (DVec2, f64) {
         (self.center, self.scale)
     }
@@ -170,12 +171,11 @@ impl Problem {
     }
 }
 
-/// The center of the bounding box, the power of two that brings the mean area into [0.5, 2], and the mean area after
+/// The center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
 /// scaling by it.
 fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let (low, high) = bounds(mesh, topology);
-    // Halved before adding, as the sum of two large coordinates may overflow.
-    let center = low * 0.5 + high * 0.5;
+    let center = DVec2::new(exact_center(low.x, high.x), exact_center(low.y, high.y));
     // Areas of the original points, in units of the bounding box, where their sum cannot overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
@@ -183,6 +183,14 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let length = mean.sqrt() * extent;
     let scale = (-length.log2().round()).exp2();
     (center, scale, (length * scale).powi(2))
+}
+
+/// A number within the bounds of coordinates that can be subtracted from all of them without rounding: their
+/// center if none is more than twice another (Sterbenz' lemma), else 0. Elsewhere subtracting it would cost the digits of
+/// elements that are small and near the origin; and there are none to win, as no coordinate is more than twice the extent.
+fn exact_center(low: f64, high: f64) -> f64 {
+    let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
+    if low.signum() == high.signum() && most <= 2.0 * least { low * 0.5 + high * 0.5 } else { 0.0 }
 }
 
 /// The sum of `of` over triangles, in an order that does not depend on the number of threads.

@@ -9,7 +9,7 @@ use crate::run::multilevel::{Hierarchy, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
-use crate::run::stop::StopRule;
+use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
 use crate::run::yielding::yield_now;
 
 /// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
@@ -34,6 +34,9 @@ const SWEEPS_BETWEEN: usize = 5;
 /// How many times corrections can begin. If they are refused the last time, the run ends with sweeps alone.
 const ATTEMPTS: u32 = 5;
 
+/// A run is over if corrections have nothing to gain and a sweep gains less than this share of the tolerance.
+const SWEPT: f64 = 0.1;
+
 /// A window longer than any history: turns off the tests of the stop rule that look at the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
@@ -47,6 +50,8 @@ pub(crate) struct Corrections<'a> {
     attempts: u32,
     /// Number of corrections taken.
     taken: u32,
+    /// Whether the last correction was expected to gain nothing.
+    settled: bool,
     /// Why there are no corrections, if the engine has no room for the levels.
     left_out: Option<GpuError>,
 }
@@ -74,6 +79,7 @@ impl<'a> Corrections<'a> {
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
+            settled: false,
             left_out: None,
         }
     }
@@ -198,8 +204,14 @@ impl<'a> Corrections<'a> {
         let mut length = Search::first_length(last_length);
         let step = self.plan.base_step(OMEGA_BETWEEN);
         let Proposal { here, slope, there } = engine.propose(&step, length).await?;
+        // The slope is the squared norm of the gradient, as the levels weigh it: about twice what is left to gain in what
+        // is smooth. The rest is left to sweeps, which take most of it each.
+        let scale = (here + self.metric().ideal_squared()).max(LEAST_SCALE);
+        let swept = self.excess(history, done - 1) - here;
+        self.settled = slope.abs() <= NOISE * scale
+            && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
         let mut search = Search::new(here, slope);
-        if slope < 0.0 {
+        if slope < 0.0 && !self.settled {
             let mut next = search.tried(length, there);
             while let Some(another) = next {
                 length = another;
@@ -247,8 +259,19 @@ impl<'a> Corrections<'a> {
         let of_stage = &history.f()[since..];
         let rule = history.rule();
         let rule = StopRule { max_sweeps: rule.max_sweeps.saturating_sub(since as u32), ..rule };
-        let stop = rule.judge(of_stage, of_stage.len() - 1, window);
-        let remaining = rule.remaining(of_stage, window);
+        let best = history.best().saturating_sub(since);
+        let mut stop = rule.judge(of_stage, best, window);
+        let mut remaining = rule.remaining(of_stage, window);
+        if self.settled {
+            remaining = Some(NOISE);
+            if stop.is_none() || stop == Some(Stop::MaxSweeps) {
+                stop = match (rule.target, rule.tolerance > 0.0) {
+                    (Some(_), _) => Some(Stop::Stalled),
+                    (None, true) => Some(Stop::Converged),
+                    (None, false) => stop,
+                };
+            }
+        }
         history.end(stop, remaining);
     }
 }

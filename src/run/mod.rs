@@ -26,7 +26,7 @@ pub use options::{Desired, Goal, Method, Options};
 pub use plan::Plan;
 pub(crate) use shape_guard::shape_guard;
 pub use step::{Derivatives, Sharpness, Step};
-pub(crate) use stop::NOISE;
+pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE};
 pub use stop::{Stop, StopRule};
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;

@@ -1,8 +1,11 @@
-//! Opening triangles that are too flat for single precision.
+//! Opening triangles that are too flat or too small for a device.
 //!
 //! In single precision the error of a triangle's area is about 1e-7 times the product of its sides. A triangle with an
 //! inverse mean ratio above a million may look inverted, and a device cannot tell whether a step improves it. A few
 //! sweeps in double precision open it first.
+//!
+//! A device has positions as pairs of floats, with an error of 2^-48 of their size. Where the mesh is graded so far that
+//! triangles are hardly larger than that, sweeps do not help, and all of the run is done in double precision.
 
 use glam::DVec2;
 
@@ -21,10 +24,15 @@ use crate::run::yielding::yield_now;
 /// triangle.
 const TOO_FLAT: f64 = 1e5;
 
+/// The largest share of a triangle's height that is left to the rounding of positions on a device.
+const TOO_COARSE: f64 = 1e-4;
+/// The rounding of a pair of floats, relative to its size.
+const PAIR_ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
+
 /// Number of sweeps after which opening is given up.
 const MOST_SWEEPS: u32 = 120;
 
-/// The result of sweeps that opened all flat triangles.
+/// The result of sweeps after which a device can go on.
 pub(crate) struct Opened {
     history: History,
     /// The positions after the last sweep.
@@ -33,20 +41,42 @@ pub(crate) struct Opened {
     best: Vec<DVec2>,
 }
 
-/// Whether a triangle is too flat for a device.
-pub(crate) fn is_needed(problem: &Problem, positions: &[DVec2]) -> bool {
-    let is_flat = |t: &[u32; 3]| {
-        let [p, q, r] = t.map(|v| positions[v as usize]);
-        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
-        // Infinite if the rounded area is not positive.
-        corner.inverse_mean_ratio() > TOO_FLAT
-    };
-    map_parts(problem.triangles().chunks(4096), |_, chunk| chunk.iter().any(is_flat))
-        .contains(&true)
+/// What keeps a device from sweeping a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Obstacle {
+    None,
+    /// A triangle is too flat, which sweeps in double precision may mend.
+    Flat,
+    /// A triangle is too small for its distance from the center.
+    Small,
 }
 
-/// Sweeps by an engine in double precision until no triangle is too flat, in whole periods of the plan's scheme.
-/// Returns `None` if a triangle stays too flat, or if the run ends before. Yields after each period.
+/// The worst obstacle that any triangle is to a device.
+pub(crate) fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
+    let of = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|v| positions[v as usize]);
+        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
+        let rounding = PAIR_ROUNDING * p.abs().max_element();
+        let (a, b) = ((q - p).length(), (r - p).length());
+        // A height is the doubled area over an edge, of which these are not the shortest.
+        if rounding > TOO_COARSE * a.max(b) {
+            Obstacle::Small
+        } else if corner.inverse_mean_ratio() > TOO_FLAT
+            || rounding * a.max(b) > TOO_COARSE * corner.doubled_area()
+        {
+            // The ratio is infinite if the rounded area is not positive.
+            Obstacle::Flat
+        } else {
+            Obstacle::None
+        }
+    };
+    let worst = |_, chunk: &[[u32; 3]]| chunk.iter().map(of).max().unwrap_or(Obstacle::None);
+    let worst = map_parts(problem.triangles().chunks(4096), worst).into_iter().max();
+    worst.unwrap_or(Obstacle::None)
+}
+
+/// Sweeps by an engine in double precision until no triangle is too flat or too small, in whole periods of the plan's scheme.
+/// Returns `None` if a triangle stays so, or if the run ends before. Yields after each period.
 pub(crate) async fn open(
     problem: &Problem,
     mut engine: impl Engine,
@@ -59,7 +89,7 @@ pub(crate) async fn open(
         if history.stop().is_some() {
             return Ok(None);
         }
-        if !is_needed(problem, &engine.positions().await?) {
+        if obstacle(problem, &engine.positions().await?) == Obstacle::None {
             let positions = engine.positions().await?.into_owned();
             return Ok(Some(Opened { history, positions, best: engine.best_positions().await? }));
         }

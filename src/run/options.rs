@@ -38,7 +38,8 @@ pub struct Options {
     /// from coarser levels), so it bounds what remains, not the change in one sweep. 0 turns this test off.
     pub tolerance: f64,
     /// The precision in which the result will be stored. It is rounded to that before it is judged: what is returned has no
-    /// inverted triangle, and a lower f, as stored.
+    /// inverted triangle, and a lower f, as stored. Fixed vertices are rounded as well, if the mesh is not in that
+    /// precision.
     pub stored: Precision,
     /// Ends the run at a share of the way to a desired objective. The tolerance then has no effect.
     pub goal: Option<Goal>,
@@ -50,7 +51,7 @@ pub struct Options {
     pub omega: Option<f64>,
     /// Number of sweeps before over-relaxation starts, in runs without corrections.
     pub plain_sweeps: u32,
-    /// The most Newton steps per visit of a vertex. With analytic derivatives a visit ends sooner once
+    /// The most Newton steps per visit of a vertex, 1000 at most. With analytic derivatives a visit ends sooner once
     /// its steps have become short.
     pub inner: u32,
     /// How metrics are differentiated.
@@ -81,6 +82,9 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The largest value of [`inner`](Self::inner): the [`Observer`](crate::Observer) cannot end a sweep.
+    pub const MOST_INNER: u32 = 1000;
+
     /// The method of Park & Shontz (2011): sweeps alone, one Newton step per visit, no over-relaxation.
     pub fn paper(scheme: Scheme) -> Self {
         Self { scheme, method: Method::Sweeps, omega: Some(1.0), ..Self::default() }
@@ -120,8 +124,8 @@ impl Options {
         if let Some(omega) = self.omega.filter(|omega| !(*omega > 0.0 && *omega < 2.0)) {
             return refuse("omega", omega, "over-relaxation must be above 0 and below 2");
         }
-        if self.inner == 0 {
-            return refuse("inner", 0.0, "a visit takes at least one Newton step");
+        if !(1..=Self::MOST_INNER).contains(&self.inner) {
+            return refuse("inner", self.inner.into(), "a visit takes from 1 to 1000 Newton steps");
         }
         if self.sharpness.first.max(self.sharpness.last) > Sharpness::MOST {
             let most = f64::from(self.sharpness.first.max(self.sharpness.last));

@@ -12,6 +12,9 @@ pub enum Stop {
     /// The base objective no longer improves: a goal is out of reach, or the sweeps of an alternating scheme lead away
     /// from the optimum of the base metric.
     Stalled,
+    /// f no longer changes, but only because the shape guard holds vertices back: by the metric alone they would flatten
+    /// triangles further. [`Outcome::held_back`](crate::Outcome::held_back) is how many.
+    HeldBack,
     /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps were done.
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
@@ -33,6 +36,7 @@ impl Stop {
             Stop::Reached => "reached",
             Stop::Converged => "converged",
             Stop::Stalled => "stalled",
+            Stop::HeldBack => "held-back",
             Stop::MaxSweeps => "max-sweeps",
             Stop::Cancelled => "cancelled",
         }
@@ -53,6 +57,11 @@ pub struct StopRule {
 
 /// A change of f over a window below this share of f is rounding, not progress.
 pub(crate) const NOISE: f64 = 1e-9;
+/// An f above the best one by less than this share of f has not become worse: f as a device evaluates it has such errors.
+pub(crate) const JITTER: f64 = 1e-6;
+/// Shares of f are taken of this where f is smaller, as by AREA, whose f may go to 0. Where it ends is then settled
+/// by rounding alone.
+pub(crate) const LEAST_SCALE: f64 = 1e-6;
 
 impl StopRule {
     /// The longer of the two windows from which the remaining distance is estimated, in sweeps. Both windows are
@@ -72,10 +81,13 @@ impl StopRule {
             return Some(Stop::Reached);
         }
         if last >= window.saturating_mul(2) && (self.target.is_some() || self.tolerance > 0.0) {
-            let still = (history[last - window] - f).abs() <= NOISE * f;
+            let scale = f.max(LEAST_SCALE);
+            let still = (history[last - window] - f).abs() <= NOISE * scale;
             if still || last.saturating_sub(best) >= 2 * window {
                 // f no longer changes, or no longer improves. Without a goal, no change is convergence.
-                let done = still && self.target.is_none();
+                let level =
+                    still || history.get(best).is_some_and(|&best| f - best <= JITTER * scale);
+                let done = level && self.target.is_none();
                 return Some(if done { Stop::Converged } else { Stop::Stalled });
             }
             if self.remaining(history, window).is_some_and(|left| left <= self.tolerance) {
@@ -96,7 +108,8 @@ impl StopRule {
         let gain = |from: usize, to: usize| history[from] - history[to];
         let remaining =
             |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
-        let left = 2.0 * remaining(window).max(remaining(window.div_ceil(2))) / history[last];
+        let scale = history[last].max(LEAST_SCALE);
+        let left = 2.0 * remaining(window).max(remaining(window.div_ceil(2))) / scale;
         Some(left).filter(|left| left.is_finite())
     }
 }
@@ -145,6 +158,27 @@ mod tests {
         assert_eq!((1..99).find(ends), Some(37));
         assert_eq!(rule(None, 1e-6).judge(&history[..37], 20, 8), Some(Stop::Stalled));
         assert_eq!(rule(None, 0.0).judge(&history[..37], 20, 8), None);
+    }
+
+    #[test]
+    fn errors_of_single_precision_do_not_keep_a_run_going() {
+        // The best is early and by chance, and later values jump about it.
+        let jumps = |k: u32| f64::from(k * 7 % 5) * 1e-7;
+        let history: Vec<f64> =
+            (0..40).map(|k| 1.5 + if k == 4 { 0.0 } else { 1e-8 + jumps(k) }).collect();
+        let at = |best: usize| rule(None, 1e-6).judge(&history[..21], best, 8);
+        assert_eq!(at(4), Some(Stop::Converged));
+        assert_eq!(rule(Some(1.0), 0.0).judge(&history[..21], 4, 8), Some(Stop::Stalled));
+    }
+
+    #[test]
+    fn an_objective_that_goes_to_zero_converges() {
+        let history: Vec<f64> =
+            (0..60).map(|k| 0.1f64.powi(k) + f64::from(k % 3) * 1e-31).collect();
+        let end = (1..60).find(|&n| rule(None, 1e-6).judge(&history[..n], n - 1, 8).is_some());
+        assert!(end.is_some_and(|n| (17..25).contains(&n)), "{end:?}");
+        let n = end.unwrap_or_default();
+        assert_eq!(rule(None, 1e-6).judge(&history[..n], n - 1, 8), Some(Stop::Converged));
     }
 
     #[test]

@@ -9,7 +9,8 @@ use crate::parallel::counting_sort::Groups;
 use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
-use crate::topology::winding::{NONE, are_positive, neighbors, wind};
+use crate::topology::turns::overlapping_star;
+use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
 /// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
 /// consistent and counter-clockwise already.
@@ -33,6 +34,20 @@ impl<'m> Topology<'m> {
     /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
     /// [`check_smoothable`](Self::check_smoothable) checks whether the mesh is feasible and has a free vertex.
     pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
+        Self::wound(mesh, Majority::OfTriangles)
+    }
+
+    /// Finds the topology of a mesh that may be tangled. Windings are made consistent as in [`new`](Self::new), but such
+    /// that the signed areas of each part add up to a positive number. That is the area which its boundary encloses,
+    /// wherever the vertices inside are.
+    ///
+    /// # Errors
+    /// The same as those of [`new`](Self::new).
+    pub fn by_area(mesh: &'m Mesh) -> Result<Self, MeshError> {
+        Self::wound(mesh, Majority::OfArea)
+    }
+
+    fn wound(mesh: &'m Mesh, majority: Majority) -> Result<Self, MeshError> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let mut stars = stars(points.len(), triangles);
@@ -43,7 +58,7 @@ impl<'m> Topology<'m> {
             if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
                 Cow::Borrowed(triangles.as_slice())
             } else {
-                let wound = wind(points, triangles, &neighbors(triangles, &stars)?);
+                let wound = wind(points, triangles, &neighbors(triangles, &stars)?, majority);
                 close(&wound, &mut stars, &mut free);
                 Cow::Owned(wound)
             };
@@ -59,19 +74,26 @@ impl<'m> Topology<'m> {
         Topology { triangles: Cow::Owned(triangles.into_owned()), free, stars }
     }
 
-    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, and some vertex is free.
+    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, some vertex is free, and
+    /// the triangles around each free vertex wind around it once.
+    ///
+    /// Parts of a mesh that overlap in another way are not found.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Infeasible`] if a triangle is
-    /// inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free.
+    /// inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free, [`MeshError::OverlappingStar`] if
+    /// triangles wind more than once around a free vertex.
     pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
         let triangles = self.bad_triangles(points)?;
         if !triangles.is_empty() {
             return Err(MeshError::Infeasible { triangles });
         }
-        match self.free.contains(&true) {
-            true => Ok(()),
-            false => Err(MeshError::NothingFree { vertices: points.len() }),
+        if !self.free.contains(&true) {
+            return Err(MeshError::NothingFree { vertices: points.len() });
+        }
+        match overlapping_star(points, &self.triangles, &self.free) {
+            None => Ok(()),
+            Some((vertex, turns)) => Err(MeshError::OverlappingStar { vertex, turns }),
         }
     }
 

@@ -7,9 +7,11 @@ mod clamp;
 mod connectivity;
 pub(crate) mod predicates;
 mod stars;
+mod turns;
 mod winding;
 
 pub use boundary::signed_area;
 pub use certify::certify;
 pub use connectivity::Topology;
 pub use predicates::infeasible;
+pub(crate) use turns::overlapping_star;

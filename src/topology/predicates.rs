@@ -5,14 +5,58 @@ use robust::Coord;
 use crate::error::{BadTriangle, MeshError};
 use crate::parallel::map_ranges;
 
-/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded. NaN or
-/// infinite if a coordinate is.
+/// Below this, products in the determinant may have lost bits to underflow: about 2^-960, far above the least number.
+const UNDERFLOW: f64 = 1e-289;
+
+/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; it is not
+/// zero unless the triangle is flat. NaN or infinite if a coordinate is.
+///
+/// The sign holds for all coordinates up to 1e100, if those that are not zero are at least 1e-300.
+#[inline]
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
-    let [p, q, r] = corners.map(|v| {
-        let [x, y] = points[v as usize];
-        Coord { x, y }
-    });
+    let corners = corners.map(|v| points[v as usize]);
+    let orientation = orient(corners);
+    // True for NaN as well.
+    if !(orientation.abs() < UNDERFLOW) { orientation } else { tiny_orientation(corners) }
+}
+
+fn orient(corners: [[f64; 2]; 3]) -> f64 {
+    let [p, q, r] = corners.map(|[x, y]| Coord { x, y });
     robust::orient2d(p, q, r)
+}
+
+/// [`orientation`] for triangles so small or flat that products of their coordinates may underflow: each axis is
+/// first scaled by a power of two, which rounds nothing and keeps the sign.
+#[cold]
+fn tiny_orientation(corners: [[f64; 2]; 3]) -> f64 {
+    let [x, y] = [0, 1].map(|axis| {
+        let size = corners.iter().fold(0.0, |size: f64, corner| size.max(corner[axis].abs()));
+        up(size)
+    });
+    let scaled = orient(corners.map(|corner| [scaled(corner[0], x), scaled(corner[1], y)]));
+    let value = unscaled(unscaled(scaled, x), y);
+    // The value itself may be too small for a number.
+    if value == 0.0 && scaled != 0.0 { f64::from_bits(1).copysign(scaled) } else { value }
+}
+
+/// The largest power of two, as an exponent, by which a number can be multiplied to stay below 2^480.
+fn up(size: f64) -> i32 {
+    if size == 0.0 {
+        return 0;
+    }
+    // The exponent of a number that is not normal shows once it is scaled.
+    let (size, already) = if size < 1e-200 { (size * 600f64.exp2(), 600) } else { (size, 0) };
+    479 - (((size.to_bits() >> 52) & 0x7ff) as i32 - 1023 - already)
+}
+
+/// A number times a power of two, in two steps, as the power itself may be too large for a number.
+fn scaled(x: f64, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    x * f64::from(half).exp2() * f64::from(exponent - half).exp2()
+}
+
+fn unscaled(x: f64, exponent: i32) -> f64 {
+    scaled(x, -exponent)
 }
 
 /// Whether a triangle is counter-clockwise. False if a coordinate is NaN or infinite.
@@ -71,6 +115,50 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
         assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
         assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));
+    }
+
+    /// Corners on a fine grid, many of them nearly on a line, at sizes at which products of coordinates underflow. Their
+    /// orientation is compared with that by whole numbers.
+    #[test]
+    fn signs_are_exact_for_triangles_of_any_size() {
+        let mut state = 1_u64;
+        let mut random = |bound: i64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 20) as i64 % bound
+        };
+        for exponent in [-1074, -900, -560, -548, -530, -400, -100, 0, 200] {
+            let unit = scaled(1.0, exponent);
+            for round in 0..2000 {
+                let [a, b] =
+                    [0; 2].map(|_| [random(1 << 40) - (1 << 39), random(1 << 40) - (1 << 39)]);
+                let c = match round % 3 {
+                    0 => [random(1 << 40), random(1 << 40)],
+                    1 => [(a[0] + b[0]) / 2 + random(3) - 1, (a[1] + b[1]) / 2],
+                    _ => [2 * b[0] - a[0], 2 * b[1] - a[1] + random(3) - 1],
+                };
+                let wide = [a, b, c].map(|point| point.map(i128::from));
+                let [[ax, ay], [bx, by], [cx, cy]] = wide;
+                let exact = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+                let points = [a, b, c].map(|point| point.map(|x| x as f64 * unit));
+                let found = orientation(&points, &[0, 1, 2]);
+                let sign = i32::from(found > 0.0) - i32::from(found < 0.0);
+                assert_eq!(sign, exact.signum() as i32, "{points:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn signs_are_exact_where_sizes_differ_by_hundreds_of_decades() {
+        // The area is 1e-600, and the sign that of the last coordinate.
+        for (y, sign) in [(1e-300, -1.0), (-1e-300, 1.0), (0.0, 0.0)] {
+            let points = [[0.0, 0.0], [1.0, y], [1e-300, 0.0]];
+            let found = orientation(&points, &[0, 1, 2]);
+            assert_eq!(if found == 0.0 { 0.0 } else { found.signum() }, sign, "{y}");
+        }
+        let points = [[0.0, 0.0], [1e100, 0.0], [1e100, 5e-324]];
+        assert!(is_positive(&points, &[0, 1, 2]) && !is_positive(&points, &[1, 0, 2]));
     }
 
     #[test]

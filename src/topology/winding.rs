@@ -45,16 +45,23 @@ fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
 }
 
-/// The triangles with windings made consistent across edges, and most triangles of each edge-connected part
-/// counter-clockwise.
-///
-/// Triangles are counted, whatever their size: one inverted triangle may be larger than all others together, as
-/// where a mesh of the globe crosses the date line. If equally many are clockwise, the sum of their areas
-/// decides, so the result does not depend on the order of triangles and vertices.
+/// What decides how an edge-connected part is wound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Majority {
+    /// Most triangles are counter-clockwise, whatever their size: one inverted triangle may be larger than all others
+    /// together, as where a mesh of the globe crosses the date line. If equally many are clockwise, the area decides.
+    OfTriangles,
+    /// The sum of the signed areas is positive. If it is zero, the number of triangles decides.
+    OfArea,
+}
+
+/// The triangles with windings made consistent across edges, and each edge-connected part wound as the majority says. The
+/// result does not depend on the order of triangles and vertices.
 pub(crate) fn wind(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
     across: &[[u32; 3]],
+    decides: Majority,
 ) -> Vec<[u32; 3]> {
     let mut wound = triangles.to_vec();
     let mut seen = vec![false; triangles.len()];
@@ -91,7 +98,11 @@ pub(crate) fn wind(
                 part.push(other);
             }
         }
-        if majority < 0 || majority == 0 && doubled_area < 0.0 {
+        let is_clockwise = match decides {
+            Majority::OfTriangles => majority < 0 || majority == 0 && doubled_area < 0.0,
+            Majority::OfArea => doubled_area < 0.0 || doubled_area == 0.0 && majority < 0,
+        };
+        if is_clockwise {
             for &t in &part {
                 wound[t as usize].swap(1, 2);
             }

@@ -21,6 +21,7 @@ mod regions;
 mod report;
 mod schemes;
 mod streams;
+mod untangle;
 
 use gpu_smooth::{Mesh, MeshFile};
 use serde_json::Value;

@@ -289,6 +289,21 @@ fn a_mesh_without_bad_triangles_is_written_as_it_was() {
 }
 
 #[test]
+fn what_is_held_stays_while_a_mesh_is_untangled() {
+    let mut mesh = disturbed();
+    let mud = vertices_of(&mesh, |t| !is_left(&mesh, t));
+    // Far out of its patch, in the left half.
+    mesh.points[4 * 11 + 2][1] += 1.6;
+    let folder = Folder::new(&[("in.2dm", &sms(&mesh))]);
+    folder.line("in.2dm out.2dm --engine cpu --fix mud -q").refused(&["inverted"]);
+    let run = folder.line("in.2dm out.2dm --engine cpu --fix mud --untangle");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let after = folder.mesh("out.2dm");
+    assert!(support::is_ccw(&after));
+    assert_eq!(moved(&folder.mesh("in.2dm"), &after), &interior(&mesh) - &mud);
+}
+
+#[test]
 fn the_report_tells_what_was_chosen() {
     let (folder, _) = folder();
     folder.line("in.2dm out.2dm --engine cpu --report r.json --quiet").clean();

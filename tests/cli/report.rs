@@ -33,6 +33,8 @@ fn report_holds_the_documented_keys() {
                 "sweeps",
                 "corrections",
                 "opening_sweeps",
+                "held_back",
+                "lost",
                 "remaining",
                 "levels_left_out",
                 "best_sweep",

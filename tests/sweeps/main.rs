@@ -9,12 +9,15 @@ mod coloring;
 mod flat;
 mod global;
 mod goals;
+mod hard;
 mod invariance;
 mod multilevel;
 mod optimum;
+mod random;
 mod requests;
 mod safety;
 mod tolerance;
+mod untangle;
 
 use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};

@@ -142,6 +142,13 @@ pub(crate) struct SmoothArgs {
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
 
+    /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
+    #[arg(long)]
+    pub(crate) untangle: bool,
+    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1
+    #[arg(long, requires = "untangle")]
+    pub(crate) keep_going: bool,
+
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
     /// done first, but no software adapter
     #[arg(long, value_enum, default_value = "auto")]

@@ -3,7 +3,7 @@
 use gpu_smooth::{MeshFile, Topology};
 
 use crate::cli::{CompareArgs, OutputArgs};
-use crate::smooth::read;
+use crate::streams::read;
 use crate::tell;
 
 /// How many vertices or triangles of a kind are listed.

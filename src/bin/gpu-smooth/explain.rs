@@ -72,7 +72,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
         MeshError::Infeasible { ref triangles } => {
-            let remedy = "Untangle the mesh first: smoothing keeps triangles from inverting, and cannot turn one back";
+            let remedy = "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back";
             let count = triangles.len();
             match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
                 [] => format!("{}: {error}. {remedy}", file.path().display()),
@@ -110,6 +110,20 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
                 _ => "Let those between regions move: --free-interfaces",
             }
         ),
+        MeshError::OverlappingStar { vertex, turns } => format!(
+            "{}: the triangles around vertex {} overlap: they wind {turns} times around it. Only meshes that lie \
+             flat are smoothed: separate the layers there",
+            file.vertex_place(vertex),
+            name(vertex)
+        ),
+        MeshError::BeyondPrecision { triangle, metric } => {
+            let place = file.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} is too flat, or too small beside the others, for double precision: its \
+                 quality by {metric} is not a finite number. Correct it, or smooth by area or edge",
+                place.label
+            )
+        }
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())
         }

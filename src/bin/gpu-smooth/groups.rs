@@ -4,7 +4,7 @@ use gpu_smooth::{Group, Groups};
 use serde_json::json;
 
 use crate::cli::GroupsArgs;
-use crate::smooth::read;
+use crate::streams::read;
 use crate::tell;
 
 /// Prints what can be named in a mesh, and how.

@@ -11,7 +11,9 @@ mod moving;
 mod progress;
 mod report;
 mod smooth;
+mod streams;
 mod tell;
+mod untangle;
 
 use std::process::ExitCode;
 

@@ -13,18 +13,22 @@ use crate::explain::BadTriangleReport;
 pub(crate) struct Report {
     pub(crate) engine: EngineReport,
     pub(crate) mesh: MeshReport,
+    /// How the mesh was untangled before the run, if it had to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
     pub(crate) sweeps: u32,
     /// Corrections from coarser levels, each after a sweep.
     pub(crate) corrections: u32,
-    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat for the GPU.
+    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat or too small for
+    /// the GPU.
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
     /// The sweep whose state was written.
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
-    /// reached, converged, stalled, max-sweeps, cancelled or nothing-to-do.
+    /// reached, converged, stalled, held-back, max-sweeps, cancelled or nothing-to-do.
     pub(crate) stop: &'static str,
     /// Why there was nothing to do.
     #[serde(skip)]
@@ -32,6 +36,10 @@ pub(crate) struct Report {
     /// What the options hold or let move, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) choices: Vec<String>,
+    /// Vertices that the shape guard keeps from moving on, if the run ended for that.
+    pub(crate) held_back: usize,
+    /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
+    pub(crate) lost: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
@@ -68,6 +76,16 @@ pub(crate) struct MeshReport {
     pub(crate) triangles: usize,
     pub(crate) free: usize,
     pub(crate) colors: usize,
+}
+
+/// What untangling did.
+#[derive(Serialize)]
+pub(crate) struct UntangleReport {
+    /// Triangles that were inverted or flat.
+    pub(crate) bad_before: usize,
+    pub(crate) sweeps: u32,
+    /// Vertices that it moved.
+    pub(crate) moved: usize,
 }
 
 #[derive(Serialize)]
@@ -158,6 +176,19 @@ impl Report {
             let _ = write!(text, ": {reason}");
         }
         text.push('\n');
+        if let Some(UntangleReport { bad_before, sweeps, moved }) = self.untangled {
+            let count = |n: usize, one: &str, many: &str| match n {
+                1 => format!("1 {one}"),
+                n => format!("{n} {many}"),
+            };
+            let _ = writeln!(
+                text,
+                "untangled {} in {}, which moved {}",
+                count(bad_before, "inverted or flat triangle", "inverted or flat triangles"),
+                count(sweeps as usize, "sweep", "sweeps"),
+                count(moved, "vertex", "vertices"),
+            );
+        }
         text.push('\n');
         let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
         let mut row = |name: &str, before: String, after: String| {
@@ -252,6 +283,13 @@ impl Report {
             }
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
+            ("held-back", None) => {
+                let vertices = match self.held_back {
+                    1 => "1 vertex".to_owned(),
+                    n => format!("{n} vertices"),
+                };
+                format!("held back by the shape guard at {vertices} after {sweeps}")
+            }
             ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => {
                 format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
@@ -264,8 +302,17 @@ impl Report {
         }
         if self.opening_sweeps > 0 {
             let n = self.opening_sweeps;
-            let _ =
-                write!(text, "; the first {n} on the CPU, as triangles were too flat for the GPU");
+            let _ = write!(
+                text,
+                "; the first {n} on the CPU, as triangles were too flat or small for the GPU"
+            );
+        }
+        if self.lost > 0.01 {
+            let share = percent(self.lost);
+            let _ = write!(
+                text,
+                "; {share} % of the gain is lost to rounding, as coordinates have too few digits for this mesh"
+            );
         }
         if self.levels_left_out {
             text.push_str("; coarser levels of so large a mesh do not fit the GPU");

@@ -1,6 +1,5 @@
 //! `gpu-smooth IN OUT`.
 
-use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -17,32 +16,14 @@ use crate::explain;
 use crate::interrupt;
 use crate::moving::Choice;
 use crate::progress::Bar;
-use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
+use crate::report::{
+    self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds, UntangleReport,
+};
+use crate::streams::{self, is_standard};
 use crate::tell;
+use crate::untangle;
 
-/// Reads a mesh, from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
-    if !is_standard(path) {
-        return MeshFile::read(path).map_err(told);
-    }
-    let mut bytes = Vec::new();
-    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
-    MeshFile::from_bytes(Path::new("standard input"), bytes).map_err(told)
-}
-
-/// Whether a name stands for the standard input or output.
-fn is_standard(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
-/// Writes a mesh, to the standard output if its name is `-`.
-fn write(file: &MeshFile, out: &Path, points: &[[f64; 2]]) -> Result<(), String> {
-    let written = match is_standard(out) {
-        true => file.write_to(Path::new("standard output"), &mut std::io::stdout(), points),
-        false => file.write(out, points),
-    };
-    written.map_err(told)
-}
+pub(crate) use crate::streams::read;
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     let (Some(input), Some(out)) = (&args.input, &args.output) else {
@@ -65,22 +46,31 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
         let opening =
             opening.unwrap_or_else(|| scope.spawn(move || Ok(engine::choose(args, size))));
-        let smoother =
-            Smoother::new(mesh).map_err(|error| refusal(args, &choice, &file, &error))?;
+        let mended;
+        let (smoother, mending) = match Smoother::new(mesh) {
+            Ok(smoother) => (smoother, None),
+            Err(error) if args.untangle && untangle::can_mend(&error) => {
+                mended = untangle::mend(args, show, &file, out)?;
+                let smoother = Smoother::new(&mended.mesh);
+                let smoother = smoother.map_err(|error| explain::mesh_error(&file, &error))?;
+                (smoother, Some(&mended))
+            }
+            Err(error) => return Err(refusal(args, &choice, &file, &error)),
+        };
         let taken =
             opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
         let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
         let options = options(args, &choice, file.precision());
-        let (outcome, taken) = smooth(args, &options, show, &smoother, taken)?;
+        let (outcome, taken) = smooth(args, &options, show, &smoother, &file, taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
 
         // The destination may have changed during a long run.
         check_report(args)?;
-        write(&file, out, &outcome.points)?;
+        streams::write(&file, out, &outcome.points)?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -93,6 +83,11 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let report = Report {
             engine: engine_report(&taken),
             mesh: mesh_report(&file, mesh, &smoother),
+            untangled: mending.map(|mended| UntangleReport {
+                bad_before: mended.bad_before,
+                sweeps: mended.sweeps,
+                moved: mended.moved,
+            }),
             scheme: args.scheme.to_string(),
             sweeps: outcome.sweeps,
             corrections: outcome.corrections,
@@ -103,6 +98,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
             nothing_to_do: choice.nothing_to_do,
             choices: choice.notes,
+            held_back: outcome.held_back,
+            lost: outcome.lost,
             goal: goal_report(&outcome),
             returned: outcome.returned,
             before: (&before).into(),
@@ -112,8 +109,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         };
         write_report(args, &report)
             .map_err(|problem| format!("{problem}. The mesh was written"))?;
-        // The standard output is the mesh alone, where that is asked for.
-        let say = if is_standard(out) { tell::aside } else { tell::say };
+        let say = |text: &str| streams::say_beside(out, text);
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
@@ -142,6 +138,7 @@ fn smooth(
     options: &Options,
     show: &OutputArgs,
     smoother: &Smoother<'_>,
+    file: &MeshFile,
     mut taken: Taken,
 ) -> Result<(Outcome, Taken), String> {
     let mut bar = Bar::new(show, args.max_sweeps);
@@ -169,9 +166,12 @@ fn smooth(
         tell::note(show.quiet, text);
     }
     let outcome = outcome.map(|outcome| (outcome, taken));
-    outcome.map_err(|error: SmoothError| match engine::is_too_large(&error) {
-        true => format!("{error}. Smooth on the CPU: --engine cpu"),
-        false => error.to_string(),
+    outcome.map_err(|error: SmoothError| match &error {
+        SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        error if engine::is_too_large(error) => {
+            format!("{error}. Smooth on the CPU: --engine cpu")
+        }
+        error => error.to_string(),
     })
 }
 

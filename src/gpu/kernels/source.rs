@@ -9,7 +9,7 @@ use crate::gpu::kernels::uniforms::{
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
 use crate::run::{Derivatives, Stop};
-use crate::run::{NOISE, line_search};
+use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search};
 
 const COMMON: &str = include_str!("../../../shaders/common.wgsl");
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
@@ -155,6 +155,8 @@ fn constants() -> String {
         ("DIFFERENCE", line_search::DIFFERENCE),
         ("SLACK", line_search::SLACK),
         ("NOISE", NOISE),
+        ("JITTER", JITTER),
+        ("LEAST_SCALE", LEAST_SCALE),
         ("SMOOTHING", SMOOTHING.into()),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");

@@ -60,13 +60,22 @@ pub(crate) enum Coarser {
 impl Hierarchy {
     /// Builds the levels, with weights by the sizes of elements at `positions`.
     pub(crate) fn new(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Self {
+        Self::with_roots(problem, || roots(problem, positions, stiffness))
+    }
+
+    /// Builds the levels, with the reciprocals of the areas that elements should have at each vertex as weights.
+    pub(crate) fn of_sizes(problem: &Problem, areas: &[f64]) -> Self {
+        Self::with_roots(problem, || {
+            areas[..problem.free_count()].iter().map(|area| (0.5 / area).sqrt() as f32).collect()
+        })
+    }
+
+    /// Builds the levels with weights by the square roots that `roots` gives for the free vertices.
+    fn with_roots(problem: &Problem, roots: impl FnOnce() -> Vec<f32> + Send) -> Self {
         let free = problem.free_count();
         let free_neighbors = |v| neighbors(problem, v).filter(move |&k| (k as usize) < free);
         // Aggregation is serial, so the weights are computed beside it.
-        let (aggregates, root) = rayon::join(
-            || Aggregates::new(free, free_neighbors),
-            || roots(problem, positions, stiffness),
-        );
+        let (aggregates, root) = rayon::join(|| Aggregates::new(free, free_neighbors), roots);
         let (member_start, member) = aggregates.members();
         let mut hierarchy = Self {
             aggregates,

@@ -1,0 +1,99 @@
+//! `gpu-smooth --untangle`: what is done with a mesh that has inverted or flat triangles.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Untangled, Untangling};
+
+use crate::cli::{OutputArgs, SmoothArgs};
+use crate::explain;
+use crate::interrupt;
+use crate::streams;
+
+/// A mesh that was untangled, and how.
+pub(crate) struct Mended {
+    pub(crate) mesh: Mesh,
+    pub(crate) bad_before: usize,
+    pub(crate) sweeps: u32,
+    pub(crate) moved: usize,
+}
+
+/// Untangles a mesh that cannot be smoothed as it is, if the user wants that.
+///
+/// If triangles stay inverted, the error lists them; with `--keep-going` the best mesh is written before.
+pub(crate) fn mend(
+    args: &SmoothArgs,
+    show: &OutputArgs,
+    file: &MeshFile,
+    out: &Path,
+) -> Result<Mended, String> {
+    let mesh = file.mesh();
+    let mut observe = |progress: &Untangling| {
+        if show.verbose {
+            let Untangling { sweep, bad } = progress;
+            let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
+            streams::say_beside(out, &text);
+        }
+        match interrupt::is_requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe)
+        .map_err(|error| explain::mesh_error(file, &error))?;
+    let Untangled { points, bad_before, left, hopeless, sweeps, moved, .. } = untangled;
+    if left.is_empty() {
+        let mesh = Mesh { points, ..mesh.clone() };
+        return Ok(Mended { mesh, bad_before, sweeps, moved });
+    }
+    let mut message = still_tangled(file, &left, &hopeless, sweeps);
+    if interrupt::is_requested() {
+        message = format!("interrupted while untangling. {message}");
+    }
+    if !args.keep_going {
+        return Err(message);
+    }
+    match streams::write(file, out, &points) {
+        Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
+        Err(error) => Err(format!("{message}\n  {error}")),
+    }
+}
+
+/// Why a mesh could not be untangled, with the first triangles that stay inverted.
+fn still_tangled(
+    file: &MeshFile,
+    left: &[BadTriangle],
+    hopeless: &[BadTriangle],
+    sweeps: u32,
+) -> String {
+    let name = file.path().display();
+    let (shown, count, why) = match hopeless.len() {
+        0 => {
+            let why = format!(
+                "stayed inverted or flat after {sweeps} sweeps of untangling. Perhaps the boundary crosses itself, or \
+                 fixed vertices leave no room; --keep-going writes the best mesh found"
+            );
+            (left, left.len(), why)
+        }
+        count => {
+            let why = "cannot be mended by moving vertices, as none of their vertices is free: they are on the \
+                       boundary, on constraint lines, between regions or of other elements. Mend the file, or let \
+                       those between regions move: --free-interfaces"
+                .to_owned();
+            (hopeless, count, why)
+        }
+    };
+    let (triangles, first) = (
+        if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") },
+        explain::bad_triangles(file, &shown[..count.min(explain::TOLD)]),
+    );
+    format!(
+        "{name}: {triangles} {why}{}",
+        explain::list(&first, count, "gpu-smooth quality --json")
+    )
+}
+
+/// Whether untangling may mend what a mesh was refused for.
+pub(crate) fn can_mend(error: &MeshError) -> bool {
+    matches!(error, MeshError::Infeasible { .. })
+}

@@ -1,0 +1,211 @@
+//! Untangling: moving free vertices until no triangle is inverted or flat.
+//!
+//! Sweeps of Newton steps lower an [`energy`] that is finite for inverted triangles too. At first only vertices near bad
+//! triangles move, then more, then all, and then each sweep is followed by a step from coarser levels. If that
+//! does not do it, the free vertices are put at the means of their neighbors once.
+
+mod energy;
+mod sizes;
+mod state;
+
+use std::ops::ControlFlow;
+
+use crate::error::{BadTriangle, MeshError};
+use crate::layout::{Coloring, Problem};
+use crate::mesh::{Mesh, Precision};
+use crate::topology::Topology;
+use crate::topology::overlapping_star;
+use crate::topology::predicates::{bad_triangles, not_positive};
+use state::{Assessment, Region, State};
+
+/// What is done in turn until the mesh is untangled.
+const STAGES: [Stage; 5] = [
+    Stage { rings: Some(2), harmonic: false, sweeps: 10 },
+    Stage { rings: Some(6), harmonic: false, sweeps: 20 },
+    Stage { rings: None, harmonic: false, sweeps: 30 },
+    Stage { rings: None, harmonic: true, sweeps: 100 },
+    Stage { rings: None, harmonic: false, sweeps: 300 },
+];
+
+/// If more than this share of the triangles are bad, all vertices move from the start.
+const MANY: f64 = 0.05;
+/// If more than this share of the triangles are bad, positions say little, and means of neighbors are the better start.
+const MOST: f64 = 0.3;
+
+struct Stage {
+    /// How far from bad triangles vertices move, in edges; all vertices if `None`.
+    rings: Option<u32>,
+    /// Whether the stage begins with free vertices at the means of their neighbors.
+    harmonic: bool,
+    /// The most sweeps.
+    sweeps: u32,
+}
+
+/// The progress of [`untangle`], for a display.
+#[derive(Clone, Copy, Debug)]
+pub struct Untangling {
+    /// Number of sweeps done.
+    pub sweep: u32,
+    /// Number of triangles that are inverted or flat.
+    pub bad: usize,
+}
+
+/// The result of [`untangle`].
+#[derive(Clone, Debug)]
+pub struct Untangled {
+    /// Position of every vertex, in the mesh's order and units. Vertices that are not free are where they were.
+    pub points: Vec<[f64; 2]>,
+    /// Number of triangles that were inverted or flat.
+    pub bad_before: usize,
+    /// The triangles that still are, in ascending order, by exact predicates on the values of `points`. None if the mesh is
+    /// untangled.
+    pub left: Vec<BadTriangle>,
+    /// Those of `left` that no move can mend, as none of their vertices is free.
+    pub hopeless: Vec<BadTriangle>,
+    /// A vertex around which triangles wind more than once though none is inverted, if there is one.
+    pub overlapping: Option<u32>,
+    /// Number of sweeps done.
+    pub sweeps: u32,
+    /// Number of vertices that are not where they were.
+    pub moved: usize,
+}
+
+/// Moves free vertices until no triangle is inverted or flat, if that can be done: connectivity, boundary and fixed
+/// vertices stay. Only vertices near bad triangles move unless that is not enough. On the CPU.
+///
+/// Windings are made consistent across edges, and such that the area that the boundary of each part encloses is positive.
+/// `stored` is the precision in which the points will be stored: they are rounded to it and then judged. `observe` is called
+/// after each sweep and can end the work; what is reached by then is returned.
+///
+/// The energy and its regularization are those of Garanzha et al., *Foldover-free maps in 50 lines of code*, ACM
+/// Transactions on Graphics 40 (2021). There is no proof that every mesh that can be untangled is.
+///
+/// # Errors
+/// [`MeshError`] if the mesh cannot be read as one of the plane; see [`Topology::by_area`]. Triangles that stay
+/// inverted are no error: [`Untangled::left`] lists them.
+pub fn untangle(
+    mesh: &Mesh,
+    stored: Precision,
+    observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
+) -> Result<Untangled, MeshError> {
+    let topology = Topology::by_area(mesh)?;
+    let before = bad_triangles(&mesh.points, topology.triangles());
+    let is_free = |v: &u32| topology.free()[*v as usize];
+    let is_hopeless = |bad: &BadTriangle| !bad.vertices.iter().any(is_free);
+    let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
+    let mut result = Untangled {
+        points: mesh.points.clone(),
+        bad_before: before.len(),
+        left: before.clone(),
+        hopeless,
+        overlapping: None,
+        sweeps: 0,
+        moved: 0,
+    };
+    if result.left.len() == result.hopeless.len() {
+        return Ok(result);
+    }
+    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
+    let mut work = Work { mesh, topology: &topology, problem: &problem, stored };
+    work.run(&mut result, observe);
+    let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
+    result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
+    Ok(result)
+}
+
+/// ε for the next sweep, given the least area in units of its target: the robust one of the paper's rules.
+fn epsilon(least: f64) -> f64 {
+    let least = least.min(0.0);
+    (1e-12 + 0.04 * least * least).sqrt()
+}
+
+struct Work<'m> {
+    mesh: &'m Mesh,
+    topology: &'m Topology<'m>,
+    problem: &'m Problem,
+    stored: Precision,
+}
+
+impl Work<'_> {
+    fn run(
+        &mut self,
+        result: &mut Untangled,
+        observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
+    ) {
+        let targets = sizes::target_areas(self.problem, self.problem.positions());
+        let mut state = State::new(self.problem, targets);
+        let mut hierarchy = None;
+        for stage in &STAGES {
+            let share = result.left.len() as f64 / self.topology.triangles().len() as f64;
+            if share > MANY && stage.rings.is_some()
+                || share > MOST && result.sweeps == 0 && !stage.harmonic
+            {
+                continue;
+            }
+            let region = match stage.rings {
+                Some(rings) => Region::around(self.problem, &self.bad(&state), rings),
+                None => Region::whole(self.problem),
+            };
+            let levels = match stage.rings {
+                Some(_) => None,
+                None => Some(&*hierarchy.get_or_insert_with(|| state.hierarchy())),
+            };
+            if let (true, Some(levels)) = (stage.harmonic, levels) {
+                state.make_harmonic(levels);
+                if self.judge(&state, result) {
+                    return;
+                }
+            }
+            let mut least = state.assess(&region).least;
+            for _ in 0..stage.sweeps {
+                let epsilon = epsilon(least);
+                state.sweep(&region, epsilon);
+                if let Some(levels) = levels {
+                    state.global_step(levels, epsilon);
+                }
+                result.sweeps += 1;
+                let Assessment { least: now, bad } = state.assess(&region);
+                least = now;
+                // The exact judgment takes a pass over the whole mesh.
+                if bad <= result.hopeless.len() && self.judge(&state, result) {
+                    return;
+                }
+                if observe(&Untangling { sweep: result.sweeps, bad }).is_break() {
+                    self.judge(&state, result);
+                    return;
+                }
+            }
+            if self.judge(&state, result) {
+                return;
+            }
+        }
+    }
+
+    /// The triangles of the problem that are inverted or flat, or so by rounding.
+    fn bad(&self, state: &State<'_>) -> Vec<u32> {
+        let points: Vec<[f64; 2]> = state.positions.iter().map(|p| p.to_array()).collect();
+        not_positive(&points, self.problem.triangles())
+    }
+
+    /// Takes the positions if fewer triangles are bad than in the result. Returns whether none is left that could be
+    /// mended.
+    fn judge(&self, state: &State<'_>, result: &mut Untangled) -> bool {
+        let mut points = self.problem.denormalize(self.mesh, &state.positions);
+        for x in points.as_flattened_mut() {
+            *x = self.stored.rounded(*x);
+        }
+        let triangles = self.topology.triangles();
+        let left = bad_triangles(&points, triangles);
+        let overlapping = match left.is_empty() {
+            true => overlapping_star(&points, triangles, self.topology.free()).map(|(v, _)| v),
+            false => None,
+        };
+        let separates = result.overlapping.is_some() && overlapping.is_none();
+        if left.len() < result.left.len() || left.is_empty() && separates {
+            result.points = points;
+            result.left = left;
+            result.overlapping = overlapping;
+        }
+        result.left.len() == result.hopeless.len() && result.overlapping.is_none()
+    }
+}

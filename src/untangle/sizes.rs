@@ -1,0 +1,166 @@
+//! The areas that triangles should have while they are untangled.
+//!
+//! Where the mesh is sound, its own sizes are kept. Elsewhere they are interpolated: first outward from there, neighbor by
+//! neighbor, then smoothed. A boundary vertex without a sound triangle has the size of its boundary edges.
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+
+/// Triangles up to this inverse mean ratio tell their size.
+const SOUND: f64 = 10.0;
+
+/// Rounds of averaging over neighbors where sizes are interpolated.
+const ROUNDS: usize = 20;
+
+/// The target area at each vertex; that of a triangle is the mean of its vertices'. Their sum over all triangles is
+/// the area that the boundary encloses.
+pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
+    let triangles = problem.triangles();
+    let mut size = known(problem, positions);
+    let free = problem.free_count();
+    let mut interpolated = spread(triangles, &mut size);
+    interpolated.retain(|&v| (v as usize) < free);
+    let mut size: Vec<f64> = size.into_iter().map(|size| size.unwrap_or(0.0)).collect();
+    for _ in 0..ROUNDS {
+        for &v in &interpolated {
+            let ring = problem.ring_of(v);
+            let sum: f64 = ring.iter().map(|&k| size[k as usize]).sum();
+            size[v as usize] = sum / ring.len() as f64;
+        }
+    }
+    let mut areas: Vec<f64> = size.into_iter().map(f64::exp).collect();
+    let target = |t: &[u32; 3]| t.map(|v| areas[v as usize]).iter().sum::<f64>() / 3.0;
+    let wanted: f64 = triangles.iter().map(target).sum();
+    let factor = problem.mean_area() * triangles.len() as f64 / wanted;
+    areas.iter_mut().for_each(|area| *area *= factor);
+    areas
+}
+
+/// The logarithm of the area of elements at each vertex, where the mesh tells it.
+fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
+    /// Logarithms of areas at a vertex: their sum and number, those from boundary edges, and whether all triangles are
+    /// sound.
+    #[derive(Clone, Copy, Default)]
+    struct Vertex {
+        sound: (f64, u32),
+        edges: (f64, u32),
+        is_unsound: bool,
+    }
+    let free = problem.free_count();
+    let mut all = vec![Vertex::default(); positions.len()];
+    for t in problem.triangles() {
+        let [p, q, r] = t.map(|v| positions[v as usize]);
+        let area = 0.5 * (q - p).perp_dot(r - p);
+        let squares = p.distance_squared(q) + q.distance_squared(r) + r.distance_squared(p);
+        let is_sound = squares < SOUND * 4.0 * 3f64.sqrt() * area;
+        for v in t.map(|v| v as usize) {
+            let vertex = &mut all[v];
+            vertex.is_unsound |= !is_sound;
+            if is_sound {
+                vertex.sound = (vertex.sound.0 + area.ln(), vertex.sound.1 + 1);
+            }
+        }
+        // Edges between vertices that stay.
+        for [k, l] in
+            [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|edge| edge.map(|v| v as usize))
+        {
+            let square = positions[k].distance_squared(positions[l]);
+            if k >= free && l >= free && square > 0.0 {
+                let area = (3f64.sqrt() / 4.0 * square).ln();
+                for v in [k, l] {
+                    all[v].edges = (all[v].edges.0 + area, all[v].edges.1 + 1);
+                }
+            }
+        }
+    }
+    let mean = |(sum, count): (f64, u32)| (count > 0).then(|| sum / f64::from(count));
+    // Free vertices are believed only if all of their triangles are sound.
+    let of = |(v, vertex): (usize, &Vertex)| match v < free {
+        true => mean(vertex.sound).filter(|_| !vertex.is_unsound),
+        false => mean(vertex.sound).or(mean(vertex.edges)),
+    };
+    all.iter().enumerate().map(of).collect()
+}
+
+/// Gives every vertex without a size the mean of its neighbors that have one, layer by layer. Returns these
+/// vertices. If no vertex has a size, all are left without.
+fn spread(triangles: &[[u32; 3]], size: &mut [Option<f64>]) -> Vec<u32> {
+    let mut found: Vec<u32> = Vec::new();
+    let is_open =
+        |t: &[u32; 3], size: &[Option<f64>]| t.iter().any(|&v| size[v as usize].is_none());
+    let mut open: Vec<[u32; 3]> = triangles.iter().copied().filter(|t| is_open(t, size)).collect();
+    while !open.is_empty() {
+        let mut sums: Vec<(u32, f64)> = Vec::new();
+        for t in &open {
+            let known: Vec<f64> = t.iter().filter_map(|&v| size[v as usize]).collect();
+            if !known.is_empty() {
+                let mean = known.iter().sum::<f64>() / known.len() as f64;
+                sums.extend(t.iter().filter(|&&v| size[v as usize].is_none()).map(|&v| (v, mean)));
+            }
+        }
+        if sums.is_empty() {
+            break;
+        }
+        sums.sort_by_key(|&(v, _)| v);
+        for same in sums.chunk_by(|a, b| a.0 == b.0) {
+            let mean = same.iter().map(|&(_, mean)| mean).sum::<f64>() / same.len() as f64;
+            size[same[0].0 as usize] = Some(mean);
+            found.push(same[0].0);
+        }
+        open.retain(|t| is_open(t, size));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Coloring;
+    use crate::mesh::Mesh;
+    use crate::topology::Topology;
+
+    /// A square of `n` times `n` cells, the vertices inside moved by a function of their number.
+    fn square(n: u32, inside: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Mesh {
+        let mut mesh = Mesh::default();
+        for k in 0..(n + 1) * (n + 1) {
+            let (i, j) = (k % (n + 1), k / (n + 1));
+            let at = [f64::from(i), f64::from(j)];
+            let is_inside = (1..n).contains(&i) && (1..n).contains(&j);
+            mesh.points.push(if is_inside { inside(k as usize, at) } else { at });
+        }
+        for k in (0..(n + 1) * n).filter(|k| k % (n + 1) < n) {
+            mesh.triangles.extend([[k, k + 1, k + n + 2], [k, k + n + 2, k + n + 1]]);
+        }
+        mesh
+    }
+
+    fn targets(mesh: &Mesh) -> Vec<f64> {
+        let topology = Topology::by_area(mesh).unwrap();
+        let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
+        let areas = target_areas(&problem, problem.positions());
+        let mut by_mesh = vec![0.0; mesh.points.len()];
+        for (&v, area) in problem.vertices().iter().zip(&areas) {
+            by_mesh[v as usize] = area / problem.mean_area();
+        }
+        by_mesh
+    }
+
+    #[test]
+    fn a_sound_mesh_keeps_its_sizes() {
+        let mut mesh = square(8, |_, at| at);
+        mesh.points.iter_mut().for_each(|p| *p = p.map(|x| (0.5 * x).exp()));
+        let of = targets(&mesh);
+        // Cells grow by e from corner to corner of two cells, in both directions.
+        let ratio = of[6 * 9 + 6] / of[2 * 9 + 2];
+        assert!((ratio / 4f64.exp() - 1.0).abs() < 0.2, "{ratio}");
+    }
+
+    #[test]
+    fn sizes_inside_a_collapsed_mesh_come_from_its_boundary() {
+        for inside in [[4.0, 4.0], [100.0, -3.0]] {
+            let of = targets(&square(8, |_, _| inside));
+            assert!(of.iter().all(|area| (0.5..2.0).contains(area)), "{of:?}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `--untangle`: meshes with inverted triangles are refused without it, and mended with it.
+
+use super::{Folder, assert_holds, disturbed, support};
+use gpu_smooth::Mesh;
+use std::fs;
+use support::check;
+
+fn folder(mesh: &Mesh) -> Folder {
+    let folder = Folder::new(&[]);
+    let [node, ele] = support::triangle_text(mesh, "tangled");
+    fs::write(folder.path("in.node"), node).unwrap();
+    fs::write(folder.path("in.ele"), ele).unwrap();
+    folder
+}
+
+/// The small mesh with all free vertices at one place.
+fn tangled() -> Mesh {
+    let mut mesh = disturbed();
+    let held = check::held(&mesh);
+    let free = mesh.points.iter_mut().zip(held).filter(|(_, held)| !held);
+    free.for_each(|(p, _)| *p = [4.0, 3.0]);
+    mesh
+}
+
+#[test]
+fn a_tangled_mesh_is_refused_with_the_option_that_mends_it() {
+    let folder = folder(&tangled());
+    folder.line("in.node out.node").refused(&["inverted or flat", "--untangle"]);
+    assert!(!folder.path("out.node").exists());
+
+    let run = folder.line("in.node out.node --untangle --engine cpu --report run.json").clean();
+    assert_holds(&run.out, &["\nuntangled ", " inverted or flat triangles in ", "converged"]);
+    let (before, after) = (folder.mesh("in.node"), folder.mesh("out.node"));
+    assert!(check::is_valid(&after));
+    let held = check::held(&before);
+    let all = before.points.iter().zip(&after.points).zip(held);
+    assert!(all.clone().all(|((was, is), held)| !held || was == is));
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path("run.json")).unwrap()).unwrap();
+    let moved = all.filter(|((was, is), _)| was != is).count();
+    assert_eq!(report["untangled"]["moved"], moved);
+    assert_eq!(report["after"]["inverted"], 0);
+    let proof = folder.line("compare in.node out.node");
+    assert_eq!(proof.code, Some(0), "{}{}", proof.out, proof.err);
+}
+
+#[test]
+fn a_sound_mesh_is_smoothed_as_without_the_option() {
+    let folder = folder(&disturbed());
+    folder.line("in.node plain.node --engine cpu").clean();
+    let run = folder.line("in.node out.node --engine cpu --untangle").clean();
+    assert!(!run.out.contains("untangled"), "{}", run.out);
+    let read = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_eq!(read("plain.node"), read("out.node"));
+}
+
+#[test]
+fn what_cannot_be_untangled_is_listed_and_written_only_if_asked_for() {
+    // A triangle without a free vertex, turned over.
+    let mut mesh = tangled();
+    let held = check::held(&mesh);
+    let lone = mesh.triangles.iter().position(|t| t.iter().all(|&v| held[v as usize])).unwrap();
+    let [v, a, b] = mesh.triangles[lone].map(|v| v as usize);
+    let [p, q, r] = [v, a, b].map(|v| mesh.points[v]);
+    mesh.points[v] = [0, 1].map(|i| 1.05 * (q[i] + r[i]) - 1.1 * p[i]);
+    let folder = folder(&mesh);
+    let parts = &["1 triangle cannot be mended by moving vertices", "is inverted"];
+    folder.line("in.node out.node --untangle").refused(parts);
+    assert!(!folder.path("out.node").exists());
+
+    let kept = folder.line("in.node out.node --untangle --keep-going");
+    let kept =
+        kept.refused(&["1 triangle cannot be mended", "The best mesh found was written: out.node"]);
+    assert_eq!(kept.code, Some(1));
+    let left = check::orientations(&folder.mesh("out.node"));
+    let bad = left.iter().filter(|&&sign| sign <= 0).count();
+    assert_eq!(bad.min(left.len() - bad), 1);
+    let run = folder.line("in.node out.node --keep-going");
+    assert_eq!(run.code, Some(2), "{}", run.err);
+}

@@ -1,0 +1,273 @@
+//! Random planar meshes of all kinds through both engines, with random options: what must hold for every one of them.
+//!
+//! `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few, `GPU_SMOOTH_RANDOM_SEED=K` the meshes from K on. A
+//! failure names the seed of its mesh.
+
+use crate::support::SplitMix64;
+use crate::{all_schemes, backends, history, name, support, with_points};
+use gpu_smooth::{
+    Backend, Derivatives, Desired, Goal, Mesh, MeshError, Method, Options, Outcome, Precision,
+    Sharpness, SmoothError, Smoother,
+};
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+use std::ops::ControlFlow;
+
+/// A number from 10^low to 10^high, each decade equally likely.
+fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {
+    10f64.powf(rng.range(low, high))
+}
+
+/// A Delaunay mesh of random points, in a square, a disk, or in clusters.
+fn scattered(rng: &mut SplitMix64) -> Mesh {
+    let count = 5 + rng.below(60);
+    let kind = rng.below(3);
+    let mut all = DelaunayTriangulation::<Point2<f64>>::new();
+    for _ in 0..count {
+        let [x, y] = [rng.range(-1.0, 1.0), rng.range(-1.0, 1.0)];
+        let [x, y] = match kind {
+            0 => [x, y],
+            1 => [x * (1.0 - y * y).sqrt(), y],
+            _ => [x * x * x + (4.0 * y).round(), y * y * y],
+        };
+        all.insert(Point2::new(x, y)).unwrap();
+    }
+    Mesh {
+        points: all.vertices().map(|v| [v.position().x, v.position().y]).collect(),
+        triangles: all
+            .inner_faces()
+            .map(|f| f.vertices().map(|v| v.fix().index() as u32))
+            .collect(),
+        fixed: vec![],
+    }
+}
+
+/// A hub: triangles between one vertex and up to a hundred around it, in one or several rings.
+fn hub(rng: &mut SplitMix64) -> Mesh {
+    let around = 3 + rng.below(100) as u32;
+    let rings = 1 + rng.below(3) as u32;
+    let mut mesh =
+        Mesh { points: vec![[rng.range(-0.2, 0.2), rng.range(-0.2, 0.2)]], ..Mesh::default() };
+    for ring in 0..rings {
+        for k in 0..around {
+            let [cos, sin] = support::trig::on_circle(
+                (f64::from(k) + 0.5 * f64::from(ring)) / f64::from(around),
+            );
+            mesh.points.push([f64::from(ring + 1) * cos, f64::from(ring + 1) * sin]);
+        }
+        for k in 0..around {
+            let at = |ring: u32, k: u32| 1 + ring * around + k % around;
+            let (a, b) = (at(ring, k), at(ring, k + 1));
+            match ring {
+                0 => mesh.triangles.push([0, a, b]),
+                _ => {
+                    let (c, d) = (at(ring - 1, k), at(ring - 1, k + 1));
+                    mesh.triangles.extend([[c, a, d], [a, b, d]]);
+                }
+            }
+        }
+    }
+    mesh
+}
+
+/// A mesh of one of the kinds, not yet distorted.
+fn plain(rng: &mut SplitMix64) -> Mesh {
+    match rng.below(5) {
+        0 | 1 => scattered(rng),
+        2 => hub(rng),
+        3 => support::lattice(2 + rng.below(12), 2 + rng.below(12)),
+        // A strip.
+        _ => support::lattice(2 + rng.below(60), 2),
+    }
+}
+
+/// Applies a map to all points, unless it inverts a triangle.
+fn mapped(mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
+    let after = with_points(&mesh, &mesh.points.iter().map(|&p| map(p)).collect::<Vec<_>>());
+    if support::is_ccw(&after) { after } else { mesh }
+}
+
+/// A random planar mesh: all triangles are counter-clockwise.
+fn random_mesh(rng: &mut SplitMix64) -> Mesh {
+    let mut mesh = plain(rng);
+    if rng.below(2) == 0 {
+        mesh = support::perturb_random(&mesh, rng.range(0.2, 1.0), rng.next_u64());
+    }
+    // Slivers: a vertex moved almost onto the opposite edge.
+    if rng.below(3) == 0 {
+        let held = support::check::held(&mesh);
+        let [t, corner] = [rng.below(mesh.triangles.len()), rng.below(3)];
+        let [v, a, b] = [0, 1, 2].map(|i| mesh.triangles[t][(corner + i) % 3] as usize);
+        if !held[v] {
+            let height = decades(rng, -17.0, -1.0);
+            let points = &mesh.points;
+            let to = [0, 1].map(|x| {
+                (points[a][x] + points[b][x]) / 2.0 * (1.0 - height) + points[v][x] * height
+            });
+            let moved = mesh.clone();
+            mesh.points[v] = to;
+            if !support::is_ccw(&mesh) {
+                mesh = moved;
+            }
+        }
+    }
+    // Graded toward a random point, stretched, turned, scaled, moved far away.
+    if rng.below(3) == 0 {
+        let power = rng.range(1.0, 12.0);
+        let about = [rng.range(-1.0, 1.0), rng.range(-1.0, 1.0)];
+        mesh = mapped(mesh, |[x, y]| {
+            let [x, y] = [x - about[0], y - about[1]];
+            let factor = (x.hypot(y) / 3.0).powf(power);
+            [about[0] + x * factor, about[1] + y * factor]
+        });
+    }
+    if rng.below(3) == 0 {
+        let stretch = decades(rng, 0.0, 6.0);
+        mesh = mapped(mesh, |[x, y]| [x * stretch, y]);
+    }
+    if rng.below(3) == 0 {
+        let [cos, sin] = support::trig::on_circle(rng.unit());
+        mesh = mapped(mesh, |[x, y]| [cos * x - sin * y, sin * x + cos * y]);
+    }
+    if rng.below(3) == 0 {
+        let far = [decades(rng, 0.0, 14.0), -decades(rng, 0.0, 14.0)];
+        mesh = mapped(mesh, |[x, y]| [x + far[0], y + far[1]]);
+    }
+    if rng.below(3) == 0 {
+        let scale = decades(rng, -80.0, 80.0);
+        mesh = mapped(mesh, |[x, y]| [x * scale, y * scale]);
+    }
+    // Holes, fixed vertices, vertices of no triangle.
+    if rng.below(3) == 0 {
+        let keep = rng.range(0.7, 1.0);
+        mesh.triangles.retain(|_| rng.unit() < keep);
+    }
+    if rng.below(3) == 0 {
+        let count = mesh.points.len();
+        mesh.fixed = (0..rng.below(4)).map(|_| rng.below(count) as u32).collect();
+        mesh.points.push([rng.range(-9.0, 9.0), 7.0]);
+    }
+    mesh
+}
+
+fn random_options(rng: &mut SplitMix64) -> Options {
+    let mut schemes = all_schemes();
+    let mut options = Options {
+        scheme: schemes.swap_remove(rng.below(schemes.len())),
+        max_sweeps: rng.below(60) as u32,
+        tolerance: [0.0, 1e-3, 1e-6, 1e-12][rng.below(4)],
+        track_all: rng.below(4) == 0,
+        ..Options::default()
+    };
+    match rng.below(8) {
+        0 => options.method = Method::Sweeps,
+        1 => options.omega = Some(rng.range(0.1, 1.99)),
+        2 => options.inner = 1 + rng.below(4) as u32,
+        3 => options.sharpness = Sharpness::CONTINUED,
+        4 => options.derivatives = Derivatives::FiniteDifference,
+        5 => options.stored = Precision::Single,
+        6 => {
+            let fraction = rng.range(0.1, 1.0);
+            let desired = Desired::Value(rng.range(0.5, 2.0));
+            options.goal = Some(Goal { fraction, desired });
+        }
+        _ => {}
+    }
+    options
+}
+
+/// The length of the shortest edge in units of the rounding of the largest coordinate in single precision, which options may
+/// ask for.
+fn digits(mesh: &Mesh) -> f64 {
+    let size = mesh.points.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+    let edges = mesh.triangles.iter().flat_map(|&t| support::check::edges(t));
+    let squared = |[a, b]: [u32; 2]| {
+        support::check::squared_distance(mesh.points[a as usize], mesh.points[b as usize])
+    };
+    edges.map(squared).fold(f64::INFINITY, f64::min).sqrt() / (size * f64::from(f32::EPSILON))
+}
+
+/// What must hold for every outcome.
+fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outcome, near: f64) {
+    let base = options.scheme.base();
+    let after = with_points(mesh, &outcome.points);
+    assert!(support::is_ccw(&after), "a triangle is inverted");
+    assert!(outcome.points.as_flattened().iter().all(|x| x.is_finite()));
+    let held = support::check::held(mesh);
+    for (v, (was, is)) in mesh.points.iter().zip(&after.points).enumerate() {
+        let same = was.map(f64::to_bits) == is.map(f64::to_bits);
+        assert!(same || !held[v], "the fixed vertex {v} has moved");
+        let single = is.iter().all(|&x| f64::from(x as f32) == x);
+        assert!(options.stored == Precision::Double || single, "vertex {v} is not as stored");
+    }
+    let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(base);
+    let (before, end) = (f(&mesh.points), f(&outcome.points));
+    assert!(end <= before, "f rose from {before} to {end}");
+    assert_eq!(outcome.best_sweep == 0, outcome.points == mesh.points, "{}", outcome.best_sweep);
+    let history = history(outcome, base);
+    assert_eq!(history.len() as u32, outcome.sweeps + 1);
+    assert!(outcome.sweeps <= options.max_sweeps);
+    assert!(history.iter().all(|f| f.is_finite()), "{history:?}");
+    // By area f may be 0.
+    assert!(
+        (history[0] - before).abs() <= near * before.max(1e-3),
+        "f begins at {} for {before}",
+        history[0]
+    );
+    let swept = history[outcome.best_sweep as usize];
+    if outcome.best_sweep > 0 && outcome.returned == 0 && digits(mesh) > 1e5 {
+        assert!((swept - end).abs() <= near * end.max(1e-3), "f is {end}, told is {swept}");
+    }
+}
+
+fn setting(name: &str, default: u64) -> u64 {
+    match std::env::var(name) {
+        Ok(value) => value.parse().unwrap_or_else(|_| panic!("{name} is not a number: {value}")),
+        Err(_) => default,
+    }
+}
+
+#[test]
+fn every_mesh_comes_back_finite_feasible_and_no_worse() {
+    let first = setting("GPU_SMOOTH_RANDOM_SEED", 1);
+    let count = setting("GPU_SMOOTH_RANDOM_MESHES", 150);
+    let mut smoothed = 0;
+    for seed in first..first + count {
+        let rng = &mut SplitMix64::new(seed);
+        let mut mesh = random_mesh(rng);
+        let options = random_options(rng);
+        if options.stored == Precision::Single {
+            mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x = f64::from(*x as f32));
+        }
+        if !support::is_ccw(&mesh) {
+            continue;
+        }
+        let smoother = match Smoother::new(&mesh) {
+            Ok(smoother) => smoother,
+            Err(
+                MeshError::NothingFree { .. } | MeshError::Empty | MeshError::OutOfRange { .. },
+            ) => continue,
+            Err(error) => panic!("seed {seed}: {error}"),
+        };
+        for backend in backends() {
+            // A device rounds positions to 1e-4 of the height of a triangle at worst.
+            let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 };
+            let label = format!("seed {seed} on the {}, {options:?}", name(backend));
+            let once = || smoother.run(&options, backend, &mut |_| ControlFlow::Continue(()));
+            let outcome = match once() {
+                Ok(outcome) => outcome,
+                Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => continue,
+                Err(error) => panic!("{label}: {error}"),
+            };
+            let result =
+                std::panic::catch_unwind(|| check(&mesh, &smoother, &options, &outcome, near));
+            assert!(result.is_ok(), "{label}");
+            let again = once().unwrap();
+            assert!(
+                again.points == outcome.points && again.stop == outcome.stop,
+                "{label}: not the same again"
+            );
+            smoothed += 1;
+        }
+    }
+    assert!(smoothed as u64 > count, "only {smoothed} runs of {count} meshes");
+}

@@ -1,0 +1,182 @@
+//! Untangling: meshes with inverted triangles, of the kinds that the literature tries.
+
+use crate::{plate, support, with_points};
+use gpu_smooth::{Mesh, MeshError, Precision, Topology, Untangled, Untangling, untangle};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use support::SplitMix64;
+
+fn mend(mesh: &Mesh) -> Untangled {
+    untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// A mesh with its free vertices moved.
+fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
+    let held = support::check::held(mesh);
+    let mut moved = mesh.clone();
+    for (point, held) in moved.points.iter_mut().zip(held) {
+        if !held {
+            *point = to(*point);
+        }
+    }
+    moved
+}
+
+/// Rings between the unit circle and a hole, which is turned by a share of a full turn.
+fn turned_hole(around: usize, turn: f64) -> Mesh {
+    let mut mesh = support::graded(around, 0.3);
+    let first = mesh.points.len() - around;
+    let [cos, sin] = support::trig::on_circle(turn);
+    for p in &mut mesh.points[first..] {
+        *p = [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]];
+    }
+    mesh
+}
+
+/// Checks that a mesh is untangled, and that only free vertices have moved.
+fn check(label: &str, mesh: &Mesh) -> Untangled {
+    let result = mend(mesh);
+    let (left, sweeps) = (result.left.len(), result.sweeps);
+    assert_eq!(left, 0, "{label}: {left} of {} are left after {sweeps} sweeps", result.bad_before);
+    let after = with_points(mesh, &result.points);
+    assert!(support::is_valid(&after), "{label}");
+    let held = support::check::held(mesh);
+    let differs =
+        |v: &usize| mesh.points[*v].map(f64::to_bits) != result.points[*v].map(f64::to_bits);
+    let changed: Vec<usize> = (0..held.len()).filter(differs).collect();
+    assert!(changed.iter().all(|&v| !held[v]), "{label}: a vertex that is not free has moved");
+    assert_eq!(changed.len(), result.moved, "{label}");
+    result
+}
+
+#[test]
+fn meshes_of_every_kind_of_tangle_are_untangled() {
+    let plate = plate(700);
+    for seed in 1..=5 {
+        let rng = &mut SplitMix64::new(seed);
+        let random = moved(&plate, |_| [rng.range(0.0, 2.0), rng.range(0.0, 1.0)]);
+        check(&format!("random places, seed {seed}"), &random);
+        let rng = &mut SplitMix64::new(seed);
+        let noise = moved(&plate, |p| p.map(|x| x + rng.range(-0.15, 0.15)));
+        check(&format!("noise over several edges, seed {seed}"), &noise);
+    }
+    check("all at one point", &moved(&plate, |_| [0.4, 0.3]));
+    check("all far outside", &moved(&plate, |_| [40.0, -30.0]));
+    check("mirrored inside", &moved(&plate, |[x, y]| [1.0 - x, y]));
+    let fold = |[x, y]: [f64; 2]| [if (0.3..0.7).contains(&x) { 1.0 - x } else { x }, y];
+    check(
+        "a folded strip",
+        &moved(&support::lattice(30, 20), |[x, y]| {
+            let [x, y] = fold([x / 30.0, y]);
+            [30.0 * x, y]
+        }),
+    );
+    for turn in [30.0, 90.0, 180.0] {
+        check(&format!("a hole turned by {turn} degrees"), &turned_hole(60, turn / 360.0));
+    }
+}
+
+#[test]
+fn the_sizes_of_a_graded_mesh_do_not_matter() {
+    // Edges from 1 to 1e-6. Vertices near the hole are tangled, where edges are shortest.
+    let mut mesh = support::graded(24, 1e-6);
+    let held = support::check::held(&mesh);
+    let small = |p: [f64; 2]| p[0].hypot(p[1]) < 1e-5;
+    for (v, p) in mesh.points.iter_mut().enumerate().filter(|(v, _)| !held[*v]) {
+        if v % 37 == 0 && small(*p) {
+            *p = p.map(|x| -x);
+        }
+    }
+    assert!(!support::is_ccw(&mesh));
+    let result = check("graded", &mesh);
+    let large = mesh.points.iter().zip(&result.points).filter(|(p, _)| p[0].hypot(p[1]) > 1e-3);
+    assert!(large.clone().count() > 100);
+    assert!(large.clone().all(|(was, is)| was == is), "vertices far away have moved");
+}
+
+#[test]
+fn one_vertex_outside_its_ring_moves_only_its_surroundings() {
+    let mut mesh = plate(3000);
+    let held = support::check::held(&mesh);
+    let v = (0..held.len()).filter(|&v| !held[v]).nth(400).unwrap();
+    mesh.points[v][0] += 0.1;
+    let result = check("one vertex", &mesh);
+    assert!((1..100).contains(&result.moved), "{} vertices have moved", result.moved);
+}
+
+#[test]
+fn what_no_move_can_mend_is_listed_and_the_rest_is_mended() {
+    // The second corner of a square is pushed in beyond the diagonal that a triangle without free vertices has there.
+    let mut mesh = support::lattice(8, 6);
+    let held = support::check::held(&mesh);
+    let fixed = mesh.triangles.iter().position(|t| t.iter().all(|&v| held[v as usize])).unwrap();
+    mesh.points[mesh.triangles[fixed][0] as usize] = {
+        let [_, a, b] = mesh.triangles[fixed].map(|v| mesh.points[v as usize]);
+        let middle = [0, 1].map(|i| (a[i] + b[i]) / 2.0);
+        let corner = mesh.points[mesh.triangles[fixed][0] as usize];
+        [0, 1].map(|i| middle[i] + 0.05 * (middle[i] - corner[i]))
+    };
+    let tangled = moved(&mesh, |_| [3.0, 2.0]);
+    let result = mend(&tangled);
+    let list =
+        |bad: &[gpu_smooth::BadTriangle]| bad.iter().map(|bad| bad.triangle).collect::<Vec<_>>();
+    assert_eq!(list(&result.hopeless), [fixed]);
+    assert_eq!(list(&result.left), [fixed]);
+    assert!(result.bad_before > 20);
+}
+
+#[test]
+fn a_tangle_that_cannot_be_undone_ends() {
+    // A fixed vertex in the middle of a square lies outside of it.
+    let mut mesh = support::lattice(6, 6);
+    let middle = (0..mesh.points.len())
+        .find(|&v| mesh.points[v][0] > 2.9 && mesh.points[v][1] > 2.0)
+        .unwrap();
+    mesh.points[middle] = [-4.0, 3.0];
+    mesh.fixed = vec![middle as u32];
+    let result = mend(&mesh);
+    assert!(!result.left.is_empty() && result.hopeless.is_empty());
+    assert!(result.left.len() <= result.bad_before);
+    let topology = Topology::by_area(&mesh).unwrap();
+    assert_eq!(topology.bad_triangles(&result.points), Ok(result.left));
+}
+
+#[test]
+fn the_values_as_stored_are_untangled() {
+    let far = [7e5, 4e6];
+    let rng = &mut SplitMix64::new(3);
+    let mut mesh = moved(&plate(300), |p| p.map(|x| x + rng.range(-0.2, 0.2)));
+    let single = |x: f64| f64::from(x as f32);
+    mesh.points.iter_mut().for_each(|p| *p = [0, 1].map(|i| single(1e3 * p[i] + far[i])));
+    let result = untangle(&mesh, Precision::Single, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(result.left.is_empty());
+    assert!(support::is_valid(&with_points(&mesh, &result.points)));
+    assert!(result.points.as_flattened().iter().all(|&x| single(x) == x));
+}
+
+#[test]
+fn untangling_gives_the_same_bits_again_and_ends_when_told() {
+    let mesh = turned_hole(60, 0.25);
+    let [one, two] = [mend(&mesh), mend(&mesh)];
+    assert!(one.points == two.points && one.sweeps == two.sweeps);
+    let mut seen = Vec::new();
+    let ended = untangle(&mesh, Precision::Double, &mut |progress: &Untangling| {
+        seen.push(progress.sweep);
+        if seen.len() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(seen, [1, 2, 3]);
+    let ended = ended.unwrap();
+    assert!(ended.sweeps == 3 && !ended.left.is_empty() && ended.left.len() <= ended.bad_before);
+}
+
+#[test]
+fn a_sound_mesh_is_left_alone_and_a_broken_one_refused() {
+    let mesh = plate(300);
+    let result = mend(&mesh);
+    assert!(result.points == mesh.points && result.sweeps == 0 && result.bad_before == 0);
+    let broken = Mesh { triangles: vec![[0, 1, 1]], ..mesh };
+    let error = untangle(&broken, Precision::Double, &mut |_| ControlFlow::Continue(())).err();
+    assert_eq!(error, Some(MeshError::RepeatedVertex { triangle: 0, vertex: 1 }));
+    // A turn by more than a full one is a tangle as any other.
+    assert!(!support::is_ccw(&turned_hole(24, TAU)));
+}
