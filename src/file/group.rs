@@ -122,7 +122,13 @@ impl Groups {
     /// # Errors
     /// [`GroupError::Unknown`] if there is none, [`GroupError::Ambiguous`] if there are several.
     pub fn find(&self, spelling: &str) -> Result<&Group, GroupError> {
-        let fits = |group: &Group| group.spellings().any(|own| own == spelling);
+        let fits = |group: &Group| {
+            // Every spelling ends so. This is quick where there are very many groups.
+            let ends_as = |label: &str| spelling.ends_with(label);
+            let may_fit = group.name.as_deref().is_some_and(ends_as)
+                || group.tag.is_some_and(|tag| ends_as(&tag.to_string()));
+            may_fit && group.spellings().any(|own| own == spelling)
+        };
         let found: Vec<usize> =
             (0..self.len()).filter(|&index| fits(&self.groups[index])).collect();
         match found[..] {

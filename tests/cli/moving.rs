@@ -336,6 +336,13 @@ fn what_cannot_be_named_is_told_with_what_there_is() {
     refused("--only land,mut", &["--only: no group is called 'mut'; there are mud, "]);
     refused("--fix rock", &["--fix: material surface rock has no elements"]);
     refused("--only 11", &["--only: material surface rock has no triangles"]);
+    let with_comma = sms(&mesh).replace("\"mud\"", "\"mud,wet\"");
+    fs::write(folder.path("in.2dm"), with_comma).unwrap();
+    for options in ["mud,wet", "surface:mud,wet", "land,9", "9"] {
+        let run =
+            folder.line(&format!("in.2dm out.2dm --engine cpu --only {options} --max-sweeps 1"));
+        assert_eq!(run.code, Some(0), "{options}: {}", run.err);
+    }
     let ambiguous = sms(&mesh).replace("\"rock\"", "\"mud\"");
     fs::write(folder.path("in.2dm"), ambiguous).unwrap();
     refused("--fix mud", &["'mud' is ambiguous: it may be 9 or 11"]);

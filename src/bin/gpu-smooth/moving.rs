@@ -238,7 +238,10 @@ impl<'f> Chooser<'f> {
         text: &'t str,
     ) -> Result<Vec<(&'t str, &'g Group)>, String> {
         // A name may have commas itself.
-        if let Ok(group) = groups.find(text) {
+        let ends = |name: &str| name.contains(',') && text.ends_with(name);
+        if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
+            && let Ok(group) = groups.find(text)
+        {
             return Ok(vec![(text, group)]);
         }
         let find = |name: &'t str| match groups.find(name.trim()) {
