@@ -91,6 +91,44 @@ pub enum WriteError {
     },
 }
 
+/// What was named is not a single group of a mesh file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GroupError {
+    /// No group is spelled so.
+    #[error("{}", unknown(spelling, known))]
+    Unknown {
+        /// What was named.
+        spelling: String,
+        /// The spelling of each group that there is, the nearest first.
+        known: Vec<String>,
+    },
+    /// Several groups are spelled so.
+    #[error("'{spelling}' is ambiguous: it may be {}", first_of(spellings, " or "))]
+    Ambiguous {
+        /// What was named.
+        spelling: String,
+        /// The spelling of each of them that no other group shares.
+        spellings: Vec<String>,
+    },
+}
+
+fn unknown(spelling: &str, known: &[String]) -> String {
+    match known {
+        [] => format!("no group is called '{spelling}': the file names none"),
+        _ => format!("no group is called '{spelling}'; there are {}", first_of(known, ", ")),
+    }
+}
+
+/// The first names of a list, and how many more there are.
+fn first_of(names: &[String], between: &str) -> String {
+    const TOLD: usize = 12;
+    let told = names[..names.len().min(TOLD)].join(between);
+    match names.len().saturating_sub(TOLD) {
+        0 => told,
+        more => format!("{told} and {more} more"),
+    }
+}
+
 /// A mesh cannot be smoothed as it is, or arguments do not fit it. Indices are zero-based, as in
 /// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

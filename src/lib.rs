@@ -28,7 +28,8 @@
 //!
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
 //! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
-//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files.
+//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; what may move is
+//! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]).
 //!
 //! # Inside an application
 //!
@@ -92,6 +93,7 @@ mod metric;
 mod parallel;
 mod quality;
 mod run;
+pub mod select;
 mod smoother;
 mod topology;
 mod untangle;
@@ -111,8 +113,12 @@ pub mod output {
 pub mod internal;
 
 pub use choice::Reason;
-pub use error::{BadTriangle, GpuError, Location, MeshError, ReadError, SmoothError, WriteError};
-pub use file::{AbandonedWrites, Difference, Format, MeshFile, Place, abandon_writes};
+pub use error::{
+    BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
+};
+pub use file::{
+    AbandonedWrites, Difference, Format, Group, Groups, MeshFile, Place, abandon_writes,
+};
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,

@@ -135,7 +135,7 @@ impl Sink for Reader {
                 self.regions.push(self.region_names.number(region));
                 Ok(())
             }
-            Kind::Point | Kind::Line | Kind::Quadrilateral => {
+            Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
                 self.mesh.fixed.extend_from_slice(&vertices[..nodes.len()]);
                 self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
                 Ok(())

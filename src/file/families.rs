@@ -2,11 +2,14 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
+use crate::file::gather::PointArray;
+use crate::file::group_table::GroupTable;
 use crate::file::parsed::Parsed;
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, freefem, gmsh, medit, meditb, obj, off, ply, selafin, sms, su2, vtk, vtu,
+    adcirc, assemble, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms,
+    su2, vtk, vtu,
 };
 use std::path::Path;
 
@@ -18,6 +21,9 @@ pub(crate) struct Reader {
     pub(crate) parse: fn(&Source) -> Result<Parsed, ReadError>,
     pub(crate) vertex_places: Places,
     pub(crate) triangle_places: Places,
+    pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
+    pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
+    pub(crate) point_array: fn(&Source, &str) -> Result<PointArray, ReadError>,
 }
 
 const fn reader<W: Walk>() -> Option<Reader> {
@@ -25,6 +31,9 @@ const fn reader<W: Walk>() -> Option<Reader> {
         parse: assemble::parse::<W>,
         vertex_places: assemble::vertex_places::<W>,
         triangle_places: assemble::triangle_places::<W>,
+        groups: gather::groups::<W>,
+        labels: gather::labels::<W>,
+        point_array: gather::point_array::<W>,
     })
 }
 
@@ -71,9 +80,9 @@ impl Family {
         self.reader.is_some() || std::ptr::eq(self, &TRIANGLE)
     }
 
-    /// Whether the path ends as files of this family do. The case does not matter.
+    /// Whether the path ends as files of this family do, be they compressed. The case does not matter.
     pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
-        let name = file_name(path).to_ascii_lowercase();
+        let name = packed::inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
         self.endings.iter().any(|ending| name.ends_with(ending))
     }
 }

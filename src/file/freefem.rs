@@ -6,7 +6,7 @@
 use crate::error::ReadError;
 use crate::file::format::Format;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 
@@ -22,6 +22,7 @@ impl Walk for FreeFem {
         let triangles = cursor.integer("the number of triangles")?;
         let edges = cursor.integer("the number of edges")?;
         sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        let before = &mut cursor.clone();
         each_row(
             cursor,
             vertices,
@@ -37,7 +38,19 @@ impl Walk for FreeFem {
                 Ok(())
             },
         )?;
+        if sink.asks_for_groups() {
+            for vertex in 0..vertices {
+                before.row(vertex, vertices, "vertices")?;
+                before.tokens(2);
+                let label = before.signed("the label of a vertex")?;
+                // Zero is what vertices have that were given no label.
+                if label != 0 {
+                    sink.node_within(vertex as u32, "label", label);
+                }
+            }
+        }
         sink.end_nodes(cursor)?;
+        sink.columns(vec![Column::tags("label", 1)]);
         sink.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
         for (kind, count, what) in
             [(Kind::Triangle, triangles, "triangles"), (Kind::Line, edges, "edges")]

@@ -1,12 +1,17 @@
 //! Medit's `.mesh`, as text.
 //!
 //! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and mmg's and libMeshb's
-//! documentation. Edges, corners and required vertices stay fixed; required edges and ridges are edges.
+//! documentation. Edges, corners, required vertices and the vertices of required triangles stay fixed; required edges and
+//! ridges are edges.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::parsed::fixed_note;
+use crate::file::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 
@@ -17,6 +22,7 @@ struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
     kind: Kind,
+    keyword: &'a [u8],
 }
 
 impl Walk for Medit {
@@ -25,6 +31,7 @@ impl Walk for Medit {
     fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let mut lists: Vec<List<'_>> = Vec::new();
+        let mut required = Vec::new();
         let mut dimension = 2;
         let mut vertices_seen = false;
         while cursor.next_word() {
@@ -53,10 +60,11 @@ impl Walk for Medit {
                         return Err(volume(cursor, &quoted(keyword)));
                     }
                 }
+                b"RequiredTriangles" => numbers(cursor, &mut required)?,
                 keyword => {
                     if let Some(kind) = kind_of(keyword) {
                         let count = value(cursor, "the number of elements")?;
-                        lists.push(List { cursor: cursor.clone(), count, kind });
+                        lists.push(List { cursor: cursor.clone(), count, kind, keyword });
                     }
                     // What a list holds is numbers: the next keyword starts with a letter.
                     skip_numbers(cursor);
@@ -68,8 +76,14 @@ impl Walk for Medit {
             return Err(source.error(problem, "Save the mesh again"));
         }
         sink.end_nodes(cursor)?;
-        for List { mut cursor, count, kind } in lists {
+        sink.columns(vec![Column::tags("reference", 1)]);
+        let triangles = lists.iter().filter(|list| list.kind == Kind::Triangle);
+        let triangles: Vec<_> = triangles.map(|list| (list.cursor.clone(), list.count)).collect();
+        for List { mut cursor, count, kind, keyword } in lists {
             let cursor = &mut cursor;
+            // Points have no reference: the list they stand in is what tells them apart.
+            let list = Within { what: "list", label: Label::name(keyword), dimension: None };
+            sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
             if kind == Kind::Triangle {
                 sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
             }
@@ -92,8 +106,55 @@ impl Walk for Medit {
                 },
             )?;
         }
+        if !required.is_empty() {
+            hold_required(triangles, required, sink)?;
+        }
         Ok(Layout::in_place(Format::Medit, Numbers::TEXT))
     }
+}
+
+/// Reads a list of numbers, one a row.
+fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
+    let count = value(cursor, "the number of required triangles")?;
+    for done in 0..count {
+        cursor.row(done, count, "required triangles")?;
+        numbers.push(cursor.integer("the number of a triangle")?);
+    }
+    Ok(())
+}
+
+/// Hands on the vertices of triangles with these numbers, which mmg is not to change, as corners.
+fn hold_required(
+    triangles: Vec<(Cursor<'_>, u64)>,
+    mut required: Vec<u64>,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    required.sort_unstable();
+    required.dedup();
+    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let mut left = required.as_slice();
+    let mut before = 0;
+    for (mut cursor, count) in triangles {
+        let cursor = &mut cursor;
+        for done in 0..count {
+            cursor.row(done, count, "elements")?;
+            let tag = before + done + 1;
+            if left.first() != Some(&tag) {
+                continue;
+            }
+            left = &left[1..];
+            let corners = nodes(cursor, Kind::Triangle)?;
+            let region = [cursor.signed("the reference of an element")?, 0];
+            for &corner in &corners[..3] {
+                let (kind, nodes) = (Kind::Corner, [corner, 0, 0, 0]);
+                sink.element(cursor, &Element { tag, kind, region, nodes })?;
+            }
+        }
+        before += count;
+    }
+    Ok(())
 }
 
 fn kind_of(keyword: &[u8]) -> Option<Kind> {
@@ -124,6 +185,7 @@ fn vertices(
     }
     let count = cursor.vertex_count()?;
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    let before = &mut cursor.clone();
     each_row(
         cursor,
         count,
@@ -141,7 +203,19 @@ fn vertices(
             sink.node(cursor, done + 1, 2, x_at, at);
             Ok(())
         },
-    )
+    )?;
+    if sink.asks_for_groups() {
+        for vertex in 0..count {
+            before.row(vertex, count, "vertices")?;
+            before.tokens(dimension);
+            let reference = before.signed("the reference of a vertex")?;
+            // Zero is what vertices have that were given no reference.
+            if reference != 0 {
+                sink.node_within(vertex as u32, "reference", reference);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Moves to the last row before the next keyword.

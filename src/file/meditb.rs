@@ -6,8 +6,10 @@
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, volume};
+use crate::file::parsed::fixed_note;
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::mesh::Precision;
@@ -30,10 +32,13 @@ struct List<'a> {
     kind: Kind,
     /// Whether each element has a reference after its vertices.
     referred: bool,
+    /// The name of the list in text files.
+    name: &'static str,
 }
 
 const DIMENSION: i32 = 3;
 const VERTICES: i32 = 4;
+const REQUIRED_TRIANGLES: i32 = 17;
 const END: i32 = 54;
 
 impl Walk for MeditBinary {
@@ -56,6 +61,7 @@ impl Walk for MeditBinary {
         };
         let mut dimension = 0;
         let mut lists: Vec<List<'_>> = Vec::new();
+        let mut required: Vec<u64> = Vec::new();
         let mut vertices_seen = false;
         loop {
             let keyword = integer(cursor, widths, 4, "a keyword")?;
@@ -80,6 +86,12 @@ impl Walk for MeditBinary {
                     vertices_seen = true;
                     vertices(cursor, widths, dimension, sink)?;
                 }
+                REQUIRED_TRIANGLES => {
+                    let count = integer(cursor, widths, widths.integer, "a count")?;
+                    let bytes = items(cursor, count, widths.integer, "required triangles")?;
+                    let numbers = bytes.chunks_exact(widths.integer);
+                    required.extend(numbers.map(|number| widths.order.whole(number)));
+                }
                 8..=10 | 49 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
                         return Err(volume(cursor, "elements of a volume"));
@@ -87,17 +99,18 @@ impl Walk for MeditBinary {
                 }
                 keyword => {
                     let of = match keyword {
-                        5 => Some((Kind::Line, true)),
-                        6 => Some((Kind::Triangle, true)),
-                        7 => Some((Kind::Quadrilateral, true)),
-                        13 | 15 => Some((Kind::Point, false)),
+                        5 => Some((Kind::Line, true, "Edges")),
+                        6 => Some((Kind::Triangle, true, "Triangles")),
+                        7 => Some((Kind::Quadrilateral, true, "Quadrilaterals")),
+                        13 => Some((Kind::Point, false, "Corners")),
+                        15 => Some((Kind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
-                    if let Some((kind, referred)) = of {
+                    if let Some((kind, referred, name)) = of {
                         let count = integer(cursor, widths, widths.integer, "a count")?;
                         let size = (kind.nodes() + usize::from(referred)) * widths.integer;
                         let bytes = items(cursor, count, size, "elements")?;
-                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred });
+                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred, name });
                     }
                 }
             }
@@ -120,8 +133,12 @@ impl Walk for MeditBinary {
             return Err(source.error("it has no list of Vertices", "Save the mesh again"));
         }
         sink.end_nodes(cursor)?;
-        for list in lists {
-            elements(&list, widths, sink)?;
+        sink.columns(vec![Column::tags("reference", 1)]);
+        for list in &lists {
+            elements(list, widths, sink)?;
+        }
+        if !required.is_empty() {
+            hold_required(&lists, required, widths, sink)?;
         }
         let numbers = Numbers::adjacent(order, widths.precision);
         Ok(Layout::in_place(Format::MeditBinary, numbers))
@@ -183,11 +200,55 @@ fn vertices(
         let place = &Cursor::at_byte_of(cursor.source, start + index * item);
         sink.node(place, tag, 2, start + index * item, [x, y]);
     }
+    if sink.asks_for_groups() {
+        for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {
+            let reference = widths.order.signed(&vertex[item - widths.integer..]);
+            // Zero is what vertices have that were given no reference.
+            if reference != 0 {
+                sink.node_within(index, "reference", reference);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Hands on the vertices of triangles with these numbers, which mmg is not to change, as corners.
+fn hold_required(
+    lists: &[List<'_>],
+    mut required: Vec<u64>,
+    widths: Widths,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    required.sort_unstable();
+    required.dedup();
+    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let size = widths.integer;
+    let mut before = 0;
+    for List { cursor, bytes, .. } in lists.iter().filter(|list| list.kind == Kind::Triangle) {
+        let count = (bytes.len() / (4 * size)) as u64;
+        let own = required.iter().filter(|&&tag| tag > before && tag - before <= count);
+        for &tag in own {
+            let at = (tag - before - 1) as usize * 4 * size;
+            let number = |index: usize| widths.order.signed(&bytes[at + index * size..][..size]);
+            let (corners, region) = ([0, 1, 2].map(number), [number(3), 0]);
+            let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            for corner in corners {
+                let nodes = [u64::try_from(corner).unwrap_or(0), 0, 0, 0];
+                sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
+            }
+        }
+        before += count;
+    }
     Ok(())
 }
 
 fn elements(list: &List<'_>, widths: Widths, sink: &mut impl Sink) -> Result<(), ReadError> {
-    let List { cursor, bytes, kind, referred } = list;
+    let List { cursor, bytes, kind, referred, name } = list;
+    // Points have no reference: the list they stand in is what tells them apart.
+    let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };
+    sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
     if kind == Kind::Triangle {

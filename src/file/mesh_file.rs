@@ -1,14 +1,12 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
-use crate::error::{Location, ReadError, WriteError};
+use crate::error::{Location, MeshError, ReadError};
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
-use crate::file::replace::{self, Job};
-use crate::file::rewrite::Rewrite;
 use crate::file::source::Source;
 use crate::file::triangle::{self, Names};
 use crate::mesh::{Mesh, Precision};
@@ -58,6 +56,25 @@ impl fmt::Display for Place {
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
 /// [`Mesh::fixed`], so that regions keep their shapes. Two surfaces of a model are two regions even where they belong to
 /// one physical group. [`free_interfaces`](Self::free_interfaces) takes these vertices out of the list.
+///
+/// # What may move
+/// What a user names is fixed beside what the file fixes:
+///
+/// ```no_run
+/// # use gpu_smooth::{MeshFile, Topology, select};
+/// # use std::path::Path;
+/// # fn f() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut file = MeshFile::read(Path::new("part.msh"))?;
+/// let groups = file.groups()?;
+/// // The vertices of a group stay where they are,
+/// file.fix(groups.find("inlet")?.vertices())?;
+/// // and of all others only those inside of a region may move.
+/// let steel = groups.find("physical:surface:2")?;
+/// let inside = select::vertices_inside(&Topology::new(file.mesh())?, steel.triangles());
+/// file.fix_all_but(&inside)?;
+/// # Ok(())
+/// # }
+/// ```
 pub struct MeshFile {
     mesh: Mesh,
     format: Format,
@@ -79,7 +96,8 @@ pub struct MeshFile {
 impl MeshFile {
     /// Reads a mesh, in the format its content shows.
     ///
-    /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending.
+    /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
+    /// compressed by gzip.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
@@ -96,16 +114,26 @@ impl MeshFile {
             Err(_) if has_half && has_ending && !path.exists() => half_missing(path, &names)?,
             given => given?,
         };
-        let file = match detect::content(&given)? {
+        match detect::content(&given)? {
             Content::Of(reader) => Self::new((reader.parse)(&given)?, vec![given]),
-            Content::Triangle(names) => Self::read_triangle(given, &names)?,
-        };
-        if file.mesh.triangles.is_empty() {
-            let problem = format!("{} vertices, but no triangle", file.mesh.points.len());
-            let remedy = "Only triangles are smoothed: mesh the surface with them, and save all its elements";
-            return Err(file.sources[0].error(problem, remedy));
+            Content::Triangle(names) => Self::read_triangle(given, &names),
         }
-        Ok(file)
+    }
+
+    /// Reads a mesh that a program has in memory, such as its standard input. `name` stands for it in messages, and its
+    /// ending helps to tell the format where the content is not enough.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for [`read`](Self::read), and for files of Triangle, of which there are two to a mesh.
+    pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        let given = Source::new(name, bytes)?;
+        match detect::content(&given)? {
+            Content::Of(reader) => Self::new((reader.parse)(&given)?, vec![given]),
+            Content::Triangle(_) => {
+                let problem = "one of the two files of a Triangle mesh";
+                Err(given.error(problem, "Name its .node, so that both are read"))
+            }
+        }
     }
 
     fn read_triangle(given: Source, names: &Names) -> Result<MeshFile, ReadError> {
@@ -119,20 +147,30 @@ impl MeshFile {
             (given, load(&names.ele)?)
         };
         let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
+        if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
+            let problem =
+                "files of Triangle are not read compressed, as there are several to a mesh";
+            return Err(packed.error(problem, "Decompress all of them (gunzip)"));
+        }
         let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
         let sources = [node, ele].into_iter().chain(poly).collect();
-        Ok(Self::new(parsed, sources))
+        Self::new(parsed, sources)
     }
 
-    fn new(parsed: Parsed, sources: Vec<Source>) -> MeshFile {
+    fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
         let Parsed { format, mut mesh, x_at, numbers, encoded, regions, notes } = parsed;
         let Mesh { points, triangles, fixed } = &mut mesh;
         let interfaces = regions
             .as_ref()
             .map(|regions| interface_vertices(regions, triangles, points.len(), fixed))
             .unwrap_or_default();
+        if triangles.is_empty() {
+            let problem = format!("{} vertices, but no triangle", points.len());
+            let remedy = "Only triangles are smoothed: mesh the surface with them, and save all its elements";
+            return Err(sources[0].error(problem, remedy));
+        }
         fixed.extend_from_slice(&interfaces);
-        MeshFile { mesh, format, notes, x_at, numbers, encoded, regions, interfaces, sources }
+        Ok(MeshFile { mesh, format, notes, x_at, numbers, encoded, regions, interfaces, sources })
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -173,6 +211,57 @@ impl MeshFile {
         fixed.truncate(fixed.len() - held.len());
     }
 
+    /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. In any order,
+    /// repeats allowed.
+    ///
+    /// They are no [`interface_vertices`](Self::interface_vertices) from then on, so that
+    /// [`free_interfaces`](Self::free_interfaces) leaves them fixed, be it called before or after.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    pub fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let held = self.marked(vertices)?;
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Adds all vertices but these to [`Mesh::fixed`], as [`fix`](Self::fix) does. These are not freed where they are fixed
+    /// already.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    pub fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let mut held = self.marked(vertices)?;
+        held.iter_mut().for_each(|held| *held = !*held);
+        self.hold(held);
+        Ok(())
+    }
+
+    /// For each vertex of the mesh, whether it is among these.
+    fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
+        let mut marked = vec![false; self.mesh.points.len()];
+        for &vertex in vertices {
+            let count = marked.len();
+            *marked.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange {
+                triangle: None,
+                vertex,
+                vertices: count,
+            })? = true;
+        }
+        Ok(marked)
+    }
+
+    /// Adds the vertices for which this holds to those fixed for other reasons than lying between regions.
+    fn hold(&mut self, mut held: Vec<bool>) {
+        let Mesh { fixed, .. } = &mut self.mesh;
+        fixed.truncate(fixed.len() - self.interfaces.len());
+        self.interfaces.retain(|&vertex| !held[vertex as usize]);
+        // Those that are fixed already are not listed again.
+        fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
+        fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
+        fixed.extend_from_slice(&self.interfaces);
+    }
+
     /// The format it was read in, and will be written in.
     pub fn format(&self) -> Format {
         self.format
@@ -188,6 +277,11 @@ impl MeshFile {
 
     pub(crate) fn numbers(&self) -> Numbers {
         self.numbers
+    }
+
+    /// The points, if the file has them encoded.
+    pub(crate) fn encoded(&self) -> Option<&dyn Encoded> {
+        self.encoded.as_deref()
     }
 
     /// The bytes that hold the coordinates, if they are not those of the file.
@@ -262,117 +356,6 @@ impl MeshFile {
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };
         wanted.iter().copied().zip(found.into_iter().map(place)).collect()
-    }
-
-    /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
-    ///
-    /// Coordinates that have the bits they were read with keep their text too; others are written
-    /// with the fewest digits that read back as the same bits. Of a Triangle mesh, all files are
-    /// written under the name that `path` gives with or without ending. `path` may be the file
-    /// that was read. It is replaced only once all is written; symbolic links are followed.
-    ///
-    /// # Errors
-    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the
-    /// points are not finite or not one per vertex, or if the system refuses. What stood at the
-    /// destination then still stands there.
-    pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
-        self.check_points(path, points)?;
-        self.check_destination(path)?;
-        let mut jobs: Vec<Job<'_>> = Vec::new();
-        let destinations = self.destinations(path)?.into_iter();
-        for (part, (destination, source)) in destinations.zip(&self.sources).enumerate() {
-            // Only the first file holds vertices.
-            let x_at = if part == 0 { self.x_at.as_slice() } else { &[] };
-            let (numbers, old) = (self.numbers, &self.mesh.points);
-            let rewrite = |bytes| Rewrite { bytes, x_at, numbers, old, new: points };
-            let encoded = self.encoded.as_deref().filter(|_| part == 0);
-            jobs.push((
-                destination,
-                match encoded {
-                    None => {
-                        let rewrite = rewrite(&source.bytes);
-                        Box::new(move |out| rewrite.write(out))
-                    }
-                    Some(encoded) => {
-                        let rewrite = rewrite(encoded.bytes());
-                        Box::new(move |out| rewrite.write_encoded(&source.bytes, encoded, out))
-                    }
-                },
-            ));
-        }
-        replace::replace_all(&jobs)
-    }
-
-    /// Checks, as far as is possible without writing, whether [`write`](Self::write) to `path` can work: that its ending
-    /// does not promise another format, that the directory exists and takes new files, and that no directory or
-    /// read-only file is in the way.
-    ///
-    /// # Errors
-    /// [`WriteError`] that says what is wrong.
-    pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
-        self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
-    }
-
-    /// The files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
-    ///
-    /// # Errors
-    /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
-    pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let usual = Family::of(self.format).endings[0];
-        let refused = |problem: String, remedy: String| {
-            Err(WriteError::Format { path: path.to_owned(), problem, remedy })
-        };
-        let ends_in_separator =
-            path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
-        // A device takes a single file, not the two or three of a Triangle mesh.
-        let is_device = path.exists() && !path.is_file() && self.sources.len() > 1;
-        if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
-            return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
-        }
-        if let Some(owner) = detect::owner_of_ending(path)
-            && !Family::of(self.format).has_ending_of(path)
-        {
-            let problem = format!("its ending is that of {owner}, but the mesh is {}", self.format);
-            return refused(problem, format!("Formats are not converted: end the name in {usual}"));
-        }
-        Ok(match self.format {
-            Format::Triangle => {
-                if path.is_file() && !TRIANGLE.has_ending_of(path) {
-                    let name = path.display();
-                    let problem = format!(
-                        "a file of this name is there, and would be read in place of {name}.node"
-                    );
-                    return refused(problem, "End the name in .node, or take another".into());
-                }
-                let Names { node, ele, poly } = Names::of(path);
-                if self.sources.len() == 2 && poly.exists() {
-                    let problem = format!(
-                        "{} of another mesh is there, and would be read with this one",
-                        poly.display()
-                    );
-                    return refused(problem, "Remove it, or take another name".into());
-                }
-                [node, ele, poly].into_iter().take(self.sources.len()).collect()
-            }
-            _ => vec![path.to_owned()],
-        })
-    }
-
-    fn check_points(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
-        let refused = |problem| Err(WriteError::Points { path: path.to_owned(), problem });
-        let vertices = self.mesh.points.len();
-        if points.len() != vertices {
-            return refused(format!("{} points given for {vertices} vertices", points.len()));
-        }
-        let precision = self.numbers.precision();
-        let is_finite = |&x: &f64| precision.rounded(x).is_finite();
-        match points.iter().position(|point| !point.iter().all(is_finite)) {
-            Some(index) => {
-                let [x, y] = points[index];
-                refused(format!("the point given for vertex index {index} is ({x}, {y})"))
-            }
-            None => Ok(()),
-        }
     }
 }
 

@@ -6,9 +6,10 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row};
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor, integer, quoted};
 
@@ -46,12 +47,17 @@ impl Walk for Obj {
         let (mut before, mut faces) = (0, 0);
         let mut names = Numbering::default();
         let mut region = [0; 2];
+        let mut named = Named::default();
         each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
             match row {
                 Row::Vertex(..) => before += 1,
                 Row::Name(name) => {
                     let number = i64::from(names.number(name.to_vec())) + 1;
                     region[usize::from(!name.starts_with(b"usemtl"))] = number;
+                    if sink.asks_for_groups() {
+                        named.enter(name);
+                        sink.within(&named.groups());
+                    }
                 }
                 Row::Face(corners) => {
                     let tag = faces + 1;
@@ -61,13 +67,49 @@ impl Walk for Obj {
                 }
                 Row::Points(points) => {
                     let nodes = counted(cursor, &points, before)?;
-                    hold(cursor, sink, 0, region, &nodes)?;
+                    hold(cursor, sink, 0, (Kind::Point, region), &nodes)?;
                 }
                 Row::Other => {}
             }
             Ok(())
         })?;
         Ok(Layout::in_place(Format::Obj, Numbers::TEXT))
+    }
+}
+
+/// The names that hold where a row stands.
+#[derive(Default)]
+struct Named<'a> {
+    material: Option<&'a [u8]>,
+    object: Option<&'a [u8]>,
+    /// A row may name several groups.
+    groups: Vec<&'a [u8]>,
+}
+
+impl<'a> Named<'a> {
+    /// Takes a row that names what follows.
+    fn enter(&mut self, row: &'a [u8]) {
+        let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());
+        let name = row[split..].trim_ascii();
+        let one = (!name.is_empty()).then_some(name);
+        match &row[..split] {
+            b"usemtl" => self.material = one,
+            b"o" => self.object = one,
+            _ => {
+                let words = name.split(|&byte| byte <= b' ');
+                self.groups = words.filter(|word| !word.is_empty()).collect();
+            }
+        }
+    }
+
+    /// The groups of the elements that follow. They hold elements of any kind.
+    fn groups(&self) -> Vec<Within<'static>> {
+        let of = |what, names: &[&[u8]]| -> Vec<_> {
+            let one = |name: &&[u8]| Within { what, label: Label::name(name), dimension: Some(2) };
+            names.iter().map(one).collect()
+        };
+        let (material, object) = (self.material.as_slice(), self.object.as_slice());
+        [of("material", material), of("object", object), of("group", &self.groups)].concat()
     }
 }
 
@@ -98,7 +140,7 @@ fn face(
             nodes[..corners.len()].copy_from_slice(corners);
             sink.element(cursor, &Element { tag, kind, region, nodes })
         }
-        _ => hold(cursor, sink, tag, region, corners),
+        _ => hold(cursor, sink, tag, (Kind::Corner, region), corners),
     }
 }
 
@@ -107,11 +149,11 @@ fn hold(
     cursor: &Cursor<'_>,
     sink: &mut impl Sink,
     tag: u64,
-    region: [i64; 2],
+    (kind, region): (Kind, [i64; 2]),
     vertices: &[u64],
 ) -> Result<(), ReadError> {
     vertices.iter().try_for_each(|&vertex| {
-        let (kind, nodes) = (Kind::Point, [vertex, 0, 0, 0]);
+        let nodes = [vertex, 0, 0, 0];
         sink.element(cursor, &Element { tag, kind, region, nodes })
     })
 }

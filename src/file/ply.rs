@@ -234,8 +234,12 @@ impl Items {
             let problem = "y does not follow x with the same type";
             return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
         }
+        let wanted = |p: &Property<'_>| p.length.is_none() && sink.point_array(p.name, 1);
+        let wanted = list.properties.iter().position(wanted);
+        let mut numbers = Vec::new();
         let mut tag = 0;
         self.each(cursor, list, |place, values, places| {
+            numbers.extend(wanted.map(|index| values[index][0]));
             let at = [values[x][0], values[y][0]];
             if !at.iter().all(|x| x.is_finite()) {
                 let problem = format!("a coordinate of vertex {tag} is not a finite number");
@@ -245,6 +249,9 @@ impl Items {
             tag += 1;
             Ok(())
         })?;
+        if wanted.is_some() {
+            sink.point_numbers(numbers);
+        }
         sink.end_nodes(cursor)?;
         Ok(match self.order {
             None => Layout::in_place(Format::Ply, Numbers::Text { precision }),
@@ -281,7 +288,7 @@ impl Items {
                 }
                 None => {
                     for nodes in corners.iter().map(|corner| [node(corner), 0, 0, 0]) {
-                        sink.element(place, &Element { tag, kind: Kind::Point, region, nodes })?;
+                        sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
                     }
                 }
             }

@@ -2,6 +2,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::{Encoded, Numbers};
 use crate::file::parallel_rows::take_rows;
 use crate::file::source::Source;
@@ -11,6 +12,8 @@ use crate::file::text::Cursor;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
+    /// A corner of a polygon with more corners than a quadrilateral.
+    Corner,
     Line,
     Triangle,
     Quadrilateral,
@@ -19,7 +22,7 @@ pub(crate) enum Kind {
 impl Kind {
     pub(crate) fn nodes(self) -> usize {
         match self {
-            Kind::Point => 1,
+            Kind::Point | Kind::Corner => 1,
             Kind::Line => 2,
             Kind::Triangle => 3,
             Kind::Quadrilateral => 4,
@@ -29,9 +32,19 @@ impl Kind {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Kind::Point => "point",
+            Kind::Corner => "polygon",
             Kind::Line => "line",
             Kind::Triangle => "triangle",
             Kind::Quadrilateral => "quadrilateral",
+        }
+    }
+
+    /// The dimension of the elements: 0 for points, 1 for lines, 2 for surfaces.
+    pub(crate) fn dimension(self) -> u8 {
+        match self {
+            Kind::Point => 0,
+            Kind::Line => 1,
+            Kind::Triangle | Kind::Quadrilateral | Kind::Corner => 2,
         }
     }
 
@@ -54,6 +67,39 @@ pub(crate) struct Element {
     pub(crate) nodes: [u64; 4],
 }
 
+/// What one of the numbers of [`Element::region`] tells.
+pub(crate) struct Column {
+    /// What the format calls the groups that the number tells apart: `physical`, `reference`, or the name of an array.
+    pub(crate) what: String,
+    /// The least dimension of elements that have the number.
+    pub(crate) from_dimension: u8,
+    /// The label that the number stands for; none if elements with this number are of no group.
+    pub(crate) label: fn(i64) -> Option<Label>,
+}
+
+impl Column {
+    /// A column of tags, all of which are groups.
+    pub(crate) fn tags(what: &str, from_dimension: u8) -> Column {
+        Column { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+    }
+
+    /// A column of tags of which zero stands for no group.
+    pub(crate) fn tags_from_one(what: &str) -> Column {
+        let label = |tag| (tag != 0).then_some(Label::Tag(tag));
+        Column { what: what.into(), from_dimension: 0, label }
+    }
+}
+
+/// A group that elements belong to for where they stand in the file.
+#[derive(Clone, Debug)]
+pub(crate) struct Within<'w> {
+    /// What the format calls such a group.
+    pub(crate) what: &'w str,
+    pub(crate) label: Label,
+    /// The dimension of the group, where that is not the dimension of each element.
+    pub(crate) dimension: Option<u8>,
+}
+
 /// Takes what a file lists: first all nodes, then all elements, each in the order of the file.
 pub(crate) trait Sink {
     /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
@@ -74,6 +120,26 @@ pub(crate) trait Sink {
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
+
+    /// Whether it asks for groups. If not, readers may leave out the calls below.
+    fn asks_for_groups(&self) -> bool {
+        false
+    }
+    /// Takes what the numbers of each element's region tell, before the first element.
+    fn columns(&mut self, _columns: Vec<Column>) {}
+    /// Takes the groups that the elements that follow belong to besides, until it is called again.
+    fn within(&mut self, _groups: &[Within<'_>]) {}
+    /// Takes the tag of a group that a node belongs to, by the position of the node among those that were taken.
+    fn node_within(&mut self, _node: u32, _what: &str, _tag: i64) {}
+    /// Takes the name of the groups of a tag, of one dimension or of all.
+    fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
+
+    /// Takes the name of an array of point data, and how many numbers it has a point. Whether its numbers are wanted.
+    fn point_array(&mut self, _name: &[u8], _components: u64) -> bool {
+        false
+    }
+    /// Takes the numbers of the array that was announced last and is wanted.
+    fn point_numbers(&mut self, _numbers: Vec<f64>) {}
 }
 
 /// How a file has its numbers, known once it was read.
@@ -118,6 +184,10 @@ pub(crate) fn each_row<'a, S: Sink, T: Send>(
             done += u64::from(taken);
             taken
         });
+        if done == count && done > 0 {
+            // It stands on the last row, before its words. A reader that goes on by words is to find none of them.
+            cursor.rest();
+        }
     }
     while done < count {
         cursor.row(done, count, what)?;

@@ -5,8 +5,9 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
 
@@ -16,9 +17,18 @@ pub(crate) struct Sms;
 enum Row {
     Node(u64, usize, [f64; 2]),
     Element(Element),
-    /// The nodes of a node string.
-    String(Vec<u64>),
+    String(Vec<u64>, End),
+    /// The name of a material.
+    Material(i64, Vec<u8>),
     Other,
+}
+
+/// How a row of a node string ends.
+enum End {
+    /// The string goes on in the next row.
+    Open,
+    /// The string ends here. It may have a name, which is the rest of the row.
+    Last(Vec<u8>),
 }
 
 impl Walk for Sms {
@@ -36,17 +46,29 @@ impl Walk for Sms {
         sink.end_nodes(nodes_first)?;
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
+        let mut string = 1;
+        sink.columns(vec![Column::tags("material", 1)]);
         each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
-                Row::String(nodes) => {
+                Row::String(nodes, end) => {
+                    let label = Label::Tag(string);
+                    sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
                     for &node in &nodes {
                         let nodes = [node, 0, 0, 0];
                         let point = Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes };
                         sink.element(cursor, &point)?;
                     }
+                    sink.within(&[]);
                     strings.extend(nodes);
+                    if let End::Last(name) = end {
+                        if !name.is_empty() {
+                            sink.name("nodestring", Some(1), string, &name);
+                        }
+                        string += 1;
+                    }
                 }
+                Row::Material(tag, name) => sink.name("material", Some(2), tag, &name),
                 _ => {}
             }
             Ok(())
@@ -82,6 +104,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         Some(b"E4Q") => Kind::Quadrilateral,
         Some(b"E2L") => Kind::Line,
         Some(b"NS") => return string(cursor),
+        Some(b"MAT") => return Ok(material(cursor)),
         Some(b"E6T" | b"E8Q" | b"E9Q" | b"E3L") => {
             let problem = "elements with nodes on their sides, which are not moved with them";
             return Err(cursor.error(problem, "Save linear elements (E3T, E4Q)"));
@@ -108,9 +131,27 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         nodes.push(node.unsigned_abs());
         match node {
             0 => return Err(cursor.error("a node string has node 0", CORRECT)),
-            ..0 => break,
+            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest())))),
             _ => {}
         }
     }
-    Ok(Row::String(nodes))
+    Ok(Row::String(nodes, End::Open))
+}
+
+/// Reads the number and the name of a material. A row without them is passed over: the mesh does not depend on it.
+#[cold]
+fn material(cursor: &mut Cursor<'_>) -> Row {
+    match cursor.signed("a material") {
+        Ok(tag) => match unquoted(cursor.rest()) {
+            name if name.is_empty() => Row::Other,
+            name => Row::Material(tag, name),
+        },
+        Err(_) => Row::Other,
+    }
+}
+
+/// A name without the quotes around it.
+fn unquoted(name: &[u8]) -> Vec<u8> {
+    let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
+    inner.unwrap_or(name).to_vec()
 }

@@ -1,6 +1,7 @@
 //! The bytes of one file.
 
 use crate::error::{Location, ReadError};
+use crate::file::packed::{self, Unpackable};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -9,12 +10,14 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
+    /// The file's own bytes, if it is compressed.
+    pub(crate) packed: Option<Vec<u8>>,
 }
 
 impl Source {
     pub(crate) fn load(path: &Path) -> Result<Source, ReadError> {
         match fs::read(path) {
-            Ok(bytes) => Ok(Source { path: path.to_owned(), bytes }),
+            Ok(bytes) => Source::new(path, bytes),
             Err(source) => {
                 let remedy = match source.kind() {
                     ErrorKind::NotFound => "Check the name",
@@ -25,6 +28,18 @@ impl Source {
                 };
                 Err(ReadError::Io { path: path.to_owned(), source, remedy: remedy.into() })
             }
+        }
+    }
+
+    /// The content of a file, decompressed if need be.
+    pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
+        let source = Source { path: path.to_owned(), bytes, packed: None };
+        match packed::unpack(&source.bytes) {
+            Ok(None) => Ok(source),
+            Ok(Some(content)) => {
+                Ok(Source { bytes: content, packed: Some(source.bytes), path: source.path })
+            }
+            Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
         }
     }
 

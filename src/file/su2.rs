@@ -5,10 +5,14 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::file::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor, integer, quoted};
+use std::ops::Range;
 
 pub(crate) struct Su2;
 
@@ -17,6 +21,8 @@ struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
     zone: usize,
+    /// The name of the marker whose elements these are.
+    marker: Option<&'a [u8]>,
 }
 
 impl Walk for Su2 {
@@ -27,6 +33,7 @@ impl Walk for Su2 {
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
         let (mut zones, mut points) = (vec![0], 0_u64);
+        let mut marker = None;
         while cursor.next_row() {
             let (key, value) = key_and_value(cursor);
             match key {
@@ -54,11 +61,13 @@ impl Walk for Su2 {
                     )?;
                     points += count;
                 }
+                b"MARKER_TAG" => marker = Some(value),
                 b"NELEM" | b"MARKER_ELEMS" => {
                     let name = if key == b"NELEM" { "NELEM" } else { "MARKER_ELEMS" };
                     let count = number(cursor, name, value)?;
                     let zone = zones.len() - 1;
-                    lists.push(List { cursor: cursor.clone(), count, zone });
+                    let marker = if key == b"NELEM" { None } else { marker };
+                    lists.push(List { cursor: cursor.clone(), count, zone, marker });
                     // Not `row`, so that the error comes from the list itself, which knows more.
                     for _ in 0..count {
                         if !cursor.next_row() {
@@ -66,30 +75,46 @@ impl Walk for Su2 {
                         }
                     }
                 }
-                // Names of markers, counts of other lists, boxes of free-form deformation.
+                // Counts of other lists, boxes of free-form deformation.
                 _ => {}
             }
         }
         sink.end_nodes(cursor)?;
-        for List { mut cursor, count, zone } in lists {
-            let (first, cursor) = (zones[zone], &mut cursor);
+        if zones.len() > 1 {
+            let label = |zone| Some(Label::Tag(zone + 1));
+            sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
+        }
+        for List { mut cursor, count, zone, marker } in lists {
+            let within =
+                |name| Within { what: "marker", label: Label::name(name), dimension: None };
+            sink.within(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
-            sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
-            each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
-                let (kind, nodes) = read;
-                let listed = &nodes[..kind.nodes()];
-                if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
-                    let kind = kind.name();
-                    let problem =
-                        format!("{kind} {done} has node {point}, which NPOIN does not list");
-                    return Err(cursor.error(problem, CORRECT));
-                }
-                let nodes = nodes.map(|node| node.saturating_add(first));
-                sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
-            })?;
+            elements(&mut cursor, count, zone, zones[zone]..last, sink)?;
         }
         Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
     }
+}
+
+/// Hands on the elements of a list, whose nodes are those of a zone.
+fn elements(
+    cursor: &mut Cursor<'_>,
+    count: u64,
+    zone: usize,
+    Range { start: first, end: last }: Range<u64>,
+    sink: &mut impl Sink,
+) -> Result<(), ReadError> {
+    sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
+    each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
+        let (kind, nodes) = read;
+        let listed = &nodes[..kind.nodes()];
+        if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
+            let kind = kind.name();
+            let problem = format!("{kind} {done} has node {point}, which NPOIN does not list");
+            return Err(cursor.error(problem, CORRECT));
+        }
+        let nodes = nodes.map(|node| node.saturating_add(first));
+        sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+    })
 }
 
 /// The two sides of the equals sign of a row. The row itself and nothing if there is none.

@@ -421,7 +421,7 @@ mod tests {
     use super::*;
 
     fn source(text: &[u8]) -> Source {
-        Source { path: "m.txt".into(), bytes: text.to_vec() }
+        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None }
     }
 
     fn row_of(source: &Source) -> Cursor<'_> {

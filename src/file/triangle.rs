@@ -113,15 +113,15 @@ pub(crate) fn triangle_places(ele: &Source, indices: &[usize]) -> Vec<(Location,
 }
 
 /// How the vertices of a file are numbered: `count` of them from `first` on.
-struct Numbers {
-    first: u64,
-    count: u64,
+pub(crate) struct Numbers {
+    pub(crate) first: u64,
+    pub(crate) count: u64,
 }
 
 impl Numbers {
     /// The zero-based index of the vertex that `owner` names.
     #[inline]
-    fn index(
+    pub(crate) fn index(
         &self,
         cursor: &mut Cursor<'_>,
         list: &Source,
@@ -179,7 +179,7 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
 }
 
 /// Reads the number of vertices, and checks that they are in the plane.
-fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+pub(crate) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     header(cursor, "vertices")?;
     let count = cursor.vertex_count()?;
     match cursor.integer_or(2, "the dimension")? {
@@ -193,7 +193,7 @@ fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
 }
 
 /// Reads the number that opens a vertex's row. The first one says where numbering starts.
-fn vertex_number(
+pub(crate) fn vertex_number(
     cursor: &mut Cursor<'_>,
     row: u64,
     numbers: &mut Numbers,
@@ -339,7 +339,8 @@ fn segments(
     Ok(count)
 }
 
-fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadError> {
+/// Moves to the row that tells how long a list is.
+pub(crate) fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadError> {
     if cursor.next_row() {
         return Ok(());
     }

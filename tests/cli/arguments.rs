@@ -27,7 +27,7 @@ fn missing_and_surplus_files_are_told() {
 #[test]
 fn values_out_of_range_name_the_range() {
     let folder = small();
-    let cases: [(&str, &[&str]); 22] = [
+    let cases: [(&str, &[&str]); 30] = [
         ("--scheme foo", &["no metric is called 'foo'; there are edge, area, rms, imr, ar"]),
         ("--scheme edge+", &["no metric is called ''"]),
         ("--engine opencl", &["auto, gpu, cpu"]),
@@ -50,6 +50,14 @@ fn values_out_of_range_name_the_range() {
         ("--method other", &["relaxed, paper"]),
         ("--derivatives exact", &["analytic, finite-difference"]),
         ("--edge-norm 8", &["fixed, continued"]),
+        ("--fix --engine", &["'--engine' for '--fix", "the name or the tag of a group is needed"]),
+        ("--only -q", &["the name or the tag of a group is needed"]),
+        ("--fix-box 0,0,1", &["'0,0,1' for '--fix-box", "four numbers with commas"]),
+        ("--fix-box -1,0,1,inf", &["four numbers with commas"]),
+        ("--only-bad 0.5", &["it must be a number from 1"]),
+        ("--only-bad -2", &["'-2' for '--only-bad", "it must be a number from 1"]),
+        ("--only-bad 2 --rings -1", &["'-1' for '--rings"]),
+        ("--rings 1", &["--only-bad <Q>"]),
     ];
     for (option, parts) in cases {
         assert_usage(&folder, &format!("in out {option}"), parts);

@@ -10,7 +10,9 @@ mod bench;
 mod compare;
 mod files;
 mod formats;
+mod groups;
 mod interrupt;
+mod moving;
 mod options;
 mod output;
 mod plate;
@@ -18,6 +20,7 @@ mod refusals;
 mod regions;
 mod report;
 mod schemes;
+mod streams;
 mod untangle;
 
 use gpu_smooth::{Mesh, MeshFile};

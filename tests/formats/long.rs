@@ -259,3 +259,87 @@ fn errors_in_long_lists_name_their_line() {
     let last_row = ele.triangle_lines[64_081];
     check(ele, last_row, None, ele.lines - 1, "the file ends after 64081 of 64082 triangles");
 }
+
+/// The mesh in formats of one list after the other, in two regions, and where they have them with references.
+fn plain_texts() -> Vec<(&'static str, String)> {
+    let (points, triangles) = (points(), triangles());
+    let (n, m) = (points.len(), triangles.len());
+    let rows = |row: &dyn Fn(usize, [f64; 2]) -> String| {
+        points.iter().enumerate().map(|(v, &at)| row(v, at)).collect::<String>()
+    };
+    let cells = |first: u32, row: &dyn Fn(usize, [u32; 3]) -> String| {
+        let numbered = triangles.iter().map(|t| t.map(|v| v + first));
+        numbered.enumerate().map(|(t, corners)| row(t, corners)).collect::<String>()
+    };
+    let xyz = rows(&|_, [x, y]| format!("{x:?} {y:?} 0\n"));
+    let numbered = rows(&|v, [x, y]| format!("{} {x:?} {y:?} 0\n", v + 1));
+    let of = |t: usize| 1 + 2 * usize::from(t >= 20_000);
+    let referred = cells(1, &|t, [a, b, c]| format!("{a} {b} {c} {}\n", of(t)));
+    let regions: String = (0..m).map(|t| format!("{}\n", of(t))).collect();
+    vec![
+        (
+            "in.vtk",
+            format!(
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS {n} double\n{xyz}"
+            ) + &format!("POLYGONS {m} {}\n", 4 * m)
+                + &cells(0, &|_, [a, b, c]| format!("3 {a} {b} {c}\n"))
+                + &format!("CELL_DATA {m}\nSCALARS region int\nLOOKUP_TABLE default\n{regions}"),
+        ),
+        (
+            "in.mesh",
+            format!("MeshVersionFormatted 2\nDimension 3\nVertices\n{n}\n")
+                + &rows(&|_, [x, y]| format!("{x:?} {y:?} 0 0\n"))
+                + &format!("Triangles\n{m}\n{referred}End\n"),
+        ),
+        ("in.msh", format!("{n} {m} 0\n{}{referred}", xyz)),
+        (
+            "in.2dm",
+            "MESH2D\n".to_owned()
+                + &cells(1, &|t, [a, b, c]| format!("E3T {} {a} {b} {c} {}\n", t + 1, of(t)))
+                + &rows(&|v, [x, y]| format!("ND {} {x:?} {y:?} 0\n", v + 1)),
+        ),
+        (
+            "in.obj",
+            rows(&|_, [x, y]| format!("v {x:?} {y:?} 0\n"))
+                + &cells(1, &|t, [a, b, c]| match t {
+                    0 | 20_000 => format!("usemtl {}\nf {a} {b} {c}\n", of(t)),
+                    _ => format!("f {a} {b} {c}\n"),
+                }),
+        ),
+        (
+            "in.su2",
+            format!("NDIME= 2\nNELEM= {m}\n")
+                + &cells(0, &|_, [a, b, c]| format!("5 {a} {b} {c}\n"))
+                + &format!("NPOIN= {n}\n{}NMARK= 0\n", rows(&|_, [x, y]| format!("{x:?} {y:?}\n"))),
+        ),
+        (
+            "in.off",
+            format!("OFF\n{n} {m} 0\n{xyz}")
+                + &cells(0, &|_, [a, b, c]| format!("3 {a} {b} {c}\n")),
+        ),
+        (
+            "fort.14",
+            format!("t\n{m} {n}\n{numbered}")
+                + &cells(1, &|t, [a, b, c]| format!("{} 3 {a} {b} {c}\n", t + 1)),
+        ),
+    ]
+}
+
+#[test]
+fn a_vtk_file_of_many_points_was_refused_at_its_last_one() {
+    let regions: Vec<u32> = (0..triangles().len()).map(|t| u32::from(t >= 20_000)).collect();
+    for (name, text) in plain_texts() {
+        let folder = Folder::new(&[(name, &text)]);
+        let file = folder.read(name);
+        assert!(file.mesh().points == points() && file.mesh().triangles == triangles(), "{name}");
+        let groups = file.groups().unwrap();
+        if ["in.su2", "in.off", "fort.14"].contains(&name) {
+            assert!(file.regions().is_none() && groups.is_empty(), "{name}");
+            continue;
+        }
+        assert!(file.regions() == Some(&regions), "{name}");
+        let second = groups.find("3").unwrap().triangles();
+        assert!(second.iter().copied().eq(20_000..regions.len() as u32), "{name}");
+        assert!(groups.find("1").unwrap().triangles().iter().copied().eq(0..20_000), "{name}");
+    }
+}

@@ -3,10 +3,12 @@
 mod binary;
 mod damage;
 mod errors;
+mod groups;
 mod long;
 mod made;
 mod names;
 mod others;
+mod packed;
 mod refused;
 mod regions;
 mod special;

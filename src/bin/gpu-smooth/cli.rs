@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use crate::moving::MoveArgs;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -22,6 +23,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme,
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
+                  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
                   gpu-smooth quality better.msh\n  \
                   gpu-smooth bench"
 )]
@@ -49,6 +51,8 @@ pub(crate) struct OutputArgs {
 pub(crate) enum Command {
     /// Tells how good a mesh is
     Quality(QualityArgs),
+    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
+    Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     Compare(CompareArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
@@ -60,14 +64,23 @@ pub(crate) enum Command {
 }
 
 #[derive(Args)]
+pub(crate) struct GroupsArgs {
+    /// The mesh
+    pub(crate) mesh: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
 pub(crate) struct CompareArgs {
     /// The mesh before
     pub(crate) before: PathBuf,
     /// The mesh after
     pub(crate) after: PathBuf,
-    /// Vertices between regions may have moved
-    #[arg(long)]
-    pub(crate) free_interfaces: bool,
+    /// What may have moved: the options of the run
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
 }
 
 #[derive(Args)]
@@ -113,10 +126,11 @@ pub(crate) struct QualityArgs {
 
 #[derive(Args)]
 pub(crate) struct SmoothArgs {
-    /// The mesh to read; its format is told by its content
+    /// The mesh to read; its format is told by its content. It may be compressed by gzip, or - for the standard input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
-    /// Where to write the smoothed mesh, in the format of IN; may be IN itself
+    /// Where to write the smoothed mesh, in the format of IN; may be IN itself, or - for the standard output.
+    /// A name that ends in .gz gets a compressed file
     #[arg(required = true, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
@@ -125,10 +139,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, default_value = "imr", value_name = "A[+B...]")]
     pub(crate) scheme: Scheme,
 
-    /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele, references,
-    /// materials. Without it they stay where they are
-    #[arg(long)]
-    pub(crate) free_interfaces: bool,
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long)]

@@ -3,7 +3,7 @@
 use gpu_smooth::{MeshFile, Topology};
 
 use crate::cli::{CompareArgs, OutputArgs};
-use crate::smooth::read;
+use crate::streams::read;
 use crate::tell;
 
 /// How many vertices or triangles of a kind are listed.
@@ -13,8 +13,12 @@ const LISTED: usize = 10;
 pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let mut before = read(&args.before)?;
     let after = read(&args.after)?;
-    if args.free_interfaces {
-        before.free_interfaces();
+    let choice = args.moving.apply(&mut before)?;
+    if choice.nothing_to_do.is_some() {
+        before.fix_all_but(&[]).map_err(|error| error.to_string())?;
+    }
+    for note in choice.notes.iter().chain(&choice.nothing_to_do) {
+        tell::note(show.quiet, note);
     }
     if let Some(difference) = before.difference(&after) {
         let (place, other) = (&difference.place, &difference.other_place);

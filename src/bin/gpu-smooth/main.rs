@@ -5,10 +5,13 @@ mod cli;
 mod compare;
 mod engine;
 mod explain;
+mod groups;
 mod interrupt;
+mod moving;
 mod progress;
 mod report;
 mod smooth;
+mod streams;
 mod tell;
 mod untangle;
 
@@ -20,6 +23,7 @@ fn main() -> ExitCode {
     let cli = Cli::read();
     let done = match &cli.command {
         Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),

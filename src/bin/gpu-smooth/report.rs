@@ -28,8 +28,14 @@ pub(crate) struct Report {
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
-    /// reached, converged, stalled, held-back, max-sweeps or cancelled.
+    /// reached, converged, stalled, held-back, max-sweeps, cancelled or nothing-to-do.
     pub(crate) stop: &'static str,
+    /// Why there was nothing to do.
+    #[serde(skip)]
+    pub(crate) nothing_to_do: Option<String>,
+    /// What the options hold or let move, a line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) choices: Vec<String>,
     /// Vertices that the shape guard keeps from moving on, if the run ended for that.
     pub(crate) held_back: usize,
     /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
@@ -245,6 +251,9 @@ impl Report {
 
     /// Why the run ended, in a sentence.
     fn ending(&self) -> String {
+        if let Some(reason) = &self.nothing_to_do {
+            return format!("nothing to do: {reason}; the mesh is written as it was");
+        }
         let sweeps = match self.sweeps {
             1 => "1 sweep".to_owned(),
             n => format!("{n} sweeps"),

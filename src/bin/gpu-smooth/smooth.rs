@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Mesh, MeshError, MeshFile, MeshSize, Outcome, Phase, Progress, SmoothError, Smoother,
-    Stop, output,
+    Backend, Mesh, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
+    SmoothError, Smoother, Stop, output,
 };
 use serde::Serialize;
 
@@ -14,17 +14,16 @@ use crate::cli::{History, OutputArgs, SmoothArgs};
 use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
+use crate::moving::Choice;
 use crate::progress::Bar;
 use crate::report::{
     self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds, UntangleReport,
 };
+use crate::streams::{self, is_standard};
 use crate::tell;
 use crate::untangle;
 
-/// Reads a mesh.
-pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
-    MeshFile::read(path).map_err(|error| error.to_string())
-}
+pub(crate) use crate::streams::read;
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     let (Some(input), Some(out)) = (&args.input, &args.output) else {
@@ -36,14 +35,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let mut file = read(input)?;
-        if args.free_interfaces {
-            file.free_interfaces();
-        }
+        let choice = args.moving.apply(&mut file)?;
         let file = file;
         let read_done = Instant::now();
         check_destinations(args, &file, out)?;
-        for remark in tell::remarks(&file) {
-            tell::note(show.quiet, &remark);
+        for remark in tell::remarks(&file).iter().chain(&choice.notes) {
+            tell::note(show.quiet, remark);
         }
         let mesh = file.mesh();
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -58,21 +55,22 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
                 let smoother = smoother.map_err(|error| explain::mesh_error(&file, &error))?;
                 (smoother, Some(&mended))
             }
-            Err(error) => return Err(refusal(args, &file, &error)),
+            Err(error) => return Err(refusal(args, &choice, &file, &error)),
         };
         let taken =
             opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())??;
         let before = smoother.quality(&mesh.points).map_err(told)?;
         let prepared = Instant::now();
 
-        let (outcome, taken) = smooth(args, show, &smoother, &file, taken)?;
+        let options = options(args, &choice, file.precision());
+        let (outcome, taken) = smooth(args, &options, show, &smoother, &file, taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let smoothed = Instant::now();
 
         // The destination may have changed during a long run.
         check_report(args)?;
-        file.write(out, &outcome.points).map_err(|error| error.to_string())?;
+        streams::write(&file, out, &outcome.points)?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -97,7 +95,9 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             levels_left_out: outcome.levels_left_out,
             best_sweep: outcome.best_sweep,
             remaining: outcome.remaining,
-            stop: outcome.stop.name(),
+            stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
+            nothing_to_do: choice.nothing_to_do,
+            choices: choice.notes,
             held_back: outcome.held_back,
             lost: outcome.lost,
             goal: goal_report(&outcome),
@@ -109,28 +109,38 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         };
         write_report(args, &report)
             .map_err(|problem| format!("{problem}. The mesh was written"))?;
+        let say = |text: &str| streams::say_beside(out, text);
         if show.verbose {
             for sweep in &report.history {
                 let metric = sweep.metric.unwrap_or("-");
-                tell::say(&format!("sweep {:<5} {metric:<5} f {:.10}", sweep.sweep, sweep.f));
+                say(&format!("sweep {:<5} {metric:<5} f {:.10}", sweep.sweep, sweep.f));
             }
         }
         if !show.quiet {
-            tell::say(&report.summary());
+            say(&report.summary());
         }
         Ok(())
     })
 }
 
+/// The options of the run; of one without sweeps if there is nothing to do.
+fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
+    let options = args.options(stored);
+    match choice.nothing_to_do {
+        Some(_) => Options { max_sweeps: 0, goal: None, ..options },
+        None => options,
+    }
+}
+
 /// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
 fn smooth(
     args: &SmoothArgs,
+    options: &Options,
     show: &OutputArgs,
     smoother: &Smoother<'_>,
     file: &MeshFile,
     mut taken: Taken,
 ) -> Result<(Outcome, Taken), String> {
-    let options = args.options(file.precision());
     let mut bar = Bar::new(show, args.max_sweeps);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {
@@ -142,13 +152,13 @@ fn smooth(
             false => ControlFlow::Continue(()),
         }
     };
-    let mut outcome = smoother.run(&options, &taken.backend, &mut observe);
+    let mut outcome = smoother.run(options, &taken.backend, &mut observe);
     if let Err(error) = &outcome
         && engine::is_open(args)
         && engine::is_too_large(error)
     {
         taken = Taken { backend: Backend::Cpu, reason: Some(error.to_string()) };
-        outcome = smoother.run(&options, &taken.backend, &mut observe);
+        outcome = smoother.run(options, &taken.backend, &mut observe);
     }
     bar.clear();
     if interrupt::is_requested() {
@@ -167,9 +177,17 @@ fn smooth(
 
 /// Refuses destinations that cannot be written before the work is done.
 fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
-    file.check_destination(out).map_err(|error| error.to_string())?;
+    let written = match is_standard(out) {
+        true if file.paths().count() > 1 => {
+            return Err("a Triangle mesh is of several files: name OUT".into());
+        }
+        true => Vec::new(),
+        false => {
+            file.check_destination(out).map_err(told)?;
+            file.destinations(out).map_err(told)?
+        }
+    };
     let Some(report) = &args.report else { return Ok(()) };
-    let written = file.destinations(out).map_err(|error| error.to_string())?;
     let mut of_meshes = file.paths().chain(written.iter().map(PathBuf::as_path));
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
@@ -187,7 +205,10 @@ fn check_report(args: &SmoothArgs) -> Result<(), String> {
 }
 
 /// Why a mesh is not smoothed. Where triangles are inverted or flat, the report that was asked for lists all of them.
-fn refusal(args: &SmoothArgs, file: &MeshFile, error: &MeshError) -> String {
+fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshError) -> String {
+    if let Some(message) = choice.nothing_free(file, error) {
+        return message;
+    }
     let message = explain::mesh_error(file, error);
     let MeshError::Infeasible { triangles } = error else { return message };
     if args.report.is_none() {

@@ -24,6 +24,11 @@ pub(crate) fn say(text: &str) {
     }
 }
 
+/// Prints to standard error what else goes to standard output.
+pub(crate) fn aside(text: &str) {
+    eprintln!("{text}");
+}
+
 /// Prints a remark to standard error, unless the user wants none.
 pub(crate) fn note(quiet: bool, text: &str) {
     if !quiet {

@@ -8,7 +8,7 @@ use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Untangled, Untangling};
 use crate::cli::{OutputArgs, SmoothArgs};
 use crate::explain;
 use crate::interrupt;
-use crate::tell;
+use crate::streams;
 
 /// A mesh that was untangled, and how.
 pub(crate) struct Mended {
@@ -31,7 +31,8 @@ pub(crate) fn mend(
     let mut observe = |progress: &Untangling| {
         if show.verbose {
             let Untangling { sweep, bad } = progress;
-            tell::say(&format!("untangling, sweep {sweep:<5} inverted or flat {bad}"));
+            let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
+            streams::say_beside(out, &text);
         }
         match interrupt::is_requested() {
             true => ControlFlow::Break(()),
@@ -52,7 +53,7 @@ pub(crate) fn mend(
     if !args.keep_going {
         return Err(message);
     }
-    match file.write(out, &points) {
+    match streams::write(file, out, &points) {
         Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
         Err(error) => Err(format!("{message}\n  {error}")),
     }

@@ -2,6 +2,7 @@
 //! of one kind.
 
 use super::kind::kind_of;
+use super::text2::columns;
 use super::words::Words;
 use super::{block_fits, row};
 use crate::error::ReadError;
@@ -51,6 +52,7 @@ pub(super) fn elements(
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of elements")?;
     sink.expect_elements(cursor.capacity(count, 16));
+    sink.columns(columns());
     let mut done = 0;
     while done < count {
         let words = &mut Words::take(cursor, order, HEADER, (done, count, "elements"))?;

@@ -1,6 +1,7 @@
 //! The sections of version 4.1 in binary: blocks, one per entity of the model.
 
 use super::kind::kind_of;
+use super::model::Model;
 use super::words::Words;
 use super::{all_in_blocks, block_fits};
 use crate::error::ReadError;
@@ -51,6 +52,7 @@ pub(super) fn nodes(
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     order: Order,
+    model: &Model,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, order)?;
@@ -63,6 +65,7 @@ pub(super) fn elements(
         let region = [i64::from(words.int()), 0];
         let kind = words.natural(cursor, "the type of an element block")?;
         let kind = kind_of(cursor, kind)?;
+        sink.within(&model.groups_of(kind, region[0]));
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
         let row = 8 * (1 + kind.nodes());

@@ -1,12 +1,14 @@
 //! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary (not 4.0).
 //!
-//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Of all sections, only
-//! `$MeshFormat`, `$Nodes` and `$Elements` are read. `$Entities`, which in version 4.1 lists the physical groups of each
-//! entity, is not needed to tell regions apart: triangles of one entity are all of the same groups.
+//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh only `$MeshFormat`, `$Nodes`
+//! and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical groups of each
+//! entity, are read where groups are asked for; regions are told apart without them, as triangles of one entity are all of
+//! the same groups.
 
 mod binary2;
 mod binary4;
 mod kind;
+mod model;
 mod text2;
 mod text4;
 mod text40;
@@ -21,6 +23,7 @@ use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::mesh::Precision;
+use model::Model;
 
 /// A remark for the user.
 const PARAMETRIC: &str =
@@ -70,6 +73,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
+    let mut model = Model::default();
     while cursor.next_row() {
         // Like gmsh, ignore what stands between sections.
         let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
@@ -109,12 +113,22 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
                     (Version::V40, _) | (Version::V4, None) => {
-                        text4::elements(cursor, version, sink)?
+                        text4::elements(cursor, version, &model, sink)?
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
-                    (Version::V4, Some(order)) => binary4::elements(cursor, order, sink)?,
+                    (Version::V4, Some(order)) => binary4::elements(cursor, order, &model, sink)?,
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+            }
+            b"PhysicalNames" if sink.asks_for_groups() => {
+                let count = model::physical_names(cursor, sink)?;
+                end_of_section(cursor, "PhysicalNames", opened, &format!("{count} names"))?;
+            }
+            b"Entities" | b"PartitionedEntities" if sink.asks_for_groups() => {
+                let partitioned = name == b"PartitionedEntities";
+                model.read(cursor, known(cursor, encoding)?, partitioned)?;
+                let name = str::from_utf8(name).unwrap_or_default();
+                end_of_section(cursor, name, opened, "entities")?;
             }
             name if name.starts_with(b"End") => {
                 let problem = format!("${} ends a section that never began", quoted(name));

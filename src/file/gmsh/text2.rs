@@ -3,7 +3,7 @@
 use super::kind::{kind_of, node_tags};
 use super::{ahead, row};
 use crate::error::ReadError;
-use crate::file::sink::{Element, Sink};
+use crate::file::sink::{Column, Element, Sink};
 use crate::file::text::{CORRECT, Cursor};
 
 /// Reads `$Nodes` after its first line. Returns their number.
@@ -23,11 +23,17 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
     Ok(count)
 }
 
+/// What the first two tags of an element tell.
+pub(super) fn columns() -> Vec<Column> {
+    ["physical", "entity"].map(Column::tags_from_one).into()
+}
+
 /// Reads `$Elements` after its first line. Returns their number.
 pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of elements")?;
     sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
+    sink.columns(columns());
     let plain = ahead(cursor, count, sink, element, |cursor, sink, element| {
         sink.element(cursor, &element).is_ok()
     });

@@ -1,6 +1,7 @@
 //! The sections of version 4.1: blocks, one per entity of the model.
 
 use super::kind::{kind_of, node_tags};
+use super::model::Model;
 use super::{Version, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
 use crate::file::sink::{Element, Sink};
@@ -57,6 +58,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     version: Version,
+    model: &Model,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
@@ -76,6 +78,7 @@ pub(super) fn elements(
         }
         let kind = cursor.integer("the type of an element block")?;
         let kind = kind_of(cursor, kind)?;
+        sink.within(&model.groups_of(kind, entity));
         let size = cursor.integer("the number of elements of a block")?;
         block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>| {

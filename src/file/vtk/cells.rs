@@ -23,30 +23,30 @@ impl Cell<'_> {
         sink: &mut impl Sink,
     ) -> Result<(), ReadError> {
         let Cell { tag, cell_type, points, region } = *self;
-        match kind_of(cursor, tag, cell_type, points.len())? {
-            Some(kind) => {
-                let mut nodes = [0; 4];
-                nodes[..points.len()].copy_from_slice(points);
-                sink.element(cursor, &Element { tag, kind, region, nodes })
-            }
-            None => points.iter().try_for_each(|&point| {
-                let (kind, nodes) = (Kind::Point, [point, 0, 0, 0]);
-                sink.element(cursor, &Element { tag, kind, region, nodes })
-            }),
+        let kind = kind_of(cursor, tag, cell_type, points.len())?;
+        if kind.nodes() == points.len() {
+            let mut nodes = [0; 4];
+            nodes[..points.len()].copy_from_slice(points);
+            return sink.element(cursor, &Element { tag, kind, region, nodes });
         }
+        points.iter().try_for_each(|&point| {
+            let nodes = [point, 0, 0, 0];
+            sink.element(cursor, &Element { tag, kind, region, nodes })
+        })
     }
 }
 
-/// The kind of a cell by its type in VTK; None if its vertices only are to stay fixed.
+/// The kind of a cell by its type in VTK. It is that of a single vertex for cells of any number of points, which only
+/// are to stay fixed.
 fn kind_of(
     cursor: &Cursor<'_>,
     tag: u64,
     cell_type: u64,
     points: usize,
-) -> Result<Option<Kind>, ReadError> {
+) -> Result<Kind, ReadError> {
     let kind = match cell_type {
-        0 | 2 | 4 => return Ok(None),
-        7 => return Ok(Kind::of_polygon(points as u64)),
+        0 | 2 | 4 => return Ok(Kind::Point),
+        7 => return Ok(Kind::of_polygon(points as u64).unwrap_or(Kind::Corner)),
         1 => Kind::Point,
         3 => Kind::Line,
         5 => Kind::Triangle,
@@ -65,5 +65,5 @@ fn kind_of(
         let problem = format!("cell {tag}, a {}, has {points} points", kind.name());
         return Err(cursor.error(problem, CORRECT));
     }
-    Ok(Some(kind))
+    Ok(kind)
 }

@@ -1,7 +1,10 @@
-//! Data of points and cells of a legacy VTK file: what names the regions of cells is read, the rest passed over.
+//! Data of points and cells of a legacy VTK file: what names the regions of cells is read, and what of points the sink
+//! wants; the rest is passed over.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::label::Label;
+use crate::file::sink::{Column, Sink};
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::file::vtk::take;
 
@@ -33,13 +36,34 @@ pub(in crate::file) fn names_regions(name: &[u8]) -> bool {
     REGIONS.contains(&name.to_ascii_lowercase().as_slice())
 }
 
+/// An array of cell data that tells regions.
+pub(super) struct Regions {
+    name: String,
+    /// For each cell what its number is told apart by: the number, or the bits of a number that may have a fraction.
+    pub(super) names: Vec<i64>,
+    /// The label that one of them stands for.
+    label: fn(i64) -> Option<Label>,
+}
+
+impl Regions {
+    /// What the region of a cell tells.
+    pub(super) fn column(&self) -> Column {
+        Column { what: self.name.clone(), from_dimension: 0, label: self.label }
+    }
+}
+
 /// The regions of cells by the first two arrays that name any, from a POINT_DATA or CELL_DATA that was just read. Data that
 /// are damaged or unknown end the search without an error: the mesh does not depend on them.
-pub(super) fn regions(cursor: &mut Cursor<'_>, binary: bool, keyword: &[u8]) -> Vec<Vec<i64>> {
-    let mut found = Vec::new();
-    let mut data = Data { binary, of_cells: keyword == b"CELL_DATA", count: 0, found: &mut found };
+pub(super) fn regions(
+    cursor: &mut Cursor<'_>,
+    binary: bool,
+    keyword: &[u8],
+    sink: &mut impl Sink,
+) -> Vec<Regions> {
+    let of_cells = keyword == b"CELL_DATA";
+    let mut data = Data { binary, of_cells, count: 0, found: Vec::new(), sink };
     let Ok(count) = cursor.integer("a count") else {
-        return found;
+        return Vec::new();
     };
     data.count = count;
     while cursor.next_word() {
@@ -47,18 +71,19 @@ pub(super) fn regions(cursor: &mut Cursor<'_>, binary: bool, keyword: &[u8]) -> 
             break;
         }
     }
-    found.truncate(2);
-    found
+    data.found.truncate(2);
+    data.found
 }
 
-struct Data<'f> {
+struct Data<'s, S> {
     binary: bool,
     of_cells: bool,
     count: u64,
-    found: &'f mut Vec<Vec<i64>>,
+    found: Vec<Regions>,
+    sink: &'s mut S,
 }
 
-impl Data<'_> {
+impl<S: Sink> Data<'_, S> {
     /// Reads one attribute.
     fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
         let keyword = cursor.token()?.to_ascii_uppercase();
@@ -121,7 +146,7 @@ impl Data<'_> {
         Some(())
     }
 
-    /// Reads an array if it names regions, and passes over it if not.
+    /// Reads an array if it names regions or is wanted, and passes over it if not.
     fn array(
         &mut self,
         cursor: &mut Cursor<'_>,
@@ -130,26 +155,77 @@ impl Data<'_> {
         components: u64,
         tuples: u64,
     ) -> Option<()> {
-        let wanted = self.of_cells && components == 1 && tuples == self.count;
-        if !(wanted && names_regions(name)) {
-            return pass(cursor, self.binary, kind, components.checked_mul(tuples)?).ok();
+        let count = components.checked_mul(tuples)?;
+        let of_all = tuples == self.count;
+        if !self.of_cells && of_all && self.sink.point_array(name, components) {
+            let numbers = self.numbers(cursor, kind, count)?;
+            self.sink.point_numbers(numbers);
+            return Some(());
         }
-        let mut regions = Vec::new();
+        if !(self.of_cells && components == 1 && of_all && names_regions(name)) {
+            return pass(cursor, self.binary, kind, count).ok();
+        }
+        let name = String::from_utf8_lossy(name).into_owned();
+        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
         if self.binary {
             let size = size_of(kind)?;
             // Numbers that are not whole are names as good as any, by their bits.
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
-            regions.extend(numbers.map(|number| Order::Big.signed(number)));
+            names.extend(numbers.map(|number| Order::Big.signed(number)));
+            label = label_of(kind);
         } else {
             for _ in 0..tuples {
                 cursor.next_word().then_some(())?;
                 let number = cursor.coordinate('r', "a region").ok()?;
                 // Adding zero takes the sign off a negative zero.
-                regions.push((number + 0.0).to_bits().cast_signed());
+                names.push((number + 0.0).to_bits().cast_signed());
             }
         }
-        self.found.push(regions);
+        self.found.push(Regions { name, names, label });
         Some(())
+    }
+
+    /// Reads numbers of any type.
+    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<Vec<f64>> {
+        if self.binary {
+            let (size, value) = (size_of(kind)?, value_of(kind));
+            let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
+            return Some(bytes.map(|number| value(Order::Big.signed(number))).collect());
+        }
+        let mut numbers = Vec::with_capacity(cursor.capacity(count, "0 ".len()));
+        for _ in 0..count {
+            cursor.next_word().then_some(())?;
+            numbers.push(cursor.coordinate('v', "a point").ok()?);
+        }
+        Some(numbers)
+    }
+}
+
+fn number_of_bits(bits: i64) -> Option<Label> {
+    Some(Label::number(f64::from_bits(bits.cast_unsigned())))
+}
+
+/// The label of a number of this type, from its bits read as a whole number with a sign.
+fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => |bits| Some(Label::number(f64::from(f32::from_bits(bits as u32)))),
+        b"double" => number_of_bits,
+        b"unsigned_char" => |number| Some(Label::Tag(number & 0xff)),
+        b"unsigned_short" => |number| Some(Label::Tag(number & 0xffff)),
+        b"unsigned_int" => |number| Some(Label::Tag(number & 0xffff_ffff)),
+        _ => |number| Some(Label::Tag(number)),
+    }
+}
+
+/// The value of a number of this type, from its bits read as a whole number with a sign.
+fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => |bits| f64::from(f32::from_bits(bits as u32)),
+        b"double" => |bits| f64::from_bits(bits.cast_unsigned()),
+        b"unsigned_char" => |number| (number & 0xff) as f64,
+        b"unsigned_short" => |number| (number & 0xffff) as f64,
+        b"unsigned_int" => |number| (number & 0xffff_ffff) as f64,
+        _ => |number| number as f64,
     }
 }
 

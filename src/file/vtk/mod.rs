@@ -18,6 +18,7 @@ use crate::file::sink::{Layout, Sink, Walk, each_row};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
 use crate::mesh::Precision;
+use data::Regions;
 
 pub(crate) struct Vtk;
 
@@ -66,7 +67,7 @@ impl Walk for Vtk {
         };
         let mut lists: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
-        let mut regions: Vec<Vec<i64>> = Vec::new();
+        let mut regions: Vec<Regions> = Vec::new();
         while cursor.next_word() {
             // VTK does not tell small letters from capitals.
             let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
@@ -105,7 +106,7 @@ impl Walk for Vtk {
                 b"FIELD" => data::pass_field(cursor, binary)?,
                 // Data of points and cells, to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
-                    regions = data::regions(cursor, binary, &keyword);
+                    regions = data::regions(cursor, binary, &keyword, sink);
                     break;
                 }
                 other => {
@@ -118,6 +119,7 @@ impl Walk for Vtk {
             return Err(source.error("it has no POINTS", "Save the mesh again"));
         };
         sink.end_nodes(cursor)?;
+        sink.columns(regions.iter().map(Regions::column).collect());
         let mut tag = 0;
         for cells in &lists {
             elements(cursor, cells, &regions, &mut tag, sink)?;
@@ -341,7 +343,7 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 fn elements<S: Sink>(
     cursor: &Cursor<'_>,
     cells: &Cells<'_>,
-    regions: &[Vec<i64>],
+    regions: &[Regions],
     tag: &mut u64,
     sink: &mut S,
 ) -> Result<(), ReadError> {
@@ -362,7 +364,7 @@ fn elements<S: Sink>(
         };
         let mut region = [0; 2];
         for (number, regions) in region.iter_mut().zip(regions) {
-            *number = regions.get(*tag as usize).copied().unwrap_or(0);
+            *number = regions.names.get(*tag as usize).copied().unwrap_or(0);
         }
         let cell = Cell { tag: *tag, cell_type, points, region };
         if S::TAKES_AHEAD {

@@ -10,7 +10,7 @@ mod document;
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers, Splice};
-use crate::file::sink::{Layout, Sink, Walk};
+use crate::file::sink::{Column, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
 use crate::file::vtk;
@@ -117,6 +117,7 @@ impl Walk for Vtu {
         };
         sink.end_nodes(cursor)?;
         file.cells(sink)?;
+        file.point_arrays(sink)?;
         if file.document.arrays.iter().any(|array| array.section == "PointData") {
             sink.note("point data stay with their points: where those move, they no longer fit");
         }
@@ -201,26 +202,85 @@ impl File<'_> {
     /// The whole numbers of an array.
     fn integers(&self, array: &Array) -> Result<Vec<u64>, ReadError> {
         if array.format == Coding::Ascii {
-            let cursor = &mut Cursor::within(self.source, array.content.clone());
-            let mut numbers = Vec::new();
-            while cursor.next_word() {
-                numbers.push(cursor.integer("a number")?);
-            }
-            return Ok(numbers);
+            return self.words(array, |cursor| cursor.integer("a number"));
         }
         let (wrapping, found, _) = self.unwrap(array)?;
-        let size = match array.number.as_str() {
-            "Int8" | "UInt8" => 1,
-            "Int16" | "UInt16" => 2,
-            "Int32" | "UInt32" => 4,
-            "Int64" | "UInt64" => 8,
+        let size = self.size_of_integer(array)?;
+        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.whole(number)).collect())
+    }
+
+    /// The same with their signs.
+    fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
+        if array.format == Coding::Ascii {
+            return self.words(array, |cursor| cursor.signed("a number"));
+        }
+        if array.number.starts_with('U') {
+            return Ok(self.integers(array)?.into_iter().map(u64::cast_signed).collect());
+        }
+        let (wrapping, found, _) = self.unwrap(array)?;
+        let size = self.size_of_integer(array)?;
+        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.signed(number)).collect())
+    }
+
+    /// The numbers of an array of any type.
+    fn numbers(&self, array: &Array) -> Result<Vec<f64>, ReadError> {
+        if array.format == Coding::Ascii {
+            return self.words(array, |cursor| cursor.coordinate('v', "a point"));
+        }
+        let precision = match array.number.as_str() {
+            "Float32" => Precision::Single,
+            "Float64" => Precision::Double,
+            number if number.starts_with('U') => {
+                return Ok(self.integers(array)?.into_iter().map(|number| number as f64).collect());
+            }
+            _ => {
+                let numbers = self.signed_integers(array)?;
+                return Ok(numbers.into_iter().map(|number| number as f64).collect());
+            }
+        };
+        let (wrapping, found, _) = self.unwrap(array)?;
+        let numbers = found.bytes.chunks_exact(precision.bytes());
+        Ok(numbers.map(|number| wrapping.order.real(precision, number)).collect())
+    }
+
+    /// The words of an array written as text.
+    fn words<T>(
+        &self,
+        array: &Array,
+        read: impl Fn(&mut Cursor<'_>) -> Result<T, ReadError>,
+    ) -> Result<Vec<T>, ReadError> {
+        let cursor = &mut Cursor::within(self.source, array.content.clone());
+        let mut words = Vec::new();
+        while cursor.next_word() {
+            words.push(read(cursor)?);
+        }
+        Ok(words)
+    }
+
+    /// How many bytes a whole number of an array has.
+    fn size_of_integer(&self, array: &Array) -> Result<usize, ReadError> {
+        match array.number.as_str() {
+            "Int8" | "UInt8" => Ok(1),
+            "Int16" | "UInt16" => Ok(2),
+            "Int32" | "UInt32" => Ok(4),
+            "Int64" | "UInt64" => Ok(8),
             other => {
                 let place = Location::Line(self.source.line_of(array.at));
                 let problem = format!("whole numbers of the type {}", quoted(other.as_bytes()));
-                return Err(self.source.error_at(place, problem, "Save the mesh again"));
+                Err(self.source.error_at(place, problem, "Save the mesh again"))
             }
-        };
-        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.whole(number)).collect())
+        }
+    }
+
+    /// Hands the arrays of point data to the sink that it wants.
+    fn point_arrays(&self, sink: &mut impl Sink) -> Result<(), ReadError> {
+        for array in &self.document.arrays {
+            let of_points = array.section == "PointData";
+            if of_points && sink.point_array(array.name.as_bytes(), array.components) {
+                sink.point_numbers(self.numbers(array)?);
+            }
+        }
+        Ok(())
     }
 
     /// The appended arrays that stand after this one.
@@ -256,8 +316,9 @@ impl File<'_> {
         };
         // Damaged data are no reason to refuse a mesh that does not depend on them.
         let arrays = self.document.arrays.iter().filter(names_regions);
-        let regions: Vec<_> =
-            arrays.filter_map(|array| self.integers(array).ok()).take(2).collect();
+        let read = |array| Some((array, self.signed_integers(array).ok()?));
+        let (arrays, regions): (Vec<&Array>, Vec<_>) = arrays.filter_map(read).take(2).unzip();
+        sink.columns(arrays.iter().map(|array| Column::tags(&array.name, 0)).collect());
         sink.expect_elements(offsets.len());
         let mut start = 0;
         for (tag, (&end, &cell_type)) in offsets.iter().zip(&types).enumerate() {
@@ -265,7 +326,7 @@ impl File<'_> {
             start = end as usize;
             let mut region = [0; 2];
             for (number, regions) in region.iter_mut().zip(&regions) {
-                *number = regions.get(tag as usize).map_or(0, |number| number.cast_signed());
+                *number = regions.get(tag as usize).copied().unwrap_or(0);
             }
             vtk::Cell { tag, cell_type, points, region }.send(cursor, sink)?;
         }

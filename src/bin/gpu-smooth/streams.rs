@@ -1,0 +1,40 @@
+//! Meshes from files or the standard input, and to files or the standard output, both of which are named `-`.
+
+use std::io::Read;
+use std::path::Path;
+
+use gpu_smooth::MeshFile;
+
+use crate::tell;
+
+/// Reads a mesh, from the standard input if its name is `-`.
+pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
+    if !is_standard(path) {
+        return MeshFile::read(path).map_err(|error| error.to_string());
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
+    MeshFile::from_bytes(Path::new("standard input"), bytes).map_err(|error| error.to_string())
+}
+
+/// Whether a name stands for the standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes a mesh, to the standard output if its name is `-`.
+pub(crate) fn write(file: &MeshFile, out: &Path, points: &[[f64; 2]]) -> Result<(), String> {
+    let written = match is_standard(out) {
+        true => file.write_to(Path::new("standard output"), &mut std::io::stdout(), points),
+        false => file.write(out, points),
+    };
+    written.map_err(|error| error.to_string())
+}
+
+/// Prints what a run tells: to standard error where the standard output is the mesh.
+pub(crate) fn say_beside(out: &Path, text: &str) {
+    match is_standard(out) {
+        true => tell::aside(text),
+        false => tell::say(text),
+    }
+}

@@ -1,0 +1,195 @@
+//! Walks through a file that was read before for what a reading leaves out: groups, the labels of vertices, and arrays of
+//! point data.
+
+use crate::error::ReadError;
+use crate::file::group_table::GroupTable;
+use crate::file::label::Label;
+use crate::file::regions::Numbering;
+use crate::file::sink::{Column, Element, Kind, Sink, Walk, Within};
+use crate::file::source::Source;
+use crate::file::tags::TagMap;
+use crate::file::text::Cursor;
+
+/// The groups of a file.
+pub(crate) fn groups<W: Walk>(source: &Source) -> Result<GroupTable, ReadError> {
+    let mut gatherer = Gatherer::default();
+    W::walk(source, &mut gatherer)?;
+    Ok(gatherer.table)
+}
+
+/// The file's own number of each vertex.
+pub(crate) fn labels<W: Walk>(source: &Source) -> Result<Vec<u64>, ReadError> {
+    let mut labels = Labels::default();
+    W::walk(source, &mut labels)?;
+    Ok(labels.tags)
+}
+
+/// An array of point data.
+#[derive(Default)]
+pub(crate) struct PointArray {
+    /// How many numbers it has a point, and all of them. None if there is no array of this name.
+    pub(crate) found: Option<(u64, Vec<f64>)>,
+    /// The names of all arrays of the file.
+    pub(crate) known: Vec<String>,
+}
+
+/// The array of point data of this name.
+pub(crate) fn point_array<W: Walk>(source: &Source, name: &str) -> Result<PointArray, ReadError> {
+    let mut seeker = Seeker { name, components: 0, array: PointArray::default() };
+    W::walk(source, &mut seeker)?;
+    Ok(seeker.array)
+}
+
+#[derive(Default)]
+struct Gatherer {
+    table: GroupTable,
+    tags: Vec<u64>,
+    map: Option<TagMap>,
+    triangles: u32,
+    columns: Vec<Column>,
+    /// For each column the numbers of its regions, by dimension.
+    met: Vec<Numbering<(u8, i64)>>,
+    /// For each column the group of each number of a region, if it has one.
+    groups: Vec<Vec<Option<usize>>>,
+    /// What each group is that elements stand within, its label, and its dimension where it is not theirs.
+    within: Vec<(String, Label, Option<u8>)>,
+    /// The groups of `within` for elements of each dimension, once one was met.
+    within_groups: [Option<Vec<usize>>; 3],
+    /// The groups of the element at hand.
+    of_element: Vec<usize>,
+}
+
+impl Gatherer {
+    /// Finds the groups of an element.
+    fn find(&mut self, dimension: u8, region: [i64; 2]) {
+        let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
+        of_element.clear();
+        let columns = columns.iter().zip(met).zip(groups).zip(region);
+        for (((column, met), groups), number) in columns {
+            if dimension < column.from_dimension {
+                continue;
+            }
+            let name = met.number((dimension, number)) as usize;
+            if name == groups.len() {
+                let label = (column.label)(number);
+                let group = label.map(|label| table.number(&column.what, dimension, &label));
+                groups.push(group);
+            }
+            of_element.extend(groups[name]);
+        }
+        let within = within_groups[usize::from(dimension)].get_or_insert_with(|| {
+            let number = |(what, label, own): &(String, Label, Option<u8>)| {
+                table.number(what, own.unwrap_or(dimension), label)
+            };
+            within.iter().map(number).collect()
+        });
+        of_element.extend_from_slice(within);
+        // An element that is named twice, as by two arrays of one name, is not to be counted twice.
+        of_element.sort_unstable();
+        of_element.dedup();
+    }
+}
+
+impl Sink for Gatherer {
+    const TAKES_AHEAD: bool = true;
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
+        // There is no error to tell: the file was read before without one.
+        self.map = TagMap::new(&self.tags).ok();
+        Ok(())
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        let &Element { kind, region, nodes, .. } = element;
+        self.find(kind.dimension(), region);
+        if kind == Kind::Triangle {
+            for &group in &self.of_element {
+                self.table.add_triangle(group, self.triangles);
+            }
+            self.triangles += 1;
+        } else {
+            let index = |&node: &u64| self.map.as_ref().and_then(|map| map.index(node));
+            let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
+            for &group in &self.of_element {
+                self.table.add(group, kind, &vertices);
+            }
+        }
+        Ok(())
+    }
+
+    fn asks_for_groups(&self) -> bool {
+        true
+    }
+
+    fn columns(&mut self, columns: Vec<Column>) {
+        self.met = columns.iter().map(|_| Numbering::default()).collect();
+        self.groups = columns.iter().map(|_| Vec::new()).collect();
+        self.columns = columns;
+    }
+
+    fn within(&mut self, groups: &[Within<'_>]) {
+        let owned =
+            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+        self.within = groups.iter().map(owned).collect();
+        self.within_groups = [None, None, None];
+    }
+
+    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
+        let group = self.table.number(what, 0, &Label::Tag(tag));
+        self.table.add_vertex(group, node);
+    }
+
+    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        self.table.name(what, dimension, tag, name);
+    }
+}
+
+#[derive(Default)]
+struct Labels {
+    tags: Vec<u64>,
+}
+
+impl Sink for Labels {
+    const TAKES_AHEAD: bool = true;
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
+}
+
+struct Seeker<'n> {
+    name: &'n str,
+    /// Of the array that was announced last.
+    components: u64,
+    array: PointArray,
+}
+
+impl Sink for Seeker<'_> {
+    const TAKES_AHEAD: bool = true;
+
+    fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
+
+    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
+
+    fn point_array(&mut self, name: &[u8], components: u64) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        let wanted = self.array.found.is_none() && name == self.name;
+        self.array.known.push(name);
+        self.components = components;
+        wanted
+    }
+
+    fn point_numbers(&mut self, numbers: Vec<f64>) {
+        self.array.found = Some((self.components, numbers));
+    }
+}

@@ -1,0 +1,124 @@
+//! What a user can name in a mesh file: groups of elements, single vertices, and arrays of point data.
+
+use crate::error::ReadError;
+use crate::file::families::Family;
+use crate::file::gather::PointArray;
+use crate::file::group::{Groups, distance};
+use crate::file::mesh_file::MeshFile;
+use crate::file::source::Source;
+use crate::file::tags::TagMap;
+use crate::file::text::{Cursor, quoted};
+use crate::file::triangle;
+use crate::file::triangle_groups;
+use std::path::Path;
+
+impl MeshFile {
+    /// All groups that the file names or numbers. The file's content is searched again for them.
+    ///
+    /// | format | groups |
+    /// |---|---|
+    /// | gmsh | `physical`, with their names, and `entity`; parts of an entity, for partitions, are the one they are parts of |
+    /// | SU2 | `marker`, and `zone` if there are several |
+    /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
+    /// | FreeFem | `label` of vertices, triangles and edges |
+    /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
+    /// | OBJ | `material`, `object` and `group` |
+    /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
+    /// | VTK | values of the cell data that tell [regions](Self#regions), called as these arrays are |
+    /// | others | none |
+    ///
+    /// Points, lines and surfaces of one tag are groups of their own. Where zero is what a program writes for no tag, as in
+    /// gmsh and for markers and references of vertices, it is no group.
+    ///
+    /// # Errors
+    /// [`ReadError`] if what names groups is damaged, such as gmsh's `$Entities`. Reading the mesh does not need that.
+    pub fn groups(&self) -> Result<Groups, ReadError> {
+        let sources = self.sources();
+        let table = match &Family::of(self.format()).reader {
+            Some(reader) => (reader.groups)(&sources[0])?,
+            None => triangle_groups::groups(&sources[0], &sources[1], sources.get(2))?,
+        };
+        let mesh = self.mesh();
+        Ok(table.finish(&mesh.triangles, mesh.points.len()))
+    }
+
+    /// Reads a list of vertices: the mesh file's own numbers for them, as in [`Place::label`](crate::Place::label), with
+    /// blanks or line ends between. What follows `#` on a line is a comment. Returns indices in
+    /// [`Mesh::points`](crate::Mesh::points), in the order of the list.
+    ///
+    /// # Errors
+    /// [`ReadError`] if the list cannot be read, holds other than whole numbers, or a number that no vertex has.
+    pub fn read_vertices(&self, list: &Path) -> Result<Vec<u32>, ReadError> {
+        let list = &Source::load(list)?;
+        let labels = self.vertex_labels()?;
+        // Every label is of one vertex: files in which that is not so are refused.
+        let map = TagMap::new(&labels).ok();
+        let cursor = &mut Cursor::new(list);
+        let mut vertices = Vec::new();
+        while cursor.next_word() {
+            let label = cursor.integer("the number of a vertex")?;
+            let vertex = map.as_ref().and_then(|map| map.index(label));
+            vertices.push(vertex.ok_or_else(|| {
+                let problem = format!("{} has no vertex {label}", self.path().display());
+                cursor.error(problem, self.range_of(&labels))
+            })?);
+        }
+        Ok(vertices)
+    }
+
+    fn range_of(&self, labels: &[u64]) -> String {
+        let least = labels.iter().min().copied().unwrap_or(0);
+        let most = labels.iter().max().copied().unwrap_or(0);
+        format!("Its vertices are numbered from {least} to {most}")
+    }
+
+    fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
+        let source = &self.sources()[0];
+        match &Family::of(self.format()).reader {
+            Some(reader) => (reader.labels)(source),
+            None => {
+                let places = triangle::vertex_places(source, self.x_at().iter().copied());
+                Ok(places.into_iter().map(|(_, label)| label).collect())
+            }
+        }
+    }
+
+    /// The numbers of an array of point data, one for each vertex: scalars of VTK's formats, and properties of the
+    /// vertices of PLY.
+    ///
+    /// # Errors
+    /// [`ReadError`] if there is no such array, its data are damaged, or it has not one number a vertex.
+    pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
+        let source = &self.sources()[0];
+        let PointArray { found, mut known } = match &Family::of(self.format()).reader {
+            Some(reader) => (reader.point_array)(source, name)?,
+            None => PointArray::default(),
+        };
+        let shown = quoted(name.as_bytes());
+        match found {
+            Some((1, numbers)) if numbers.len() == self.mesh().points.len() => Ok(numbers),
+            Some((1, numbers)) => {
+                let problem = format!("the array '{shown}' has {} numbers", numbers.len());
+                let remedy = format!("There are {} vertices", self.mesh().points.len());
+                Err(source.error(problem, remedy))
+            }
+            Some((components, _)) => {
+                let problem = format!("the array '{shown}' has {components} numbers a point");
+                Err(source.error(problem, "Take an array of one number a point"))
+            }
+            None if known.contains(&name.to_owned()) => {
+                let problem = format!("the array '{shown}' is damaged or cut off");
+                Err(source.error(problem, "Write the mesh again"))
+            }
+            None => {
+                known.sort_by_cached_key(|own| distance(own, name));
+                let problem = format!("no point data is called '{shown}'");
+                let remedy = match &known[..] {
+                    [] => "The file has no point data".to_owned(),
+                    _ => format!("There are {}", known.join(", ")),
+                };
+                Err(source.error(problem, remedy))
+            }
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Writing a mesh file again, with the coordinates of moved vertices replaced.
+
+use crate::error::WriteError;
+use crate::file::detect;
+use crate::file::families::{Family, TRIANGLE};
+use crate::file::format::Format;
+use crate::file::mesh_file::MeshFile;
+use crate::file::packed;
+use crate::file::replace::{self, Job};
+use crate::file::rewrite::Rewrite;
+use crate::file::triangle::Names;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+impl MeshFile {
+    /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
+    ///
+    /// Coordinates that have the bits they were read with keep their text too; others are written
+    /// with the fewest digits that read back as the same bits. Of a Triangle mesh, all files are
+    /// written under the name that `path` gives with or without ending. `path` may be the file
+    /// that was read. It is replaced only once all is written; symbolic links are followed.
+    ///
+    /// The file is compressed by gzip if `path` ends in `.gz`; if nothing has moved, a file that was compressed keeps its
+    /// bytes.
+    ///
+    /// # Errors
+    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the
+    /// points are not finite or not one per vertex, or if the system refuses. What stood at the
+    /// destination then still stands there.
+    pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
+        self.check_points(path, points)?;
+        self.check_destination(path)?;
+        let packs = self.packs(path);
+        let job = |(part, destination)| -> Job<'_> {
+            (destination, Box::new(move |out| self.put(part, points, packs, out)))
+        };
+        let jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
+        replace::replace_all(&jobs)
+    }
+
+    /// Writes what [`write`](Self::write) does to where bytes can be written, such as the standard output. It is compressed if
+    /// the file that was read is.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the points are not finite or not one per vertex, for a Triangle mesh, which is of several files, or
+    /// if nothing can be written; `name` stands in it for where that is.
+    pub fn write_to(
+        &self,
+        name: &Path,
+        out: &mut (dyn Write + Send),
+        points: &[[f64; 2]],
+    ) -> Result<(), WriteError> {
+        self.check_points(name, points)?;
+        if self.sources().len() > 1 {
+            let problem = "a Triangle mesh is of several files".to_owned();
+            let remedy = "Name a file to write to".to_owned();
+            return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
+        }
+        let packs = self.sources()[0].packed.is_some();
+        self.put(0, points, packs, out).and_then(|()| out.flush()).map_err(|source| {
+            let remedy = "Write to a file instead".to_owned();
+            WriteError::Io { path: name.to_owned(), source, remedy }
+        })
+    }
+
+    /// Whether what is written to this path is to be compressed: its ending tells. Where a file was compressed without that
+    /// ending, any other name gets a compressed file too.
+    fn packs(&self, path: &Path) -> bool {
+        let source = &self.sources()[0];
+        let told_by_ending = packed::has_ending(path) || packed::has_ending(&source.path);
+        if told_by_ending { packed::has_ending(path) } else { source.packed.is_some() }
+    }
+
+    /// Writes one of the files.
+    fn put(
+        &self,
+        part: usize,
+        points: &[[f64; 2]],
+        packs: bool,
+        out: &mut (dyn Write + Send),
+    ) -> io::Result<()> {
+        let source = &self.sources()[part];
+        if !packs {
+            return self.put_plain(part, points, out);
+        }
+        match &source.packed {
+            // Another program may pack the same content into other bytes.
+            Some(packed) if self.is_unmoved(points) => out.write_all(packed),
+            _ => packed::pack(out, |out| self.put_plain(part, points, out)),
+        }
+    }
+
+    fn put_plain(
+        &self,
+        part: usize,
+        points: &[[f64; 2]],
+        out: &mut (dyn Write + Send),
+    ) -> io::Result<()> {
+        let bytes = &self.sources()[part].bytes;
+        // Only the first file holds vertices.
+        let x_at = if part == 0 { self.x_at() } else { &[] };
+        let (numbers, old) = (self.numbers(), &self.mesh().points);
+        let rewrite = |bytes| Rewrite { bytes, x_at, numbers, old, new: points };
+        match self.encoded().filter(|_| part == 0) {
+            None => rewrite(bytes).write(out),
+            Some(encoded) => rewrite(encoded.bytes()).write_encoded(bytes, encoded, out),
+        }
+    }
+
+    /// Whether these are the points that were read, in the digits of the file.
+    fn is_unmoved(&self, points: &[[f64; 2]]) -> bool {
+        let bits = |x: f64| self.precision().rounded(x).to_bits();
+        let mut pairs = points.iter().flatten().zip(self.mesh().points.iter().flatten());
+        pairs.all(|(&new, &old)| bits(new) == old.to_bits())
+    }
+
+    /// Checks, as far as is possible without writing, whether [`write`](Self::write) to `path` can work: that its ending
+    /// does not promise another format, that the directory exists and takes new files, and that no directory or
+    /// read-only file is in the way.
+    ///
+    /// # Errors
+    /// [`WriteError`] that says what is wrong.
+    pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
+        self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
+    }
+
+    /// The files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
+    ///
+    /// # Errors
+    /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
+    pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        let usual = Family::of(self.format()).endings[0];
+        let refused = |problem: String, remedy: String| {
+            Err(WriteError::Format { path: path.to_owned(), problem, remedy })
+        };
+        let ends_in_separator =
+            path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
+        // A device takes a single file, not the two or three of a Triangle mesh.
+        let is_device = path.exists() && !path.is_file() && self.sources().len() > 1;
+        if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
+            return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
+        }
+        if let Some(owner) = detect::owner_of_ending(path)
+            && !Family::of(self.format()).has_ending_of(path)
+        {
+            let problem =
+                format!("its ending is that of {owner}, but the mesh is {}", self.format());
+            return refused(problem, format!("Formats are not converted: end the name in {usual}"));
+        }
+        Ok(match self.format() {
+            Format::Triangle if packed::has_ending(path) => {
+                let problem =
+                    "a Triangle mesh is of several files, which are not written compressed";
+                return refused(problem.into(), "End the name in .node".into());
+            }
+            Format::Triangle => {
+                if path.is_file() && !TRIANGLE.has_ending_of(path) {
+                    let name = path.display();
+                    let problem = format!(
+                        "a file of this name is there, and would be read in place of {name}.node"
+                    );
+                    return refused(problem, "End the name in .node, or take another".into());
+                }
+                let Names { node, ele, poly } = Names::of(path);
+                if self.sources().len() == 2 && poly.exists() {
+                    let problem = format!(
+                        "{} of another mesh is there, and would be read with this one",
+                        poly.display()
+                    );
+                    return refused(problem, "Remove it, or take another name".into());
+                }
+                [node, ele, poly].into_iter().take(self.sources().len()).collect()
+            }
+            _ => vec![path.to_owned()],
+        })
+    }
+
+    fn check_points(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
+        let refused = |problem| Err(WriteError::Points { path: path.to_owned(), problem });
+        let vertices = self.mesh().points.len();
+        if points.len() != vertices {
+            return refused(format!("{} points given for {vertices} vertices", points.len()));
+        }
+        let precision = self.precision();
+        let is_finite = |&x: &f64| precision.rounded(x).is_finite();
+        match points.iter().position(|point| !point.iter().all(is_finite)) {
+            Some(index) => {
+                let [x, y] = points[index];
+                refused(format!("the point given for vertex index {index} is ({x}, {y})"))
+            }
+            None => Ok(()),
+        }
+    }
+}

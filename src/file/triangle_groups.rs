@@ -1,0 +1,117 @@
+//! What can be named in the files of the mesh generator Triangle: attributes of triangles, and the markers of vertices and
+//! segments.
+
+use crate::error::ReadError;
+use crate::file::group_table::GroupTable;
+use crate::file::label::Label;
+use crate::file::sink::Kind;
+use crate::file::source::Source;
+use crate::file::text::{Cursor, float};
+use crate::file::triangle::{Numbers, header, vertex_header, vertex_number};
+
+/// The groups of a mesh whose files were read before.
+pub(crate) fn groups(
+    node: &Source,
+    ele: &Source,
+    poly: Option<&Source>,
+) -> Result<GroupTable, ReadError> {
+    let mut table = GroupTable::default();
+    attributes(ele, &mut table)?;
+    let numbers = markers(node, &mut table)?;
+    if let Some(poly) = poly {
+        segments(poly, node, &numbers, &mut table)?;
+    }
+    Ok(table)
+}
+
+/// The label by a column of a row. Zero stands for no label where that is said.
+fn label(token: &[u8], zero_is_none: bool) -> Option<Label> {
+    match float(token) {
+        Some(0.0) if zero_is_none => None,
+        Some(number) => Some(Label::number(number)),
+        None => Some(Label::name(token)),
+    }
+}
+
+fn attributes(ele: &Source, table: &mut GroupTable) -> Result<(), ReadError> {
+    let cursor = &mut Cursor::new(ele);
+    header(cursor, "triangles")?;
+    let count = cursor.integer("the number of triangles")?;
+    cursor.integer_or(3, "the number of vertices per triangle")?;
+    let columns = cursor.integer_or(0, "the number of attributes per triangle")?;
+    let what = |column: u64| match columns {
+        1 => "attribute".to_owned(),
+        _ => format!("attribute{}", column + 1),
+    };
+    // The last label of each column and its group: mostly the next one is the same.
+    let mut last: Vec<(&[u8], usize)> = Vec::new();
+    for row in 0..count {
+        cursor.row(row, count, "triangles")?;
+        cursor.tokens(4);
+        for column in 0..columns {
+            let Some(token) = cursor.token() else { break };
+            let at = column as usize;
+            if last.get(at).is_none_or(|(before, _)| *before != token) {
+                let Some(label) = label(token, false) else { break };
+                let group = table.number(&what(column), 2, &label);
+                last.truncate(at);
+                last.push((token, group));
+            }
+            table.add_triangle(last[at].1, row as u32);
+        }
+    }
+    Ok(())
+}
+
+/// Finds the markers of vertices. Returns how they are numbered.
+fn markers(node: &Source, table: &mut GroupTable) -> Result<Numbers, ReadError> {
+    let cursor = &mut Cursor::new(node);
+    let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
+    let attributes = cursor.integer_or(0, "the number of attributes per vertex")?;
+    let marked = cursor.integer_or(0, "whether vertices have markers")? != 0;
+    for row in 0..numbers.count {
+        vertex_number(cursor, row, &mut numbers)?;
+        if !marked {
+            // The first number says how all are numbered.
+            break;
+        }
+        cursor.tokens(attributes.saturating_add(2));
+        if let Some(label) = cursor.token().and_then(|token| label(token, true)) {
+            let group = table.number("marker", 0, &label);
+            table.add_vertex(group, row as u32);
+        }
+    }
+    Ok(numbers)
+}
+
+fn segments(
+    poly: &Source,
+    node: &Source,
+    numbers: &Numbers,
+    table: &mut GroupTable,
+) -> Result<(), ReadError> {
+    let cursor = &mut Cursor::new(poly);
+    let mut own = Numbers { first: numbers.first, count: vertex_header(cursor)? };
+    for row in 0..own.count {
+        vertex_number(cursor, row, &mut own)?;
+    }
+    let ends = Numbers { first: own.first, count: numbers.count };
+    header(cursor, "segments")?;
+    let count = cursor.integer("the number of segments")?;
+    if cursor.integer_or(0, "whether segments have markers")? == 0 {
+        return Ok(());
+    }
+    for row in 0..count {
+        cursor.row(row, count, "segments")?;
+        let number = cursor.integer("the number of a segment")?;
+        let mut vertices = [0; 2];
+        for vertex in &mut vertices {
+            *vertex = ends.index(cursor, node, format_args!("segment {number}"))?;
+        }
+        if let Some(label) = cursor.token().and_then(|token| label(token, true)) {
+            let group = table.number("marker", 1, &label);
+            table.add(group, Kind::Line, &vertices);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! Choosing vertices by where they are in the mesh and how good their triangles are: what to let move, or to hold.
+//!
+//! ```
+//! use gpu_smooth::{Mesh, Topology, select};
+//!
+//! let mesh = Mesh {
+//!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.5]],
+//!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+//!     fixed: vec![],
+//! };
+//! let topology = Topology::new(&mesh)?;
+//! let bad = select::triangles_above(&mesh.points, &topology, 3.0);
+//! assert_eq!(bad, [1]);
+//! assert_eq!(select::vertices_near(&topology, &bad, 0), [1, 2, 4]);
+//! assert_eq!(select::vertices_near(&topology, &bad, 1), [0, 1, 2, 3, 4]);
+//! # Ok::<(), gpu_smooth::MeshError>(())
+//! ```
+
+use crate::metric::Corner;
+use crate::topology::Topology;
+
+/// The triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an equilateral
+/// triangle, and infinite for one that is flat or inverted, or not at finite `points`.
+///
+/// Points that are missing count as infinitely bad triangles.
+pub fn triangles_above(points: &[[f64; 2]], topology: &Topology<'_>, limit: f64) -> Vec<u32> {
+    let is_above = |corners: &[u32; 3]| inverse_mean_ratio(points, corners) > limit;
+    let triangles = (0..).zip(topology.triangles());
+    triangles.filter(|(_, corners)| is_above(corners)).map(|(triangle, _)| triangle).collect()
+}
+
+/// The largest inverse mean ratio of a triangle.
+pub fn worst(points: &[[f64; 2]], topology: &Topology<'_>) -> f64 {
+    let ratios = topology.triangles().iter().map(|corners| inverse_mean_ratio(points, corners));
+    ratios.fold(1.0, f64::max)
+}
+
+fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
+    let [Some(p), Some(q), Some(r)] = corners.map(|vertex| points.get(vertex as usize)) else {
+        return f64::INFINITY;
+    };
+    let to = |end: &[f64; 2]| [end[0] - p[0], end[1] - p[1]];
+    let ratio = Corner { a: to(q), b: to(r), mean_area: 1.0 }.inverse_mean_ratio();
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}
+
+/// The vertices of these triangles and of `rings` rings of triangles around them, ascending. Indices of no triangle are
+/// left out.
+pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> Vec<u32> {
+    let all = topology.triangles();
+    let mut found = vec![false; topology.free().len()];
+    let mut ring = Vec::new();
+    let mut add = |corners: &[u32; 3], ring: &mut Vec<u32>| {
+        for &vertex in corners {
+            if !std::mem::replace(&mut found[vertex as usize], true) {
+                ring.push(vertex);
+            }
+        }
+    };
+    for corners in triangles.iter().filter_map(|&triangle| all.get(triangle as usize)) {
+        add(corners, &mut ring);
+    }
+    for _ in 0..rings {
+        let mut next = Vec::new();
+        for &vertex in &ring {
+            for &triangle in topology.star(vertex) {
+                add(&all[triangle as usize], &mut next);
+            }
+        }
+        if next.is_empty() {
+            break;
+        }
+        ring = next;
+    }
+    indices(&found)
+}
+
+/// The vertices all of whose triangles are among these, ascending. Vertices of no triangle are not among them.
+pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
+    let all = topology.triangles();
+    let mut chosen = vec![false; all.len()];
+    for &triangle in triangles {
+        if let Some(chosen) = chosen.get_mut(triangle as usize) {
+            *chosen = true;
+        }
+    }
+    let mut inside = vec![false; topology.free().len()];
+    for (corners, _) in all.iter().zip(&chosen).filter(|(_, chosen)| **chosen) {
+        corners.iter().for_each(|&vertex| inside[vertex as usize] = true);
+    }
+    for (corners, _) in all.iter().zip(&chosen).filter(|(_, chosen)| !**chosen) {
+        corners.iter().for_each(|&vertex| inside[vertex as usize] = false);
+    }
+    indices(&inside)
+}
+
+/// The vertices at points in a box that two opposite corners span, on its sides too, ascending.
+pub fn vertices_in_box(points: &[[f64; 2]], corners: [[f64; 2]; 2]) -> Vec<u32> {
+    let [a, b] = corners;
+    let is_within = |axis: usize, x: f64| {
+        let (a, b) = (a[axis], b[axis]);
+        (a <= x && x <= b) || (b <= x && x <= a)
+    };
+    let is_inside = |&[x, y]: &[f64; 2]| is_within(0, x) && is_within(1, y);
+    let points = (0..).zip(points);
+    points.filter(|(_, point)| is_inside(point)).map(|(vertex, _)| vertex).collect()
+}
+
+/// The positions at which this holds.
+fn indices(flags: &[bool]) -> Vec<u32> {
+    (0..).zip(flags).filter(|(_, flag)| **flag).map(|(index, _)| index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    /// A strip of squares cut in two each: vertices 0 to 5 below, 6 to 11 above them, and one that no triangle uses.
+    fn strip() -> Mesh {
+        let point = |i: u32| [f64::from(i % 6), f64::from(i / 6)];
+        let square = |i: u32| [[i, i + 1, i + 7], [i, i + 7, i + 6]];
+        Mesh {
+            points: (0..13).map(point).collect(),
+            triangles: (0..5).flat_map(square).collect(),
+            fixed: vec![],
+        }
+    }
+
+    #[test]
+    fn rings_grow_by_neighbors() {
+        let mesh = strip();
+        let topology = Topology::new(&mesh).unwrap();
+        assert_eq!(vertices_near(&topology, &[0, 99], 0), [0, 1, 7]);
+        assert_eq!(vertices_near(&topology, &[0, 0], 1), [0, 1, 2, 6, 7, 8]);
+        assert_eq!(vertices_near(&topology, &[0], 2), [0, 1, 2, 3, 6, 7, 8, 9]);
+        assert_eq!(vertices_near(&topology, &[0], u32::MAX).len(), 12);
+        assert_eq!(vertices_near(&topology, &[], 3), []);
+    }
+
+    #[test]
+    fn inside_are_vertices_of_no_other_triangle() {
+        let mesh = strip();
+        let topology = Topology::new(&mesh).unwrap();
+        assert_eq!(vertices_inside(&topology, &[0, 1]), [0, 6]);
+        assert_eq!(vertices_inside(&topology, &[2, 3, 0, 1, 1, 77]), [0, 1, 6, 7]);
+        let all: Vec<u32> = (0..10).collect();
+        assert_eq!(vertices_inside(&topology, &all).len(), 12);
+        assert_eq!(vertices_inside(&topology, &[]), []);
+    }
+
+    #[test]
+    fn boxes_have_their_sides_whatever_corners_are_given() {
+        let points = strip().points;
+        for corners in
+            [[[1.0, 0.0], [3.0, 0.5]], [[3.0, 0.5], [1.0, 0.0]], [[1.0, 0.5], [3.0, 0.0]]]
+        {
+            assert_eq!(vertices_in_box(&points, corners), [1, 2, 3]);
+        }
+        assert_eq!(vertices_in_box(&points, [[f64::NAN, 0.0], [3.0, 0.5]]), []);
+    }
+
+    #[test]
+    fn bad_triangles_are_found_whatever_their_winding() {
+        let mut mesh = strip();
+        mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        // Right isosceles triangles have 2/√3 = 1.1547; one vertex is moved far along the strip.
+        mesh.points[2][0] = 2.9;
+        let topology = Topology::new(&mesh).unwrap();
+        // Two of its triangles come near to equilateral ones by that.
+        assert_eq!(triangles_above(&mesh.points, &topology, 1.15), [0, 1, 3, 4, 6, 7, 8, 9]);
+        assert_eq!(triangles_above(&mesh.points, &topology, 1.2), [4]);
+        assert_eq!(triangles_above(&mesh.points, &topology, 6.0), []);
+        let worst = worst(&mesh.points, &topology);
+        // Edges (0.1, 0), (0.1, 1) and (0, 1): (0.01 + 1.01 + 1) / (4 √3 · 0.05).
+        assert!((worst - 2.02 / (4.0 * 3f64.sqrt() * 0.05)).abs() < 1e-12, "{worst}");
+        assert_eq!(triangles_above(&[], &topology, 1e300).len(), 10);
+    }
+}

@@ -1,0 +1,41 @@
+//! `gpu-smooth groups`: what can be named in a file, as a table and as JSON.
+
+use super::Folder;
+
+/// A square of four triangles in two materials, with names.
+const SMS: &str = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .5 .5 0\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\n\
+                   E3T 3 3 4 5 2\nE3T 4 4 1 5 2\nNS 1 2 -3\nMAT 2 \"mud\"\n";
+
+#[test]
+fn groups_are_a_table() {
+    let folder = Folder::new(&[("in.2dm", SMS)]);
+    let expected = "in.2dm: SMS 2dm\n\
+                    group         what              tag  points  triangles  vertices\n\
+                    material:1    material surface    1       0          2         4\n\
+                    mud           material surface    2       0          2         4\n\
+                    nodestring:1  nodestring line     1       3          0         3\n";
+    assert_eq!(folder.line("groups in.2dm").clean().out, expected);
+    assert_eq!(folder.line("groups in.2dm --quiet").clean().out, expected);
+}
+
+#[test]
+fn groups_are_json_where_asked_for() {
+    let folder = Folder::new(&[("in.2dm", SMS)]);
+    let told: serde_json::Value =
+        serde_json::from_str(&folder.line("groups in.2dm --json").clean().out).unwrap();
+    assert_eq!((&told["file"], &told["format"]), (&"in.2dm".into(), &"SMS 2dm".into()));
+    let mud = serde_json::json!({
+        "group": "mud", "what": "material", "kind": "surface", "dimension": 2, "name": "mud", "tag": 2,
+        "points": 0, "lines": 0, "triangles": 2, "quadrilaterals": 0, "vertices": 4
+    });
+    assert_eq!(told["groups"][1], mud);
+    assert_eq!(told["groups"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn a_file_without_groups_says_so() {
+    let folder = Folder::new(&[("in.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")]);
+    let told = folder.line("groups in.off").clean().out;
+    assert_eq!(told, "in.off: OFF\nthe file names no groups\n");
+    folder.line("groups none.node").refused(&["none.node", "Check the name"]);
+}

@@ -1,0 +1,551 @@
+//! What can be named in a file of each format: groups, vertices by their numbers, arrays of point data.
+
+use super::Folder;
+use super::support::Binary;
+use gpu_smooth::{GroupError, Location, MeshFile, ReadError};
+use std::fs;
+
+// All of these are a square around a fifth vertex, of four triangles. The first two are of one region, the others of
+// another.
+
+const GMSH22: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"the shore\"\n2 1 \"sea # deep\"\n\
+2 9 \"empty\"\n$EndPhysicalNames\n$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 1 1 0\n40 0 1 0\n50 .5 .5 0\n$EndNodes\n$Elements\n6\n\
+1 1 2 1 7 10 20\n2 15 2 0 3 40\n3 2 2 1 7 10 20 50\n4 2 2 1 7 20 30 50\n5 2 3 2 8 1 30 40 50\n6 2 2 2 8 40 10 50\n\
+$EndElements\n";
+
+const NODES41: &str = "$Nodes\n1 5 1 5\n2 7 0 5\n10\n20\n30\n40\n50\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 .5 0\n$EndNodes\n";
+const ELEMENTS41: &str = "$Elements\n4 6 1 6\n1 7 1 1\n1 10 20\n0 3 15 1\n2 40\n2 7 2 2\n3 10 20 50\n4 20 30 50\n\
+2 8 2 2\n5 30 40 50\n6 40 10 50\n$EndElements\n";
+
+fn gmsh41() -> String {
+    let entities = "$Entities\n1 1 2 0\n3 0 1 0 0 \n7 0 0 0 1 0 0 1 -1 2 3 -4 \n7 0 0 0 1 1 0 2 1 2 1 7 \n\
+                    8 0 0 0 1 1 0 1 2 0 \n$EndEntities\n";
+    let names = "$PhysicalNames\n2\n1 1 \"the shore\"\n2 1 \"sea # deep\"\n$EndPhysicalNames\n";
+    format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{names}{entities}{NODES41}{ELEMENTS41}")
+}
+
+/// Entities 7 and 8 are parts of surface 1, curve 7 is part of curve 2, and point 3 is new.
+fn gmsh41_partitioned() -> String {
+    let entities = "$Entities\n0 1 1 0\n2 0 0 0 1 0 0 1 5 0\n1 0 0 0 1 1 0 1 6 0\n$EndEntities\n";
+    let parts = "$PartitionedEntities\n2\n1\n90 1\n1 1 2 0\n3 2 1 2 1 2 0 1 0 0\n7 1 2 1 1 0 0 0 1 0 0 1 5 0\n\
+                 7 2 1 1 1 0 0 0 1 1 0 1 6 0\n8 2 1 1 2 0 0 0 1 1 0 1 6 0\n$EndPartitionedEntities\n";
+    format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{entities}{parts}{NODES41}{ELEMENTS41}")
+}
+
+const GMSH40: &str = "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Entities\n0 1 1 0\n7 0 0 0 1 0 0 1 1 0\n\
+8 0 0 0 1 1 0 1 2 0\n$EndEntities\n$Nodes\n1 5\n7 2 0 5\n10 0 0 0\n20 1 0 0\n30 1 1 0\n40 0 1 0\n50 .5 .5 0\n$EndNodes\n\
+$Elements\n2 5\n7 1 1 1\n1 10 20\n8 2 2 4\n3 10 20 50\n4 20 30 50\n5 30 40 50\n6 40 10 50\n$EndElements\n";
+
+fn gmsh41_binary(big: bool) -> Vec<u8> {
+    let mut file = Binary::new("4.1", big);
+    file.text("$PhysicalNames\n1\n1 1 \"the shore\"\n$EndPhysicalNames\n$Entities\n");
+    file.sizes(&[1, 1, 2, 0]);
+    file.ints(&[3]);
+    file.doubles(&[0.0; 3]);
+    file.sizes(&[0]);
+    let mut entity = |tag: i32, physical: &[i32], bounds: &[i32]| {
+        file.ints(&[tag]);
+        file.doubles(&[0.0; 6]);
+        file.sizes(&[physical.len() as u64]);
+        file.ints(physical);
+        file.sizes(&[bounds.len() as u64]);
+        file.ints(bounds);
+    };
+    entity(7, &[-1], &[3, -4]);
+    entity(7, &[1, 2], &[7]);
+    entity(8, &[2], &[]);
+    file.text("\n$EndEntities\n$Nodes\n");
+    file.sizes(&[1, 5, 1, 5]);
+    file.ints(&[2, 7, 0]);
+    file.sizes(&[5, 10, 20, 30, 40, 50]);
+    file.doubles(&[0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0., 0.5, 0.5, 0.]);
+    file.text("\n$EndNodes\n$Elements\n");
+    file.sizes(&[4, 6, 1, 6]);
+    for (header, rows) in [
+        ([1, 7, 1], vec![1, 10, 20]),
+        ([0, 3, 15], vec![2, 40]),
+        ([2, 7, 2], vec![3, 10, 20, 50, 4, 20, 30, 50]),
+        ([2, 8, 2], vec![5, 30, 40, 50, 6, 40, 10, 50]),
+    ] {
+        file.ints(&header);
+        file.sizes(&[if header[0] == 2 { 2 } else { 1 }]);
+        file.sizes(&rows);
+    }
+    file.text("\n$EndElements\n");
+    file.bytes
+}
+
+const SU2: &str = "NDIME= 2\nNELEM= 4\n5 0 1 4\n5 1 2 4\n5 2 3 4\n5 3 0 4\nNPOIN= 5\n0 0\n1 0\n1 1\n0 1\n.5 .5\n\
+NMARK= 2\nMARKER_TAG= shore\nMARKER_ELEMS= 2\n3 0 1\n3 1 2\nSEND_RECV= 0\nMARKER_TAG= corner % one\nMARKER_ELEMS= 1\n1 3\n";
+
+const MEDIT: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n5\n0 0 3\n1 0 3\n1 1 0\n0 1 0\n.5 .5 0\n\
+Corners\n2\n1\n2\nEdges\n1\n1 2 3\nTriangles\n4\n1 2 5 0\n2 3 5 0\n3 4 5 -3\n4 1 5 -3\nRequiredVertices\n1\n5\nEnd\n";
+
+/// `last` is the keyword of a list and the number in it.
+fn meditb(last: [i32; 2]) -> Vec<u8> {
+    let mut file = Binary::empty(false);
+    // Each list has its keyword, the place of the next one and its length before it.
+    file.ints(&[1, 2, 3, 20, 2]);
+    let mut list = |keyword: i32, count: usize, body: &dyn Fn(&mut Binary)| {
+        let mut content = Binary::empty(false);
+        body(&mut content);
+        let next = file.bytes.len() + 12 + content.bytes.len();
+        file.ints(&[keyword, next as i32, count as i32]);
+        file.bytes.extend(content.bytes);
+    };
+    list(4, 5, &|file| {
+        for (at, reference) in
+            [([0., 0.], 3), ([1., 0.], 3), ([1., 1.], 0), ([0., 1.], 0), ([0.5; 2], 0)]
+        {
+            file.doubles(&at);
+            file.ints(&[reference]);
+        }
+    });
+    list(13, 2, &|file| file.ints(&[1, 2]));
+    list(5, 1, &|file| file.ints(&[1, 2, 3]));
+    list(6, 4, &|file| file.ints(&[1, 2, 5, 0, 2, 3, 5, 0, 3, 4, 5, -3, 4, 1, 5, -3]));
+    list(last[0], 1, &|file| file.ints(&last[1..]));
+    file.ints(&[54, 0]);
+    file.bytes
+}
+
+const FREEFEM: &str =
+    "5 4 1\n0 0 3\n1 0 3\n1 1 0\n0 1 0\n.5 .5 0\n1 2 5 0\n2 3 5 0\n3 4 5 -3\n4 1 5 -3\n1 2 3\n";
+
+const SMS: &str = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .5 .5 0\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\n\
+E3T 3 3 4 5 2\nE3T 4 4 1 5 2\nNS 1 2\nNS -3 \"the weir\"\nNS 4 -1\nMAT 2 \"mud\"\nMAT 1\n";
+
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\no a plate\nusemtl steel\ng left wet\nf 1 2 5\nf 2 3 5\n\
+l 1 2\nusemtl tin\ng\nf 3 4 5\nf 4 1 5\n";
+
+const VTK: &str = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n\
+0 0 0 1 0 0 1 1 0 0 1 0 .5 .5 0\nCELLS 5 19\n2 0 1\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\nCELL_TYPES 5\n3 5 5 5 5\n\
+POINT_DATA 5\nSCALARS hold int 1\nLOOKUP_TABLE default\n0 0 0 0 1\nVECTORS v float\n1 2 3 1 2 3 1 2 3 1 2 3 1 2 3\n\
+FIELD more 1\nweight 1 5 float\n1 2 3 4 5.5\nCELL_DATA 5\nSCALARS MaterialIDs float\nLOOKUP_TABLE default\n4 1.5 1.5 -2 -2\n";
+
+fn vtk_binary() -> Vec<u8> {
+    let mut file = Binary::empty(true);
+    file.text("# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 5 double\n");
+    file.doubles(&[0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0., 0.5, 0.5, 0.]);
+    file.text("\nPOLYGONS 4 16\n");
+    file.ints(&[3, 0, 1, 4, 3, 1, 2, 4, 3, 2, 3, 4, 3, 3, 0, 4]);
+    file.text("\nCELL_DATA 4\nSCALARS material unsigned_char 1\nLOOKUP_TABLE default\n");
+    file.bytes.extend([200, 200, 1, 1]);
+    file.text("\nPOINT_DATA 5\nSCALARS hold unsigned_short 1\nLOOKUP_TABLE default\n");
+    file.bytes.extend([0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff]);
+    file.text("\nFIELD more 1\nweight 1 5 float\n");
+    file.reals(gpu_smooth::Precision::Single, &[1., 2., 3., 4., 5.5]);
+    file.text("\n");
+    file.bytes
+}
+
+const VTU: &str = "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n\
+<Piece NumberOfPoints=\"5\" NumberOfCells=\"4\">\n<PointData>\n\
+<DataArray type=\"Int8\" Name=\"hold\" format=\"binary\">BQAAAAAAAAD/</DataArray>\n\
+<DataArray type=\"Float32\" Name=\"weight\" format=\"ascii\">1 2 3 4 5.5</DataArray>\n\
+<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">1 2 3 4 5 6 7 8 9 0</DataArray>\n\
+</PointData>\n<CellData>\n<DataArray type=\"Int32\" Name=\"medit:ref\" format=\"ascii\">7 7 -1 -1</DataArray>\n</CellData>\n\
+<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0 .5 .5 0</DataArray></Points>\n\
+<Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 4 1 2 4 2 3 4 3 0 4</DataArray>\n\
+<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6 9 12</DataArray>\n\
+<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 5 5 5</DataArray></Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\nproperty uchar hold\n\
+property float weight\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n\
+0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n.5 .5 1 5.5\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
+
+const NODE: &str = "5 2 1 1\n0 0 0 7.5 3\n1 1 0 7.5 3\n2 1 1 7.5 0\n3 0 1 7.5 0\n4 .5 .5 7.5 0\n";
+const ELE: &str = "4 3 2\n0 0 1 4 1 0\n1 1 2 4 1.0 0\n2 2 3 4 2.5 0\n3 3 0 4 2.5 land # dry\n";
+const POLY: &str = "0 2 0 1\n2 1\n1 0 1 3\n2 1 2 0\n";
+
+/// Every group as its spelling, what it is, how many points, lines, triangles and quadrilaterals it has, and its vertices.
+fn told(file: &MeshFile) -> Vec<String> {
+    let groups = file.groups().unwrap();
+    let spellings = groups.spellings();
+    let one = |(group, spelling): (&gpu_smooth::Group, &String)| {
+        assert_eq!(groups.find(spelling), Ok(group));
+        let counts = [group.points, group.lines, group.triangles().len(), group.quadrilaterals];
+        format!("{spelling} = {group}: {counts:?} {:?}", group.vertices())
+    };
+    groups.iter().zip(&spellings).map(one).collect()
+}
+
+#[track_caller]
+fn assert_groups(name: &str, bytes: &[u8], expected: &[&str]) {
+    let folder = Folder::new(&[]);
+    fs::write(folder.path(name), bytes).unwrap();
+    assert_eq!(told(&folder.read(name)), expected);
+}
+
+#[test]
+fn gmsh_has_physical_groups_and_entities() {
+    assert_groups(
+        "in.msh",
+        GMSH22.as_bytes(),
+        &[
+            "the shore = physical line the shore: [0, 1, 0, 0] [0, 1]",
+            "sea # deep = physical surface sea # deep: [0, 0, 2, 0] [0, 1, 2, 4]",
+            "2 = physical surface 2: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "empty = physical surface empty: [0, 0, 0, 0] []",
+            "3 = entity point 3: [1, 0, 0, 0] [3]",
+            "line:7 = entity line 7: [0, 1, 0, 0] [0, 1]",
+            "surface:7 = entity surface 7: [0, 0, 2, 0] [0, 1, 2, 4]",
+            "8 = entity surface 8: [0, 0, 2, 0] [0, 2, 3, 4]",
+        ],
+    );
+    // Without a dimension, as in version 2.0, a name is that of all groups of the tag.
+    let old = GMSH22.replace("1 1 \"the", "1 \"the").replace("2 1 \"sea", "5 \"sea");
+    let folder = Folder::new(&[("in.msh", &old)]);
+    assert_eq!(
+        told(&folder.read("in.msh"))[..2],
+        [
+            "line:the shore = physical line the shore: [0, 1, 0, 0] [0, 1]",
+            "surface:the shore = physical surface the shore: [0, 0, 2, 0] [0, 1, 2, 4]"
+        ]
+    );
+}
+
+#[test]
+fn gmsh_lists_the_physical_groups_of_entities_from_version_4_on() {
+    let entities = [
+        "3 = entity point 3: [1, 0, 0, 0] [3]",
+        "line:7 = entity line 7: [0, 1, 0, 0] [0, 1]",
+        "surface:7 = entity surface 7: [0, 0, 2, 0] [0, 1, 2, 4]",
+        "8 = entity surface 8: [0, 0, 2, 0] [0, 2, 3, 4]",
+    ];
+    // A curve may be in a group against its direction, and a surface in several.
+    let physical = [
+        "the shore = physical line the shore: [0, 1, 0, 0] [0, 1]",
+        "sea # deep = physical surface sea # deep: [0, 0, 2, 0] [0, 1, 2, 4]",
+        "2 = physical surface 2: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+    ];
+    assert_groups("in.msh", gmsh41().as_bytes(), &[&physical[..], &entities].concat());
+    let without_name = "surface:1 = physical surface 1: [0, 0, 2, 0] [0, 1, 2, 4]";
+    let physical = [physical[0], without_name, physical[2]];
+    for big in [false, true] {
+        assert_groups("in.msh", &gmsh41_binary(big), &[&physical[..], &entities].concat());
+    }
+    assert_groups(
+        "in.msh",
+        GMSH40.as_bytes(),
+        &[
+            "1 = physical line 1: [0, 1, 0, 0] [0, 1]",
+            "2 = physical surface 2: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+            "7 = entity line 7: [0, 1, 0, 0] [0, 1]",
+            "8 = entity surface 8: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+        ],
+    );
+    assert_groups(
+        "in.msh",
+        gmsh41_partitioned().as_bytes(),
+        &[
+            "5 = physical line 5: [0, 1, 0, 0] [0, 1]",
+            "6 = physical surface 6: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+            "3 = entity point 3: [1, 0, 0, 0] [3]",
+            "2 = entity line 2: [0, 1, 0, 0] [0, 1]",
+            "1 = entity surface 1: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+        ],
+    );
+}
+
+#[test]
+fn su2_has_markers_and_zones() {
+    let markers = [
+        "corner = marker point corner: [1, 0, 0, 0] [3]",
+        "shore = marker line shore: [0, 2, 0, 0] [0, 1, 2]",
+    ];
+    assert_groups("in.su2", SU2.as_bytes(), &markers);
+    let zones = format!("NZONE= 2\nIZONE= 1\n{SU2}IZONE= 2\n{}", SU2.replace("shore", "far"));
+    assert_groups(
+        "in.su2",
+        zones.as_bytes(),
+        &[
+            "1 = zone surface 1: [0, 0, 4, 0] [0, 1, 2, 3, 4]",
+            "2 = zone surface 2: [0, 0, 4, 0] [5, 6, 7, 8, 9]",
+            "corner = marker point corner: [2, 0, 0, 0] [3, 8]",
+            "shore = marker line shore: [0, 2, 0, 0] [0, 1, 2]",
+            "far = marker line far: [0, 2, 0, 0] [5, 6, 7]",
+        ],
+    );
+}
+
+#[test]
+fn medit_and_freefem_have_references_of_each_kind() {
+    let references = |what: &str| {
+        [
+            format!("point:3 = {what} point 3: [0, 0, 0, 0] [0, 1]"),
+            format!("line:3 = {what} line 3: [0, 1, 0, 0] [0, 1]"),
+            format!("-3 = {what} surface -3: [0, 0, 2, 0] [0, 2, 3, 4]"),
+            format!("0 = {what} surface 0: [0, 0, 2, 0] [0, 1, 2, 4]"),
+        ]
+    };
+    let mut medit = references("reference").to_vec();
+    medit.push("Corners = list point Corners: [2, 0, 0, 0] [0, 1]".into());
+    medit.push("RequiredVertices = list point RequiredVertices: [1, 0, 0, 0] [4]".into());
+    let medit: Vec<_> = medit.iter().map(String::as_str).collect();
+    assert_groups("in.mesh", MEDIT.as_bytes(), &medit);
+    assert_groups("in.meshb", &meditb([15, 5]), &medit);
+    let labels = references("label");
+    assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
+}
+
+/// As mmg leaves them alone.
+#[test]
+fn vertices_of_required_triangles_stay() {
+    let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n3\n3");
+    assert_ne!(text, MEDIT);
+    for (name, bytes) in [("in.mesh", text.into_bytes()), ("in.meshb", meditb([17, 3]))] {
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), bytes).unwrap();
+        let file = folder.read(name);
+        let mut fixed = file.mesh().fixed.clone();
+        fixed.sort_unstable();
+        fixed.dedup();
+        assert_eq!(fixed, [0, 1, 2, 3, 4], "{name}");
+        assert!(file.interface_vertices().is_empty(), "{name}");
+        assert_eq!(file.notes(), ["1 required triangle: its vertices stay fixed"]);
+        let list = "RequiredTriangles = list surface RequiredTriangles: [0, 0, 0, 0] [2, 3, 4]";
+        let told = told(&file);
+        assert!(told.contains(&list.to_owned()), "{told:?}");
+        let references = "-3 = reference surface -3: [0, 0, 2, 0] [0, 2, 3, 4]";
+        assert!(told.contains(&references.to_owned()), "{told:?}");
+    }
+    // A number of no triangle is none of ours to judge.
+    let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n1\n99");
+    let folder = Folder::new(&[("in.mesh", &text)]);
+    assert_eq!(folder.read("in.mesh").interface_vertices(), [4]);
+}
+
+#[test]
+fn materials_objects_and_node_strings_have_names() {
+    assert_groups(
+        "in.2dm",
+        SMS.as_bytes(),
+        &[
+            "material:1 = material surface 1: [0, 0, 2, 0] [0, 1, 2, 4]",
+            "mud = material surface mud: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "the weir = nodestring line the weir: [3, 0, 0, 0] [0, 1, 2]",
+            "nodestring:2 = nodestring line 2: [2, 0, 0, 0] [0, 3]",
+        ],
+    );
+    assert_groups(
+        "in.obj",
+        OBJ.as_bytes(),
+        &[
+            "steel = material surface steel: [2, 0, 2, 0] [0, 1, 2, 4]",
+            "tin = material surface tin: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "a plate = object surface a plate: [2, 0, 4, 0] [0, 1, 2, 3, 4]",
+            "left = group surface left: [2, 0, 2, 0] [0, 1, 2, 4]",
+            "wet = group surface wet: [2, 0, 2, 0] [0, 1, 2, 4]",
+        ],
+    );
+    let pentagon = OBJ.replace("f 4 1 5\n", "f 4 1 5\nf 1 2 3 4 5\n");
+    let folder = Folder::new(&[("in.obj", &pentagon)]);
+    let tin = "tin = material surface tin: [0, 0, 2, 0] [0, 1, 2, 3, 4]";
+    assert_eq!(told(&folder.read("in.obj"))[1], tin);
+}
+
+#[test]
+fn vtk_has_the_cell_data_that_tell_regions() {
+    assert_groups(
+        "in.vtk",
+        VTK.as_bytes(),
+        &[
+            "4 = MaterialIDs line 4: [0, 1, 0, 0] [0, 1]",
+            "1.5 = MaterialIDs surface 1.5: [0, 0, 2, 0] [0, 1, 2, 4]",
+            "-2 = MaterialIDs surface -2: [0, 0, 2, 0] [0, 2, 3, 4]",
+        ],
+    );
+    assert_groups(
+        "in.vtk",
+        &vtk_binary(),
+        &[
+            "1 = material surface 1: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "200 = material surface 200: [0, 0, 2, 0] [0, 1, 2, 4]",
+        ],
+    );
+    assert_groups(
+        "in.vtu",
+        VTU.as_bytes(),
+        &[
+            "-1 = medit:ref surface -1: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "7 = medit:ref surface 7: [0, 0, 2, 0] [0, 1, 2, 4]",
+        ],
+    );
+    let folder = Folder::new(&[("in.vtu", VTU)]);
+    assert_eq!(folder.read("in.vtu").regions(), Some(&[0, 0, 1, 1][..]));
+    assert_groups("in.ply", PLY.as_bytes(), &[]);
+}
+
+#[test]
+fn triangle_has_attributes_and_markers() {
+    let folder = Folder::new(&[("in.node", NODE), ("in.ele", ELE), ("in.poly", POLY)]);
+    assert_eq!(
+        told(&folder.read("in")),
+        [
+            "2.5 = attribute1 surface 2.5: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "1 = attribute1 surface 1: [0, 0, 2, 0] [0, 1, 2, 4]",
+            "land = attribute2 surface land: [0, 0, 1, 0] [0, 3, 4]",
+            "0 = attribute2 surface 0: [0, 0, 3, 0] [0, 1, 2, 3, 4]",
+            "point:3 = marker point 3: [0, 0, 0, 0] [0, 1]",
+            "line:3 = marker line 3: [0, 1, 0, 0] [0, 1]",
+        ]
+    );
+    let plain = Folder::new(&[
+        ("in.node", "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n"),
+        ("in.ele", "1 3 0\n1 1 2 3\n"),
+    ]);
+    assert!(plain.read("in").groups().unwrap().is_empty());
+}
+
+#[test]
+fn triangles_of_a_group_are_those_of_the_mesh() {
+    let folder = Folder::new(&[("in.msh", &gmsh41())]);
+    let groups = folder.read("in.msh").groups().unwrap();
+    assert_eq!(groups.find("physical:2").unwrap().triangles(), [0, 1, 2, 3]);
+    assert_eq!(groups.find("8").unwrap().triangles(), [2, 3]);
+    let Err(GroupError::Ambiguous { spellings, .. }) = groups.find("7") else { panic!() };
+    assert_eq!(spellings, ["line:7", "surface:7"]);
+    let error = groups.find("the shoer").unwrap_err();
+    assert!(
+        error.to_string().starts_with("no group is called 'the shoer'; there are the shore, "),
+        "{error}"
+    );
+}
+
+/// A mesh is read whatever its entities say, and groups are told or refused with a place.
+#[test]
+fn damaged_entities_are_refused_only_where_groups_are_asked_for() {
+    let text = gmsh41();
+    let damaged = text.replace("7 0 0 0 1 1 0 2 1 2 1 7", "7 0 0 0 1 1 0 9 1 2 1 7");
+    let folder = Folder::new(&[("in.msh", &damaged)]);
+    let file = folder.read("in.msh");
+    assert_eq!(file.mesh().triangles.len(), 4);
+    let Err(ReadError::Content { location, problem, .. }) = file.groups() else { panic!() };
+    assert_eq!((location, problem.as_str()), (Location::Line(13), "a physical group is missing"));
+    let nameless = text.replace("\"the shore\"", "shore");
+    let folder = Folder::new(&[("in.msh", &nameless)]);
+    let error = folder.read("in.msh").groups().unwrap_err().to_string();
+    assert!(error.contains("in.msh:6: a name without quotes"), "{error}");
+}
+
+#[test]
+fn no_damage_makes_the_search_for_groups_panic() {
+    let samples: [(&str, Vec<u8>); 9] = [
+        ("in.msh", gmsh41().into_bytes()),
+        ("in.msh", gmsh41_partitioned().into_bytes()),
+        ("in.msh", gmsh41_binary(false)),
+        ("in.msh", GMSH22.into()),
+        ("in.2dm", SMS.into()),
+        ("in.mesh", MEDIT.into()),
+        ("in.meshb", meditb([17, 3])),
+        ("in.vtk", vtk_binary()),
+        ("in.vtk", VTK.into()),
+    ];
+    let folder = Folder::new(&[]);
+    let mut read = 0;
+    for (name, bytes) in samples {
+        for at in (0..bytes.len()).step_by(bytes.len() / 40) {
+            let mut damaged = bytes.clone();
+            damaged[at] = [b'9', b'-', b'"', 0xff][at % 4];
+            fs::write(folder.path(name), &damaged).unwrap();
+            if let Ok(file) = MeshFile::read(&folder.path(name)) {
+                read += 1;
+                let vertices = file.mesh().points.len() as u32;
+                for group in file.groups().iter().flatten() {
+                    assert!(group.vertices().iter().all(|&v| v < vertices));
+                }
+                let _ = file.point_array("weight");
+            }
+        }
+    }
+    assert!(read > 80, "only {read} files were read");
+}
+
+#[test]
+fn point_data_have_a_number_a_vertex() {
+    let hold = [0.0, 0.0, 0.0, 0.0];
+    for (name, bytes, last) in [
+        ("in.vtk", VTK.as_bytes().to_vec(), 1.0),
+        ("in.vtk", vtk_binary(), 65535.0),
+        ("in.vtu", VTU.into(), -1.0),
+        ("in.ply", PLY.into(), 1.0),
+    ] {
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), bytes).unwrap();
+        let file = folder.read(name);
+        assert_eq!(file.point_array("hold").unwrap(), [&hold[..], &[last]].concat(), "{name}");
+        assert_eq!(file.point_array("weight").unwrap(), [1.0, 2.0, 3.0, 4.0, 5.5], "{name}");
+        let error = file.point_array("holt").unwrap_err().to_string();
+        assert!(error.contains("no point data is called 'holt'. There are hold, "), "{error}");
+    }
+    for (name, text) in [("in.vtk", VTK), ("in.vtu", VTU)] {
+        let folder = Folder::new(&[(name, text)]);
+        let error = folder.read(name).point_array("v").unwrap_err().to_string();
+        assert!(error.contains("numbers a point. Take an array of one number"), "{error}");
+        let short = text.replace("4 5.5", "4");
+        let folder = Folder::new(&[(name, &short)]);
+        let error = folder.read(name).point_array("weight").unwrap_err().to_string();
+        assert!(error.contains("in.vt"), "{error}");
+    }
+    let folder = Folder::new(&[("in.su2", SU2)]);
+    let error = folder.read("in.su2").point_array("hold").unwrap_err().to_string();
+    assert!(error.contains("The file has no point data"), "{error}");
+}
+
+#[test]
+fn vertices_are_listed_by_the_numbers_of_the_file() {
+    let list = "# two of them\n50 10\n\n 10 # again";
+    let folder = Folder::new(&[
+        ("in.msh", GMSH22),
+        ("list", list),
+        ("bad", "10\n\n20 77\n"),
+        ("word", "10 x\n"),
+    ]);
+    let file = folder.read("in.msh");
+    assert_eq!(file.read_vertices(&folder.path("list")).unwrap(), [4, 0, 0]);
+    let error = file.read_vertices(&folder.path("bad")).unwrap_err().to_string();
+    assert!(error.contains("bad:3: ") && error.contains("in.msh has no vertex 77"), "{error}");
+    assert!(error.ends_with("numbered from 10 to 50"), "{error}");
+    let error = file.read_vertices(&folder.path("word")).unwrap_err().to_string();
+    assert!(error.contains("word:1: ") && error.contains("`x`"), "{error}");
+    let error = file.read_vertices(&folder.path("none")).unwrap_err().to_string();
+    assert!(error.contains("none"), "{error}");
+
+    let from_zero =
+        [("in.node", NODE), ("in.ele", ELE), ("list", "4 0"), ("in.su2", SU2), ("in.mesh", MEDIT)];
+    let folder = Folder::new(&from_zero);
+    let list = folder.path("list");
+    assert_eq!(folder.read("in.node").read_vertices(&list).unwrap(), [4, 0]);
+    assert_eq!(folder.read("in.su2").read_vertices(&list).unwrap(), [4, 0]);
+    assert!(folder.read("in.mesh").read_vertices(&list).is_err(), "numbers start at one");
+}
+
+#[test]
+fn vertices_that_are_fixed_by_hand_are_not_between_regions() {
+    let folder = Folder::new(&[("in.vtu", VTU)]);
+    let read = || folder.read("in.vtu");
+    assert_eq!((read().mesh().fixed.as_slice(), read().interface_vertices()), (&[4][..], &[4][..]));
+    for free_first in [false, true] {
+        let mut file = read();
+        if free_first {
+            file.free_interfaces();
+        }
+        file.fix(&[4, 1, 4]).unwrap();
+        assert_eq!(file.mesh().fixed, [1, 4]);
+        assert!(file.interface_vertices().is_empty());
+        file.free_interfaces();
+        assert_eq!(file.mesh().fixed, [1, 4]);
+    }
+    let mut file = read();
+    file.fix(&[1]).unwrap();
+    file.fix_all_but(&[0, 4]).unwrap();
+    assert_eq!(
+        (file.mesh().fixed.as_slice(), file.interface_vertices()),
+        (&[1, 2, 3, 4][..], &[4][..])
+    );
+    file.free_interfaces();
+    assert_eq!(file.mesh().fixed, [1, 2, 3]);
+    assert!(file.fix(&[0, 5]).is_err() && file.fix_all_but(&[5]).is_err());
+    assert_eq!(file.mesh().fixed, [1, 2, 3]);
+}
