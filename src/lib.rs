@@ -87,6 +87,7 @@ mod error;
 mod file;
 pub mod gpu;
 mod layout;
+mod measure;
 mod mesh;
 mod metric;
 mod parallel;
@@ -116,6 +117,7 @@ pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,
 };
+pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, Stiffness, UnknownMetric};
 pub use quality::Quality;
