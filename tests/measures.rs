@@ -3,7 +3,9 @@
 #[path = "support/mod.rs"]
 mod support;
 
-use gpu_smooth::{Better, Measure, Measured, Mesh, Metric, QUANTILES, Statistics, Topology};
+use gpu_smooth::{
+    Better, Definition, Measure, Measured, Mesh, Metric, QUANTILES, Statistics, Topology,
+};
 use support::SplitMix64;
 
 fn value(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
@@ -353,6 +355,28 @@ fn histograms_worst_triangles_and_counts_are_those_of_the_values() {
     }
     assert_eq!(measured.histogram(Measure::Shape, &[]), Vec::<usize>::new());
     assert!(measured.value(Measure::Shape, mesh.triangles.len()).is_nan());
+}
+
+/// The table of docs/quality.md has a row for each measure, as its definition says, and no other.
+#[test]
+fn the_document_has_the_definitions() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/quality.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let (_, rest) = document.split_once("\n| measure | ").unwrap();
+    let told: Vec<&str> = rest.lines().skip(2).take_while(|line| line.starts_with('|')).collect();
+    let row = |measure: &Measure| {
+        let Definition { name, formula, range: [least, most], ideal, better, source, .. } =
+            measure.definition();
+        let formula = formula.replace('|', "\\|");
+        let most = if most.is_finite() { most.to_string() } else { "∞".into() };
+        let better = if better == Better::Higher { "higher" } else { "lower" };
+        let source = if source.contains("SAND2007-1751") { "Verdict" } else { source };
+        format!(
+            "| `{name}` | {formula} | {least} to {most} | {ideal}, {better} is better | {source} |"
+        )
+    };
+    let expected: Vec<String> = Measure::ALL.iter().map(row).collect();
+    assert_eq!(told, expected);
 }
 
 #[test]

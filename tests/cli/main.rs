@@ -14,6 +14,7 @@ mod interrupt;
 mod options;
 mod output;
 mod plate;
+mod quality;
 mod refusals;
 mod regions;
 mod report;

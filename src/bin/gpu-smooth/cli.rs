@@ -8,6 +8,8 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
 
+use crate::quality::QualityArgs;
+
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
 #[derive(Parser)]
@@ -47,7 +49,7 @@ pub(crate) struct OutputArgs {
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Tells how good a mesh is
+    /// Tells how good meshes are, and where they are worst
     Quality(QualityArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     Compare(CompareArgs),
@@ -97,15 +99,6 @@ pub(crate) struct BenchArgs {
     /// Seconds to measure for each line
     #[arg(long, default_value_t = 2.0, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
-    /// As JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Args)]
-pub(crate) struct QualityArgs {
-    /// The mesh
-    pub(crate) mesh: PathBuf,
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,

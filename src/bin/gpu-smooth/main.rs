@@ -7,6 +7,7 @@ mod engine;
 mod explain;
 mod interrupt;
 mod progress;
+mod quality;
 mod report;
 mod smooth;
 mod tell;
@@ -18,7 +19,7 @@ use cli::{Cli, Command};
 fn main() -> ExitCode {
     let cli = Cli::read();
     let done = match &cli.command {
-        Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
