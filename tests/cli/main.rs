@@ -13,6 +13,7 @@ mod formats;
 mod interrupt;
 mod options;
 mod output;
+mod picture;
 mod plate;
 mod quality;
 mod refusals;

@@ -8,6 +8,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
 
+use crate::picture::PictureArgs;
 use crate::quality::QualityArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
@@ -179,6 +180,8 @@ pub(crate) struct SmoothArgs {
     /// What f the report's history holds: the first metric's, or every metric's
     #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

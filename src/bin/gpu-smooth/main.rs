@@ -6,6 +6,7 @@ mod compare;
 mod engine;
 mod explain;
 mod interrupt;
+mod picture;
 mod progress;
 mod quality;
 mod report;

@@ -14,6 +14,7 @@ use crate::cli::{History, OutputArgs, SmoothArgs};
 use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
+use crate::picture::{self, Shot};
 use crate::progress::Bar;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds};
 use crate::tell;
@@ -88,6 +89,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             seconds,
         };
         write_report(args, &report)
+            .and_then(|()| draw(args, &file, &smoother, &outcome))
             .map_err(|problem| format!("{problem}. The mesh was written"))?;
         if show.verbose {
             for sweep in &report.history {
@@ -145,13 +147,15 @@ fn smooth(
 /// Refuses destinations that cannot be written before the work is done.
 fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
     file.check_destination(out).map_err(|error| error.to_string())?;
-    let Some(report) = &args.report else { return Ok(()) };
     let written = file.destinations(out).map_err(|error| error.to_string())?;
-    let mut of_meshes = file.paths().chain(written.iter().map(PathBuf::as_path));
+    let of_meshes = || file.paths().chain(written.iter().map(PathBuf::as_path));
+    let report = args.report.as_deref();
+    picture::check(&args.picture, of_meshes().chain(report))?;
+    let Some(report) = report else { return Ok(()) };
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
         .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
-    if is_mesh || of_meshes.any(|path| output::same_file(path, report)) {
+    if is_mesh || of_meshes().any(|path| output::same_file(path, report)) {
         let name = report.display();
         return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
     }
@@ -176,6 +180,18 @@ fn refusal(args: &SmoothArgs, file: &MeshFile, error: &MeshError) -> String {
         Ok(()) => message,
         Err(problem) => format!("{message}\n  {problem}"),
     }
+}
+
+/// Draws the picture that was asked for: before and after.
+fn draw(
+    args: &SmoothArgs,
+    file: &MeshFile,
+    smoother: &Smoother<'_>,
+    outcome: &Outcome,
+) -> Result<(), String> {
+    let shot = |title: &str, points| Shot { title: title.to_owned(), points };
+    let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
+    picture::write(&args.picture, file, smoother.topology(), &shots)
 }
 
 fn told(error: impl std::error::Error) -> String {

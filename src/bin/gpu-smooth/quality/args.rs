@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::Args;
 use gpu_smooth::{Better, Measure};
 
+use crate::picture::PictureArgs;
+
 #[derive(Args)]
 pub(crate) struct QualityArgs {
     /// The meshes; several are told side by side
@@ -39,6 +41,8 @@ pub(crate) struct QualityArgs {
     /// Draw in ASCII, as is done anyway where standard output is not a terminal
     #[arg(long)]
     pub(crate) ascii: bool,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 /// Values of a measure that no triangle may have.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 
 use crate::quality::sheet::Histogram;
-use crate::quality::text::five;
+use crate::report::five;
 
 /// How to draw.
 pub(crate) struct Style {
@@ -49,7 +49,7 @@ pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
         return text;
     };
     let digits = most.to_string().len().max(5);
-    let columns = style.width.saturating_sub(2 + 7 + 3 + 7 + 2 + digits + 2 + 6 + 2);
+    let columns = style.width.saturating_sub(2 + 7 + 1 + 10 + 2 + digits + 2 + 6 + 2);
     for (i, &count) in counts.iter().enumerate().take(last + 1).skip(first) {
         let to = match edges[i + 1] {
             to if to.is_finite() => format!("to {:<7}", edge(to)),

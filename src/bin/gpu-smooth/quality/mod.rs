@@ -9,13 +9,22 @@ mod text;
 
 pub(crate) use args::QualityArgs;
 
+use std::path::PathBuf;
+
 use bars::Style;
 use sheet::Sheet;
 
+use crate::picture;
 use crate::tell;
 
 /// Tells how good meshes are. An error if one cannot be read, or if a triangle is what none may be.
 pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
+    if let Some(picture) = &args.picture.picture {
+        if args.meshes.len() > 1 {
+            return Err(format!("{}: a picture is of one mesh: give one", picture.display()));
+        }
+        picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
+    }
     let style = Style::of_terminal(args.ascii);
     let sheets = args.meshes.iter().map(|path| Sheet::of(path, args));
     let sheets = sheets.collect::<Result<Vec<_>, _>>()?;

@@ -7,6 +7,7 @@ use gpu_smooth::{
 };
 
 use crate::explain::{self, BadTriangleReport};
+use crate::picture::{self, Shot};
 use crate::quality::args::{QualityArgs, Threshold};
 use crate::quality::bins;
 use crate::report::QualityReport;
@@ -85,6 +86,8 @@ impl Sheet {
         let quality = Quality::of(&mesh.points, &topology).map_err(refused)?;
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
         let measured = Measured::new(&mesh.points, &topology).map_err(refused)?;
+        let title = path.file_name().unwrap_or_default().display().to_string();
+        picture::write(&args.picture, &file, &topology, &[Shot { title, points: &mesh.points }])?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
