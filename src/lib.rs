@@ -28,7 +28,8 @@
 //!
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
 //! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
-//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files.
+//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files. [`Measured`] tells how good triangles
+//! are by each [`Measure`] of the field, and [`Quality`] what smoothing has made of a mesh.
 //!
 //! # Inside an application
 //!

@@ -225,3 +225,34 @@ fn range(chunk: usize, selection: Selection<'_>) -> Range<usize> {
     let end = selection.len();
     (chunk * CHUNK).min(end)..((chunk + 1) * CHUNK).min(end)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::topology::Topology;
+
+    /// Where a sample was wrong, a list of all values takes its place.
+    #[test]
+    fn a_wrong_sample_changes_nothing() {
+        let points = (0..31 * 31).map(|i| {
+            let (x, y) = (f64::from(i % 31), f64::from(i / 31));
+            [x + 0.3 * (1.7 * x * y).sin(), y + 0.3 * (2.3 * x + y * y).cos()]
+        });
+        let squares = (0..30 * 30).map(|i| i / 30 * 31 + i % 30);
+        let halves = squares.flat_map(|a| [[a, a + 1, a + 32], [a, a + 32, a + 31]]);
+        let mesh = Mesh { points: points.collect(), triangles: halves.collect(), fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        let measured = Measured::new(&mesh.points, &topology).unwrap();
+        let all = Selection::All(measured.count());
+        let found = &measured.statistics(&[Measure::Shape])[0];
+        let ranks = QUANTILES.map(|share| rank(share, found.count));
+        assert_eq!(measured.ranked(Measure::Shape, all, ranks), found.quantiles);
+        // A sample of other values, which are all too high.
+        let bracket = Bracket::new(&[key(7.0); 100], 0.5);
+        let brackets = [bracket.clone(), bracket.clone(), bracket];
+        let wrong = Tally { moments: Moments::NONE, brackets };
+        let tally = measured.tallies(&[Measure::Shape], all, &[wrong]).remove(0);
+        assert_eq!(measured.conclude(Measure::Shape, all, tally), *found);
+    }
+}

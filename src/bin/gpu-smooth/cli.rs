@@ -23,7 +23,7 @@ use crate::quality::QualityArgs;
                   fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
-                  gpu-smooth coast.msh better.msh\n  \
+                  gpu-smooth coast.msh better.msh --picture better.png\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
                   gpu-smooth quality better.msh\n  \
                   gpu-smooth bench"

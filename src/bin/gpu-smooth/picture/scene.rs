@@ -60,8 +60,14 @@ impl Scene<'_> {
             for (number, &(t, _)) in (1..).zip(&spots) {
                 let at = place.frame.place(self.middle(panel, t));
                 worst(at, text, canvas);
-                let beside = [at[0] + 0.85 * text, at[1] - 0.5 * text];
-                canvas.text(beside, 0.8 * text, Anchor::Start, &number.to_string());
+                // On the left where the picture ends on the right.
+                let is_last = at[0] + 2.0 * text > layout.size[0] as f32;
+                let (aside, anchor) = match is_last {
+                    true => (-0.85 * text, Anchor::End),
+                    false => (0.85 * text, Anchor::Start),
+                };
+                let beside = [at[0] + aside, at[1] - 0.5 * text];
+                canvas.text(beside, 0.8 * text, anchor, &number.to_string());
             }
             for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
                 let [[left, top], [right, _]] = corners;
@@ -230,8 +236,8 @@ fn boundary_width(text: f32) -> f32 {
 
 /// A white line on a black one.
 fn between_regions(segments: &[[Point; 2]], text: f32, canvas: &mut dyn Canvas) {
-    canvas.lines(segments, text / 5.0, BLACK, 1.0);
-    canvas.lines(segments, text / 12.0, WHITE, 1.0);
+    canvas.lines(segments, (text / 5.0).max(3.5), BLACK, 1.0);
+    canvas.lines(segments, (text / 12.0).max(1.5), WHITE, 1.0);
 }
 
 /// A frame around an inset.

@@ -168,3 +168,39 @@ impl Canvas for Svg {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(count: usize) -> String {
+        let mut canvas = Svg::new(40, 30).unwrap();
+        let triangle = [[1.0, 2.0], [9.0, 2.0], [9.0, 12.0]];
+        canvas.faces([[0.0, 0.0], [20.0, 20.0]], &mut [(triangle, 0.5)].into_iter(), count);
+        canvas.text([1.0, 1.0], 9.0, Anchor::End, "a<b>\u{7}&");
+        String::from_utf8(Box::new(canvas).finish().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn few_triangles_are_paths() {
+        let text = drawn(MOST_TRIANGLES);
+        assert!(text.contains("d=\"M1 2L9 2 9 12Z\"") && !text.contains("<image"), "{text}");
+        assert!(text.contains(">a&lt;b&gt;&amp;</text>"), "{text}");
+    }
+
+    #[test]
+    fn many_triangles_are_a_picture() {
+        let text = drawn(MOST_TRIANGLES + 1);
+        assert!(text.contains("<image x=\"0\" y=\"0\" width=\"20\" height=\"20\""), "{text}");
+        let (_, data) = text.split_once("base64,").unwrap();
+        let bytes = BASE64_STANDARD.decode(&data[..data.find('"').unwrap()]).unwrap();
+        let picture = tiny_skia::Pixmap::decode_png(&bytes).unwrap();
+        assert_eq!((picture.width(), picture.height()), (20, 20));
+        // Inside the triangle and beside it.
+        assert_eq!(
+            [picture.pixel(8, 5), picture.pixel(2, 11)].map(|p| p.unwrap().alpha()),
+            [255, 0]
+        );
+        assert!(!text.contains("<path"), "{text}");
+    }
+}
