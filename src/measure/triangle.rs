@@ -2,9 +2,8 @@
 
 use std::cell::OnceCell;
 
-use robust::{Coord, orient2d};
-
 use crate::metric::{Corner, Metric};
+use crate::topology::predicates::orientation;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
@@ -91,12 +90,11 @@ impl Triangle {
             return Self::point(size_ratio);
         }
         let shrink = 1.0 / power_of_two(size);
-        let [p, q, r] = points.map(|[x, y]| Coord { x, y });
         let edges = edges.map(|edge| edge.map(|x| x * shrink));
         Self {
             edges,
             lengths: edges.map(length),
-            doubled_area: orient2d(p, q, r) * shrink * shrink,
+            doubled_area: orientation(&points, &[0, 1, 2]) * shrink * shrink,
             mean_area,
             per_unit: per_unit * shrink,
             angles: OnceCell::new(),
