@@ -191,7 +191,7 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
     }
     for (line, part) in [
         ("in out --picture-size 900", "--picture <FILE>"),
-        ("quality in --picture p.png --picture-size 20", "400..=16000"),
+        ("quality in --picture p.png --picture-size 20", "400..=8000"),
         ("quality in --picture p.png --picture-measure round", "no measure is called 'round'"),
     ] {
         let run = finish(folder.command().args(line.split(' ')));

@@ -26,7 +26,7 @@ pub(crate) struct PictureArgs {
         default_value_t = 1600,
         requires = "picture",
         help_heading = "Picture",
-        value_parser = clap::value_parser!(u32).range(400..=16_000)
+        value_parser = clap::value_parser!(u32).range(400..=8000)
     )]
     pub(crate) picture_size: u32,
 }
