@@ -29,7 +29,8 @@
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
 //! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
 //! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; what may move is
-//! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]).
+//! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]). [`Measured`] tells how good triangles
+//! are by each [`Measure`] of the field, and [`Quality`] what smoothing has made of a mesh.
 //!
 //! # Inside an application
 //!
@@ -88,6 +89,7 @@ mod error;
 mod file;
 pub mod gpu;
 mod layout;
+mod measure;
 mod mesh;
 mod metric;
 mod parallel;
@@ -123,6 +125,7 @@ pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,
 };
+pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, Stiffness, UnknownMetric};
 pub use quality::Quality;

@@ -187,7 +187,7 @@ fn data_flows_one_way() {
     assert!(used_by("mesh").is_empty());
     assert!(used_by("error").is_empty());
     assert!(used_by("metric").is_empty());
-    for room in ["file", "topology", "layout", "run"] {
+    for room in ["file", "topology", "layout", "measure", "run"] {
         for place in ["cpu", "gpu", "smoother"] {
             assert!(!used_by(room).contains(&place), "{room} may not use {place}");
         }

@@ -9,6 +9,9 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
 
+use crate::picture::PictureArgs;
+use crate::quality::QualityArgs;
+
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
 #[derive(Parser)]
@@ -21,7 +24,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme,
                   fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
-                  gpu-smooth coast.msh better.msh\n  \
+                  gpu-smooth coast.msh better.msh --picture better.png\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
                   gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
                   gpu-smooth quality better.msh\n  \
@@ -49,7 +52,7 @@ pub(crate) struct OutputArgs {
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Tells how good a mesh is
+    /// Tells how good meshes are, and where they are worst
     Quality(QualityArgs),
     /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
     Groups(GroupsArgs),
@@ -110,15 +113,6 @@ pub(crate) struct BenchArgs {
     /// Seconds to measure for each line
     #[arg(long, default_value_t = 2.0, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
-    /// As JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Args)]
-pub(crate) struct QualityArgs {
-    /// The mesh
-    pub(crate) mesh: PathBuf,
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -205,6 +199,8 @@ pub(crate) struct SmoothArgs {
     /// What f the report's history holds: the first metric's, or every metric's
     #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

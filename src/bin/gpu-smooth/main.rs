@@ -8,7 +8,9 @@ mod explain;
 mod groups;
 mod interrupt;
 mod moving;
+mod picture;
 mod progress;
+mod quality;
 mod report;
 mod smooth;
 mod streams;
@@ -22,7 +24,7 @@ use cli::{Cli, Command};
 fn main() -> ExitCode {
     let cli = Cli::read();
     let done = match &cli.command {
-        Some(Command::Quality(args)) => tell::quality(args),
+        Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),

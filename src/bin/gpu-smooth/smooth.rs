@@ -15,6 +15,7 @@ use crate::engine::{self, Taken};
 use crate::explain;
 use crate::interrupt;
 use crate::moving::Choice;
+use crate::picture::{self, Shot};
 use crate::progress::Bar;
 use crate::report::{
     self, EngineReport, GoalReport, MeshReport, Refusal, Report, Seconds, UntangleReport,
@@ -108,6 +109,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             seconds,
         };
         write_report(args, &report)
+            .and_then(|()| draw(args, &file, &smoother, &outcome))
             .map_err(|problem| format!("{problem}. The mesh was written"))?;
         let say = |text: &str| streams::say_beside(out, text);
         if show.verbose {
@@ -187,12 +189,14 @@ fn check_destinations(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<
             file.destinations(out).map_err(told)?
         }
     };
-    let Some(report) = &args.report else { return Ok(()) };
-    let mut of_meshes = file.paths().chain(written.iter().map(PathBuf::as_path));
+    let of_meshes = || file.paths().chain(written.iter().map(PathBuf::as_path));
+    let report = args.report.as_deref();
+    picture::check(&args.picture, of_meshes().chain(report))?;
+    let Some(report) = report else { return Ok(()) };
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
         .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
-    if is_mesh || of_meshes.any(|path| output::same_file(path, report)) {
+    if is_mesh || of_meshes().any(|path| output::same_file(path, report)) {
         let name = report.display();
         return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
     }
@@ -220,6 +224,18 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
         Ok(()) => message,
         Err(problem) => format!("{message}\n  {problem}"),
     }
+}
+
+/// Draws the picture that was asked for: before and after.
+fn draw(
+    args: &SmoothArgs,
+    file: &MeshFile,
+    smoother: &Smoother<'_>,
+    outcome: &Outcome,
+) -> Result<(), String> {
+    let shot = |title: &str, points| Shot { title: title.to_owned(), points };
+    let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
+    picture::write(&args.picture, file, smoother.topology(), &shots)
 }
 
 fn told(error: impl std::error::Error) -> String {

@@ -4,13 +4,9 @@
 use std::io::{ErrorKind, IsTerminal, Write};
 
 use gpu_smooth::gpu::AdapterSummary;
-use gpu_smooth::{GpuError, MeshFile, Metric, Quality, Topology};
+use gpu_smooth::{GpuError, MeshFile, Metric};
 
-use crate::cli::QualityArgs;
 use crate::engine::INSTALL;
-use crate::explain;
-use crate::report::{QualityReport, six};
-use crate::smooth::read;
 
 /// Prints what the user asked for. A reader that went away, as `head` does, is no error; a disk that
 /// is full ends the process.
@@ -60,51 +56,6 @@ pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
         )),
     }
     remarks
-}
-
-/// `gpu-smooth quality MESH`.
-pub(crate) fn quality(args: &QualityArgs) -> Result<(), String> {
-    let file = read(&args.mesh)?;
-    let mesh = file.mesh();
-    let refused = |error| explain::mesh_error(&file, &error);
-    let topology = Topology::new(mesh).map_err(refused)?;
-    let quality = Quality::of(&mesh.points, &topology).map_err(refused)?;
-    let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
-    let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
-    let free = topology.free_count();
-    if args.json {
-        let mut value =
-            serde_json::to_value(QualityReport::from(&quality)).map_err(|e| e.to_string())?;
-        value["vertices"] = vertices.into();
-        value["triangles"] = triangles.into();
-        value["free"] = free.into();
-        let bad = explain::bad_triangles(&file, &bad);
-        value["bad_triangles"] = serde_json::to_value(bad).map_err(|e| e.to_string())?;
-        say(&format!("{value:#}"));
-        return Ok(());
-    }
-    say(&format!("{}: {}", args.mesh.display(), file.format()));
-    remarks(&file).iter().for_each(|remark| say(remark));
-    say(&format!("{vertices} vertices ({free} free), {triangles} triangles\n"));
-    for &metric in Metric::ALL {
-        say(&format!("{:<22}{:>12}", format!("f {metric}"), six(quality.f(metric))));
-    }
-    say(&format!("{:<22}{:>11.2}°", "min angle", quality.min_angle));
-    say(&format!("{:<22}{:>11.2}°", "max angle", quality.max_angle));
-    let worst = file.triangle_place(quality.worst_triangle);
-    let at = format!("  triangle {} ({worst})", worst.label);
-    say(&format!("{:<22}{:>12}{at}", "worst imr", six(quality.worst_imr)));
-    if free > 0 && quality.worst_movable_imr < quality.worst_imr {
-        let movable = six(quality.worst_movable_imr);
-        say(&format!(
-            "{:<22}{movable:>12}  among triangles with a free vertex",
-            "worst imr movable"
-        ));
-    }
-    let first = explain::bad_triangles(&file, &bad[..bad.len().min(explain::TOLD)]);
-    let list = explain::list(&first, bad.len(), "--json");
-    say(&format!("{:<22}{:>12}{list}", "inverted or flat", quality.inverted));
-    Ok(())
 }
 
 /// `gpu-smooth adapters`.

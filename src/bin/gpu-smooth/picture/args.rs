@@ -1,0 +1,32 @@
+//! The options of pictures, which commands share.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use gpu_smooth::Measure;
+
+#[derive(Args)]
+pub(crate) struct PictureArgs {
+    /// Draw the mesh, colored by its quality, as .png or .svg
+    #[arg(long, value_name = "FILE", help_heading = "Picture")]
+    pub(crate) picture: Option<PathBuf>,
+    /// The measure of the colors (see `gpu-smooth quality --help`)
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "shape",
+        requires = "picture",
+        help_heading = "Picture"
+    )]
+    pub(crate) picture_measure: Measure,
+    /// The width of the picture in pixels
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 1600,
+        requires = "picture",
+        help_heading = "Picture",
+        value_parser = clap::value_parser!(u32).range(400..=8000)
+    )]
+    pub(crate) picture_size: u32,
+}

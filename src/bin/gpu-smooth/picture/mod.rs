@@ -1,0 +1,113 @@
+//! `--picture`: a mesh colored by its quality, before and after a run.
+
+mod args;
+mod canvas;
+mod color;
+mod font;
+mod layout;
+mod outlines;
+mod png;
+mod raster;
+mod scene;
+mod svg;
+
+pub(crate) use args::PictureArgs;
+
+use std::path::Path;
+
+use canvas::Canvas;
+use gpu_smooth::{Measured, MeshError, MeshFile, Topology, output};
+use outlines::Outlines;
+use scene::{Panel, Scene};
+
+use crate::report::five;
+
+/// Among so many of the worst triangles, some are marked that are apart from each other.
+const CANDIDATES: usize = 1000;
+
+/// The vertices of a mesh at some time.
+pub(crate) struct Shot<'a> {
+    pub(crate) title: String,
+    pub(crate) points: &'a [[f64; 2]],
+}
+
+/// The kinds of picture files.
+enum Kind {
+    Png,
+    Svg,
+}
+
+fn kind(path: &Path) -> Result<Kind, String> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    match ending.as_deref() {
+        Some("png") => Ok(Kind::Png),
+        Some("svg") => Ok(Kind::Svg),
+        _ => Err(format!("{}: a picture is .png or .svg. End its name so", path.display())),
+    }
+}
+
+/// Refuses a picture that cannot be written, or would replace one of these files, before there is anything to draw.
+pub(crate) fn check<'p>(
+    args: &PictureArgs,
+    mut others: impl Iterator<Item = &'p Path>,
+) -> Result<(), String> {
+    let Some(path) = &args.picture else { return Ok(()) };
+    kind(path)?;
+    if others.any(|other| output::same_file(other, path)) {
+        return Err(format!("{}: the picture would replace this file", path.display()));
+    }
+    output::check(path).map_err(|error| format!("the picture cannot be written: {error}"))
+}
+
+/// Draws the picture that was asked for, with a panel for each shot, all on one scale.
+pub(crate) fn write(
+    args: &PictureArgs,
+    file: &MeshFile,
+    topology: &Topology<'_>,
+    shots: &[Shot<'_>],
+) -> Result<(), String> {
+    let Some(path) = &args.picture else { return Ok(()) };
+    let failed = |problem: String| format!("the picture was not written: {problem}");
+    let panels = shots.iter().map(|shot| panel(args, topology, shot));
+    let panels =
+        panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
+    let scene = Scene {
+        measure: args.picture_measure,
+        triangles: topology.triangles(),
+        outlines: Outlines::of(topology, &file.mesh().fixed, file.regions()),
+        panels,
+    };
+    let layout = scene.layout(args.picture_size);
+    let [width, height] = layout.size;
+    let canvas = match kind(path)? {
+        Kind::Png => png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>),
+        Kind::Svg => svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>),
+    };
+    let mut canvas = canvas.map_err(failed)?;
+    scene.draw(&layout, canvas.as_mut());
+    let bytes = canvas.finish().map_err(failed)?;
+    output::replace(path, &bytes).map_err(|error| failed(error.to_string()))
+}
+
+fn panel<'a>(
+    args: &PictureArgs,
+    topology: &Topology<'_>,
+    shot: &Shot<'a>,
+) -> Result<Panel<'a>, MeshError> {
+    let measure = args.picture_measure;
+    let measured = Measured::new(shot.points, topology)?;
+    let mut goodness: Vec<f32> = Vec::with_capacity(measured.count());
+    goodness
+        .extend(measured.values(measure).into_iter().map(|value| color::goodness(measure, value)));
+    for bad in topology.bad_triangles(shot.points)? {
+        goodness[bad.triangle] = -1.0;
+    }
+    let unit = measure.definition().unit;
+    let statistics = measured.statistics(&[measure]);
+    let numbers = statistics.first().map_or(String::new(), |s| {
+        let [min, mean, max] = [s.min, s.mean, s.max].map(five);
+        format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
+    });
+    let worst = measured.worst(measure, CANDIDATES);
+    Ok(Panel { title: [shot.title.clone(), numbers], points: shot.points, goodness, worst })
+}

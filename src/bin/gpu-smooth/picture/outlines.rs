@@ -1,0 +1,51 @@
+//! The lines of a mesh: edges inside it, its boundary, lines between regions, and vertices that are held.
+
+use gpu_smooth::Topology;
+
+/// What is drawn of a mesh besides its triangles, by its vertices. The same before and after a run.
+pub(crate) struct Outlines {
+    /// Edges of one triangle.
+    pub(crate) boundary: Vec<[u32; 2]>,
+    /// Edges of two triangles of different regions.
+    pub(crate) between_regions: Vec<[u32; 2]>,
+    /// Vertices inside the mesh that must not move.
+    pub(crate) held: Vec<u32>,
+}
+
+impl Outlines {
+    /// Of a mesh with a list of fixed vertices and, if there are several, the region of each triangle.
+    pub(crate) fn of(topology: &Topology<'_>, fixed: &[u32], regions: Option<&[u32]>) -> Self {
+        let boundary = topology.boundary_edges();
+        let mut is_outer = vec![false; topology.free().len()];
+        boundary.iter().flatten().for_each(|&v| is_outer[v as usize] = true);
+        let mut held: Vec<u32> = fixed.iter().copied().filter(|&v| !is_outer[v as usize]).collect();
+        held.sort_unstable();
+        held.dedup();
+        let between_regions = regions.map(|regions| between(topology, regions)).unwrap_or_default();
+        Self { boundary, between_regions, held }
+    }
+}
+
+/// The edges between triangles of different regions.
+fn between(topology: &Topology<'_>, regions: &[u32]) -> Vec<[u32; 2]> {
+    let triangles = topology.triangles();
+    let across = |t: usize, [a, b]: [u32; 2]| {
+        let (star_a, star_b) = (topology.star(a), topology.star(b));
+        let (star, end) = if star_a.len() <= star_b.len() { (star_a, b) } else { (star_b, a) };
+        let other = star
+            .iter()
+            .find(|&&other| other as usize != t && triangles[other as usize].contains(&end));
+        other.map(|&other| regions[other as usize])
+    };
+    inner_edges(triangles)
+        .filter(|&(t, edge)| across(t, edge).is_some_and(|r| r != regions[t]))
+        .map(|(_, edge)| edge)
+        .collect()
+}
+
+/// The edges inside a mesh, each once with one of its triangles, and some of the boundary.
+pub(crate) fn inner_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (usize, [u32; 2])> + '_ {
+    let edges = |(t, &[a, b, c]): (usize, &[u32; 3])| [(t, [a, b]), (t, [b, c]), (t, [c, a])];
+    // With consistent windings, the two triangles of an edge run along it in opposite directions.
+    triangles.iter().enumerate().flat_map(edges).filter(|(_, [a, b])| a < b)
+}

@@ -1,0 +1,54 @@
+//! `gpu-smooth quality MESH...`.
+
+mod args;
+mod bars;
+mod bins;
+mod json;
+mod sheet;
+mod text;
+
+pub(crate) use args::QualityArgs;
+
+use std::path::PathBuf;
+
+use bars::Style;
+use sheet::Sheet;
+
+use crate::picture;
+use crate::tell;
+
+/// Tells how good meshes are. An error if one cannot be read, or if a triangle is what none may be.
+pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
+    if let Some(picture) = &args.picture.picture {
+        if args.meshes.len() > 1 {
+            return Err(format!("{}: a picture is of one mesh: give one", picture.display()));
+        }
+        picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
+    }
+    let style = Style::of_terminal(args.ascii);
+    let sheets = args.meshes.iter().map(|path| Sheet::of(path, args));
+    let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
+    if args.json {
+        tell::say(&format!("{:#}", json::json(&sheets)?));
+    } else if args.csv {
+        tell::say(&json::csv(&sheets));
+    } else {
+        tell::say(&text::text(&sheets, &style));
+    }
+    let violations: Vec<String> =
+        sheets.iter().flat_map(|sheet| violations(sheet, &style)).collect();
+    if violations.is_empty() { Ok(()) } else { Err(violations.join("\n  ")) }
+}
+
+/// A sentence for each threshold that triangles of a mesh have passed.
+fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
+    sheet.violations.iter().filter_map(move |violation| {
+        let (place, value) = violation.worst.as_ref()?;
+        let (path, threshold) = (sheet.path.display(), &violation.threshold);
+        let worst = text::valued(threshold.measure, *value, style);
+        Some(format!(
+            "{path}: {} of {} triangles have {threshold}; the worst is triangle {} ({place}), {worst}",
+            violation.count, sheet.triangles, place.label
+        ))
+    })
+}

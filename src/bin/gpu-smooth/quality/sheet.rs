@@ -1,0 +1,176 @@
+//! What is told of a mesh.
+
+use std::path::PathBuf;
+
+use gpu_smooth::{
+    BadTriangle, Location, Measure, Measured, MeshFile, Place, Quality, Statistics, Topology,
+};
+
+use crate::explain::{self, BadTriangleReport};
+use crate::picture::{self, Shot};
+use crate::quality::args::{QualityArgs, Threshold};
+use crate::quality::bins;
+use crate::report::QualityReport;
+use crate::smooth::read;
+use crate::tell;
+
+/// What is told of one mesh. The mesh itself is not kept, so that many can be told side by side.
+pub(crate) struct Sheet {
+    pub(crate) path: PathBuf,
+    pub(crate) format: String,
+    pub(crate) remarks: Vec<String>,
+    pub(crate) vertices: usize,
+    pub(crate) free: usize,
+    pub(crate) triangles: usize,
+    /// As in the report of a run.
+    pub(crate) report: QualityReport,
+    /// The triangle of the largest inverse mean ratio.
+    pub(crate) worst_place: Place,
+    /// Statistics of every measure.
+    pub(crate) statistics: Vec<Statistics>,
+    pub(crate) regions: Vec<Region>,
+    pub(crate) histograms: Vec<Histogram>,
+    /// The worst triangles by the first chosen measure.
+    pub(crate) worst: Vec<Worst>,
+    pub(crate) violations: Vec<Violation>,
+    /// Inverted and flat triangles: all of them for JSON, else those that are listed.
+    pub(crate) bad: Vec<BadTriangleReport>,
+    pub(crate) flat: usize,
+    pub(crate) duplicate_vertices: usize,
+    pub(crate) unused_vertices: usize,
+}
+
+/// Triangles that the file puts into one region.
+pub(crate) struct Region {
+    /// Where the first of its triangles stands.
+    pub(crate) first: Place,
+    /// Statistics of every measure.
+    pub(crate) statistics: Vec<Statistics>,
+}
+
+/// How many triangles have their value where.
+pub(crate) struct Histogram {
+    pub(crate) measure: Measure,
+    /// One more than there are bins.
+    pub(crate) edges: Vec<f64>,
+    pub(crate) counts: Vec<usize>,
+}
+
+/// A triangle in the terms of its file.
+pub(crate) struct Worst {
+    pub(crate) place: Place,
+    /// The file's numbers or tags for its vertices.
+    pub(crate) vertices: [u64; 3],
+    pub(crate) corners: [[f64; 2]; 3],
+    /// The values of the chosen measures.
+    pub(crate) values: Vec<(Measure, f64)>,
+    /// Whether one of its vertices is free to move.
+    pub(crate) is_movable: bool,
+}
+
+/// Triangles that are what no triangle may be.
+pub(crate) struct Violation {
+    pub(crate) threshold: Threshold,
+    pub(crate) count: usize,
+    /// The worst of them and its value, if there is one.
+    pub(crate) worst: Option<(Place, f64)>,
+}
+
+impl Sheet {
+    /// Reads and measures a mesh.
+    pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
+        let file = read(path)?;
+        let mesh = file.mesh();
+        let refused = |error| explain::mesh_error(&file, &error);
+        let topology = Topology::new(mesh).map_err(refused)?;
+        let quality = Quality::of(&mesh.points, &topology).map_err(refused)?;
+        let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
+        let measured = Measured::new(&mesh.points, &topology).map_err(refused)?;
+        let title = path.file_name().unwrap_or_default().display().to_string();
+        picture::write(&args.picture, &file, &topology, &[Shot { title, points: &mesh.points }])?;
+        let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
+        Ok(Self {
+            path: path.to_owned(),
+            format: file.format().to_string(),
+            remarks: tell::remarks(&file),
+            vertices: mesh.points.len(),
+            free: topology.free_count(),
+            triangles: mesh.triangles.len(),
+            report: QualityReport::from(&quality),
+            worst_place: file.triangle_place(quality.worst_triangle),
+            statistics: measured.statistics(Measure::ALL),
+            regions: if args.by_region { regions(&file, &measured) } else { Vec::new() },
+            histograms: args.measure.iter().map(|&m| histogram(&measured, m)).collect(),
+            worst: worst(&file, &topology, &measured, args),
+            violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
+            bad: explain::bad_triangles(&file, &bad[..listed]),
+            flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
+            duplicate_vertices: measured.duplicate_vertices().len(),
+            unused_vertices: measured.unused_vertices().len(),
+        })
+    }
+}
+
+fn regions(file: &MeshFile, measured: &Measured<'_>) -> Vec<Region> {
+    let zeros;
+    let regions = match file.regions() {
+        Some(regions) => regions,
+        None => {
+            zeros = vec![0; measured.count()];
+            &zeros
+        }
+    };
+    let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
+    let mut first = vec![None; count];
+    for (t, &region) in regions.iter().enumerate() {
+        first[region as usize].get_or_insert(t);
+    }
+    let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
+    let places = file.triangle_places(first.iter().copied());
+    let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
+    let region = |(first, statistics)| Region { first: places[first].clone(), statistics };
+    first.iter().zip(statistics).map(region).collect()
+}
+
+fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
+    let edges = bins::edges(measure);
+    let counts = measured.histogram(measure, &edges);
+    Histogram { measure, edges, counts }
+}
+
+fn worst(
+    file: &MeshFile,
+    topology: &Topology<'_>,
+    measured: &Measured<'_>,
+    args: &QualityArgs,
+) -> Vec<Worst> {
+    let mesh = file.mesh();
+    let Some(&measure) = args.measure.first() else { return Vec::new() };
+    let found = measured.worst(measure, args.worst);
+    let places = file.triangle_places(found.iter().map(|found| found.0));
+    let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
+    let one = |&(t, _): &(usize, f64)| Worst {
+        place: places[&t].clone(),
+        vertices: mesh.triangles[t].map(|v| names[&v].label),
+        corners: mesh.triangles[t].map(|v| mesh.points[v as usize]),
+        values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
+        is_movable: mesh.triangles[t].iter().any(|&v| topology.free()[v as usize]),
+    };
+    found.iter().map(one).collect()
+}
+
+fn violation(file: &MeshFile, measured: &Measured<'_>, threshold: &Threshold) -> Violation {
+    let measure = threshold.measure;
+    let (count, _) = measured.count_where(measure, |value| threshold.is_met(value));
+    let worst = measured.worst(measure, usize::from(count > 0));
+    let worst = worst.first().map(|&(t, value)| (file.triangle_place(t), value));
+    Violation { threshold: threshold.clone(), count, worst }
+}
+
+/// The line or byte of a place, as the keys of JSON have them.
+pub(crate) fn location(place: &Place) -> (&'static str, usize) {
+    match place.location {
+        Location::Line(line) => ("line", line),
+        Location::Byte(byte) => ("byte", byte),
+    }
+}

@@ -1,0 +1,178 @@
+//! What is told of meshes, as text.
+
+use std::fmt::Write;
+
+use gpu_smooth::{Measure, Metric, Statistics};
+
+use crate::explain;
+use crate::quality::bars::{self, Style};
+use crate::quality::sheet::{Sheet, Worst};
+use crate::report::{five, six};
+
+/// The width of a table's first column.
+const NAME: usize = 18;
+
+/// All that is told of some meshes.
+pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
+    let mut text = String::new();
+    for sheet in sheets {
+        let Sheet { path, format, vertices, free, triangles, remarks, .. } = sheet;
+        let _ = writeln!(text, "{}: {format}", path.display());
+        remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
+        let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
+    }
+    text.push_str(&table(sheets, style));
+    for sheet in sheets {
+        text.push('\n');
+        if sheets.len() > 1 {
+            let _ = writeln!(text, "== {}", sheet.path.display());
+        }
+        text.push_str(&details(sheet, style));
+    }
+    text.trim_end().to_owned()
+}
+
+/// The statistics of every measure: a row for each, or for each measure and file.
+fn table(sheets: &[Sheet], style: &Style) -> String {
+    let mut text = head();
+    for (i, measure) in Measure::ALL.iter().enumerate() {
+        match sheets {
+            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i])),
+            several => {
+                let _ = writeln!(text, "{}", named(*measure, style));
+                for sheet in several {
+                    let name = shortened(&sheet.path.display().to_string(), NAME - 2);
+                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i]));
+                }
+            }
+        }
+    }
+    text
+}
+
+fn head() -> String {
+    let mut text = " ".repeat(NAME);
+    for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
+        let _ = write!(text, "{column:>9}");
+    }
+    text + "\n"
+}
+
+fn row(name: &str, statistics: &Statistics) -> String {
+    let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
+    let mut text = format!("{name:<NAME$}");
+    for number in [min, low, median, mean, high, max, deviation] {
+        let _ = write!(text, "{:>9}", five(*number));
+    }
+    text + "\n"
+}
+
+/// The name of a measure with its unit.
+fn named(measure: Measure, style: &Style) -> String {
+    match (measure.definition().unit, style.plain) {
+        ("", _) => measure.name().to_owned(),
+        ("°", true) => format!("{measure} (deg)"),
+        (unit, _) => format!("{measure} {unit}"),
+    }
+}
+
+/// The end of a name that is too long.
+fn shortened(name: &str, most: usize) -> String {
+    let length = name.chars().count();
+    match length > most {
+        true => format!("..{}", name.chars().skip(length + 2 - most).collect::<String>()),
+        false => name.to_owned(),
+    }
+}
+
+/// All about one mesh besides the statistics of its measures.
+fn details(sheet: &Sheet, style: &Style) -> String {
+    let mut text = String::new();
+    for histogram in &sheet.histograms {
+        text.push_str(&bars::text(histogram, &named(histogram.measure, style), style));
+        text.push('\n');
+    }
+    text.push_str(&by_region(sheet, style));
+    if let Some(first) = sheet.worst.first() {
+        let by = first.values.first().map_or("", |value| value.0.name());
+        let _ = writeln!(text, "worst triangles by {by}");
+        sheet.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
+        text.push('\n');
+    }
+    let report = &sheet.report;
+    for metric in Metric::ALL {
+        let _ = writeln!(text, "{:<22}{:>12}", format!("f {metric}"), six(report.f[metric.name()]));
+    }
+    let (worst, place) = (six(report.worst_imr), &sheet.worst_place);
+    let at = format!("  triangle {} ({place})", place.label);
+    let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
+    if sheet.free > 0 && report.worst_movable_imr < report.worst_imr {
+        let movable = six(report.worst_movable_imr);
+        let among = "among triangles with a free vertex";
+        let _ = writeln!(text, "{:<22}{movable:>12}  {among}", "worst imr movable");
+    }
+    for (name, count) in [
+        ("duplicate vertices", sheet.duplicate_vertices),
+        ("unused vertices", sheet.unused_vertices),
+        ("flat", sheet.flat),
+    ] {
+        let _ = writeln!(text, "{name:<22}{count:>12}");
+    }
+    let list = explain::list(&sheet.bad, report.inverted, "--json");
+    let _ = writeln!(text, "{:<22}{:>12}{list}", "inverted or flat", report.inverted);
+    text
+}
+
+/// The statistics of the chosen measures, region by region.
+fn by_region(sheet: &Sheet, style: &Style) -> String {
+    let mut text = String::new();
+    for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
+        let measure = histogram.measure;
+        let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
+        let _ = writeln!(text, "{} by region", named(measure, style));
+        text.push_str(&head());
+        for (number, region) in (1..).zip(&sheet.regions) {
+            let statistics = &region.statistics[at];
+            text.push_str(&row(&format!("region {number}"), statistics));
+        }
+        text.push('\n');
+    }
+    for (number, region) in (1..).zip(&sheet.regions) {
+        let (first, count) = (&region.first, region.statistics[0].count);
+        let _ = writeln!(text, "region {number}: {count} triangles, the first at {first}");
+    }
+    if !sheet.regions.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
+/// Where a triangle is, how bad, and whether smoothing can help.
+fn worst_line(worst: &Worst, style: &Style) -> String {
+    let Worst { place, corners, values, is_movable, .. } = worst;
+    let values: Vec<String> =
+        values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
+    let [x, y] = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum::<f64>());
+    let movable = if *is_movable { "can move" } else { "all its vertices are fixed" };
+    let (label, values) = (place.label, values.join(", "));
+    format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(x), six(y))
+}
+
+/// A value with the name of its measure.
+pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
+    match (measure.definition().unit, style.plain) {
+        ("°", true) => format!("{measure} {} deg", five(value)),
+        (unit, _) => format!("{measure} {}{unit}", five(value)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_lose_their_start() {
+        assert_eq!(shortened("a/long/name.msh", 9), "..ame.msh");
+        assert_eq!(shortened("name.msh", 9), "name.msh");
+    }
+}

@@ -1,0 +1,94 @@
+//! A mesh at given positions, whose triangles can be measured.
+
+use std::sync::OnceLock;
+
+use crate::error::MeshError;
+use crate::measure::sizes::{doubled_areas, size_ratios};
+use crate::measure::table::Measure;
+use crate::measure::triangle::Triangle;
+use crate::parallel::{collect, map_ranges};
+use crate::topology::Topology;
+
+const CHUNK: usize = 1 << 12;
+
+/// A mesh with its vertices at given positions, whose triangles can be measured by each [`Measure`]. All threads share
+/// the work.
+///
+/// ```
+/// use gpu_smooth::{Measure, Measured, Mesh, Topology};
+///
+/// let mesh = Mesh {
+///     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+///     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+///     fixed: vec![],
+/// };
+/// let topology = Topology::new(&mesh)?;
+/// let measured = Measured::new(&mesh.points, &topology)?;
+/// let [angle] = &measured.statistics(&[Measure::MinAngle])[..] else { panic!() };
+/// assert_eq!((angle.count, angle.min, angle.max), (4, 45.0, 45.0));
+/// # Ok::<(), gpu_smooth::MeshError>(())
+/// ```
+pub struct Measured<'a> {
+    points: &'a [[f64; 2]],
+    topology: &'a Topology<'a>,
+    mean_area: f64,
+    size_ratios: OnceLock<Vec<f64>>,
+}
+
+impl<'a> Measured<'a> {
+    /// The triangles of `topology` with their vertices at `points`, one for each vertex of the mesh.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn new(points: &'a [[f64; 2]], topology: &'a Topology<'a>) -> Result<Self, MeshError> {
+        topology.check_count(points)?;
+        let areas = doubled_areas(points, topology);
+        let sums = map_ranges(areas.len(), CHUNK, |range| areas[range].iter().sum::<f64>());
+        let mean_area = sums.iter().sum::<f64>() / 2.0 / areas.len() as f64;
+        Ok(Self { points, topology, mean_area, size_ratios: OnceLock::new() })
+    }
+
+    /// The positions of the vertices.
+    pub fn points(&self) -> &[[f64; 2]] {
+        self.points
+    }
+
+    /// The triangles.
+    pub fn topology(&self) -> &Topology<'a> {
+        self.topology
+    }
+
+    /// The number of triangles.
+    pub fn count(&self) -> usize {
+        self.topology.triangles().len()
+    }
+
+    /// Finds out what takes all triangles together, before any of them is measured by these. Not done where it is first
+    /// needed: a thread that waits for it could be given the task of another that waits for it.
+    pub(crate) fn prepare(&self, measures: &[Measure]) {
+        if measures.contains(&Measure::SizeRatio) && self.size_ratios.get().is_none() {
+            // Another caller may have been faster, with the same result.
+            let _ = self.size_ratios.set(size_ratios(self.points, self.topology));
+        }
+    }
+
+    /// A triangle to be measured by what [`Self::prepare`] was called for.
+    #[inline]
+    pub(crate) fn triangle(&self, index: usize) -> Triangle {
+        let corners = self.topology.triangles()[index];
+        let size_ratio = self.size_ratios.get().map_or(f64::NAN, |ratios| ratios[index]);
+        Triangle::new(corners.map(|v| self.points[v as usize]), self.mean_area, size_ratio)
+    }
+
+    /// The value of a measure for triangle `index`; NaN if there is no such triangle.
+    pub fn value(&self, measure: Measure, index: usize) -> f64 {
+        self.prepare(&[measure]);
+        if index < self.count() { measure.value(&self.triangle(index)) } else { f64::NAN }
+    }
+
+    /// The value of a measure for each triangle, in the order of the mesh.
+    pub fn values(&self, measure: Measure) -> Vec<f64> {
+        self.prepare(&[measure]);
+        collect(self.count(), |t| measure.value(&self.triangle(t)))
+    }
+}

@@ -1,0 +1,15 @@
+//! Quality measures: a table with a row for each, computed for the triangles of a mesh, with statistics over them.
+
+mod measured;
+mod moments;
+mod ranks;
+mod search;
+mod sizes;
+mod statistics;
+mod table;
+mod triangle;
+mod vertices;
+
+pub use measured::Measured;
+pub use statistics::{QUANTILES, Statistics};
+pub use table::{Better, Definition, Measure, UnknownMeasure};

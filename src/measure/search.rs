@@ -1,0 +1,82 @@
+//! Triangles by the values of a measure: how many there are, and the worst.
+
+use std::cmp::Ordering;
+
+use crate::measure::measured::Measured;
+use crate::measure::table::Measure;
+use crate::parallel::map_ranges;
+
+const CHUNK: usize = 1 << 12;
+
+impl Measured<'_> {
+    /// How many triangles have their value in each of the intervals between `edges`, which ascend: from each edge to the
+    /// next, without the next but for the last interval. Values outside all of them are not counted.
+    pub fn histogram(&self, measure: Measure, edges: &[f64]) -> Vec<usize> {
+        let Some(bins) = edges.len().checked_sub(1) else { return Vec::new() };
+        self.prepare(&[measure]);
+        let counts = map_ranges(self.count(), CHUNK, |range| {
+            let mut counts = vec![0; bins];
+            for t in range {
+                let value = measure.value(&self.triangle(t));
+                let after = edges.partition_point(|&edge| edge <= value);
+                let bin = if after > bins && value <= edges[bins] { bins } else { after };
+                if (1..=bins).contains(&bin) {
+                    counts[bin - 1] += 1;
+                }
+            }
+            counts
+        });
+        let mut sum = vec![0; bins];
+        counts.iter().flat_map(|part| part.iter().enumerate()).for_each(|(i, n)| sum[i] += n);
+        sum
+    }
+
+    /// The `most` worst triangles by a measure with their values, the worst first; of equally bad ones those that come
+    /// first in the mesh.
+    pub fn worst(&self, measure: Measure, most: usize) -> Vec<(usize, f64)> {
+        self.prepare(&[measure]);
+        let order = |a: &(usize, f64), b: &(usize, f64)| match measure.is_worse(a.1, b.1) {
+            true => Ordering::Less,
+            false if measure.is_worse(b.1, a.1) => Ordering::Greater,
+            false => a.0.cmp(&b.0),
+        };
+        let keep = |mut found: Vec<(usize, f64)>| {
+            if found.len() > most && most > 0 {
+                found.select_nth_unstable_by(most - 1, order);
+            }
+            found.truncate(most);
+            found
+        };
+        let parts = map_ranges(self.count(), CHUNK, |range| {
+            keep(range.map(|t| (t, measure.value(&self.triangle(t)))).collect())
+        });
+        // Folded part by part, so that no more than twice what is wanted, and a part, is held.
+        let mut worst = Vec::new();
+        for part in parts {
+            worst.extend(part);
+            if worst.len() > 2 * most.max(CHUNK) {
+                worst = keep(worst);
+            }
+        }
+        worst = keep(worst);
+        worst.sort_by(order);
+        worst
+    }
+
+    /// How many triangles have a value for which `test` holds, and the first of them.
+    pub fn count_where(
+        &self,
+        measure: Measure,
+        test: impl Fn(f64) -> bool + Sync,
+    ) -> (usize, Option<usize>) {
+        self.prepare(&[measure]);
+        let holds = |t: &usize| test(measure.value(&self.triangle(*t)));
+        let parts = map_ranges(self.count(), CHUNK, |range| {
+            let mut found = range.filter(holds);
+            let first = found.next();
+            (usize::from(first.is_some()) + found.count(), first)
+        });
+        let count = parts.iter().map(|part| part.0).sum();
+        (count, parts.into_iter().find_map(|part| part.1))
+    }
+}

@@ -1,0 +1,61 @@
+//! The measure `size-ratio`, which depends on the neighbors of a triangle.
+
+use crate::parallel::collect;
+use crate::topology::Topology;
+use crate::topology::predicates::orientation;
+
+/// The areas of triangles, doubled and without their signs.
+pub(crate) fn doubled_areas(points: &[[f64; 2]], topology: &Topology<'_>) -> Vec<f64> {
+    let triangles = topology.triangles();
+    collect(triangles.len(), |t| orientation(points, &triangles[t]).abs())
+}
+
+/// For each triangle, the largest ratio of its area to that of a triangle across one of its edges, or the other way
+/// round; 1 if it has no neighbor, infinite if it or one of them is flat.
+pub(crate) fn size_ratios(points: &[[f64; 2]], topology: &Topology<'_>) -> Vec<f64> {
+    let areas = doubled_areas(points, topology);
+    let triangles = topology.triangles();
+    // Stars that were forgotten are found again here, not by the first of many threads.
+    topology.star(0);
+    collect(triangles.len(), |t| {
+        let mut most = 1.0;
+        for i in 0..3 {
+            let edge = [triangles[t][i], triangles[t][(i + 1) % 3]];
+            for_each_across(topology, t, edge, |other| {
+                let (own, other) = (areas[t], areas[other]);
+                let ratio = own.max(other) / own.min(other);
+                // 0 / 0 and infinite areas are no numbers.
+                most = if ratio.is_nan() { f64::INFINITY } else { ratio.max(most) };
+            });
+        }
+        most
+    })
+}
+
+/// Calls `visit` with the triangle across an edge of triangle `t`, which starts and ends at the given vertices.
+///
+/// Looks around the vertex that has fewer triangles: for all edges this takes linear time, however many some
+/// vertices have.
+#[inline]
+fn for_each_across(
+    topology: &Topology<'_>,
+    t: usize,
+    [start, end]: [u32; 2],
+    mut visit: impl FnMut(usize),
+) {
+    let (at_start, at_end) = (topology.star(start), topology.star(end));
+    let from_start = at_start.len() <= at_end.len();
+    let (vertex, star) = if from_start { (start, at_start) } else { (end, at_end) };
+    if topology.free()[vertex as usize] {
+        // Counter-clockwise around the vertex: the triangle before this one is across the edge that starts there.
+        if let Some(at) = star.iter().position(|&other| other as usize == t) {
+            let step = if from_start { star.len() - 1 } else { 1 };
+            visit(star[(at + step) % star.len()] as usize);
+        }
+        return;
+    }
+    let far = if from_start { end } else { start };
+    let triangles = topology.triangles();
+    let across = |&other: &usize| other != t && triangles[other].contains(&far);
+    star.iter().map(|&other| other as usize).filter(across).for_each(visit);
+}

@@ -1,0 +1,258 @@
+//! Statistics of measures over triangles.
+
+use std::ops::Range;
+
+use crate::measure::measured::Measured;
+use crate::measure::moments::Moments;
+use crate::measure::ranks::{self, Bracket, SAMPLE, key, rank};
+use crate::measure::table::{Better, Measure};
+use crate::parallel::counting_sort::Groups;
+use crate::parallel::map_parts;
+
+/// The shares of the triangles for which [`Statistics::quantiles`] are given.
+pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// Triangles that are measured at once; their values fit a processor's cache.
+const CHUNK: usize = 1024;
+
+/// Chunks of a part, which a thread measures.
+const PART: usize = 64;
+
+/// Statistics of a measure over triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// The measure.
+    pub measure: Measure,
+    /// Number of triangles. If it is 0, the other fields say nothing.
+    pub count: usize,
+    /// The least value.
+    pub min: f64,
+    /// The mean; infinite if a value is.
+    pub mean: f64,
+    /// The largest value.
+    pub max: f64,
+    /// The standard deviation of the values (divided by their number); infinite if a value is.
+    pub deviation: f64,
+    /// For each share of [`QUANTILES`], the least value that this share of the triangles does not exceed. It is the
+    /// value of a triangle, not interpolated, with the seven digits of single precision.
+    pub quantiles: [f64; 3],
+    /// Index of the worst triangle, the first of several.
+    pub worst: usize,
+}
+
+/// The triangles that are measured.
+#[derive(Clone, Copy)]
+enum Selection<'s> {
+    /// All of so many.
+    All(usize),
+    /// Those of these indices.
+    Of(&'s [u32]),
+}
+
+impl Selection<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::All(count) => *count,
+            Self::Of(indices) => indices.len(),
+        }
+    }
+
+    #[inline]
+    fn at(&self, i: usize) -> usize {
+        match self {
+            Self::All(_) => i,
+            Self::Of(indices) => indices[i] as usize,
+        }
+    }
+}
+
+/// What was met of one measure.
+#[derive(Clone)]
+struct Tally {
+    moments: Moments,
+    brackets: [Bracket; 3],
+}
+
+impl Measured<'_> {
+    /// Statistics of some measures over all triangles, in the order of `measures`.
+    ///
+    /// No list of values is kept: the memory beside the mesh is 8 bytes per triangle for `size-ratio` and some
+    /// megabytes.
+    pub fn statistics(&self, measures: &[Measure]) -> Vec<Statistics> {
+        self.prepare(measures);
+        self.statistics_of(measures, Selection::All(self.count()))
+    }
+
+    /// Statistics of some measures over the triangles of each region: a list for each region below `count`, each in the
+    /// order of `measures`. `regions` has the region of each triangle; triangles of other regions, and those that
+    /// `regions` does not have, are left out.
+    pub fn statistics_by_region(
+        &self,
+        measures: &[Measure],
+        regions: &[u32],
+        count: usize,
+    ) -> Vec<Vec<Statistics>> {
+        self.prepare(measures);
+        // The last group takes what is left out.
+        let region =
+            |t: usize| regions.get(t).map_or(count, |&region| (region as usize).min(count));
+        let groups = Groups::new(self.count(), count + 1, |t| [region(t) as u32]);
+        let of_one = |region| self.statistics_of(measures, Selection::Of(groups.of(region)));
+        (0..count).map(of_one).collect()
+    }
+
+    /// Statistics of each of some measures over the selected triangles, in the order of `measures`.
+    fn statistics_of(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Statistics> {
+        let new = self.sampled(measures, selection);
+        let tallies = self.tallies(measures, selection, &new);
+        let one = |(&measure, tally)| self.conclude(measure, selection, tally);
+        measures.iter().zip(tallies).map(one).collect()
+    }
+
+    /// Empty tallies, with brackets from a sample.
+    fn sampled(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Tally> {
+        let count = selection.len();
+        // At random places, as regular ones may fall in with the order of a regular mesh: one in each of equal parts.
+        let taken = count.min(SAMPLE);
+        let place = |i: usize| {
+            let (start, end) = (i * count / taken, (i + 1) * count / taken);
+            start + (i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) % (end - start)
+        };
+        let mut samples = vec![Vec::with_capacity(taken); measures.len()];
+        for i in 0..taken {
+            let triangle = self.triangle(selection.at(place(i)));
+            for (sample, measure) in samples.iter_mut().zip(measures) {
+                sample.push(key(measure.value(&triangle)));
+            }
+        }
+        let tally = |mut sample: Vec<u32>| {
+            sample.sort_unstable();
+            let brackets = QUANTILES.map(|share| Bracket::new(&sample, share));
+            Tally { moments: Moments::NONE, brackets }
+        };
+        samples.into_iter().map(tally).collect()
+    }
+
+    /// One pass over all. Parts do not depend on the number of threads, and are put together in order.
+    fn tallies(&self, measures: &[Measure], selection: Selection<'_>, new: &[Tally]) -> Vec<Tally> {
+        let size = PART * CHUNK;
+        let parts = (0..selection.len().div_ceil(size)).map(|part| part * PART..(part + 1) * PART);
+        let parts = map_parts(parts, |_, chunks| {
+            let mut tallies = new.to_vec();
+            let mut values = vec![Vec::with_capacity(CHUNK); measures.len()];
+            let mut keys = Vec::with_capacity(CHUNK);
+            for chunk in chunks {
+                self.measure(measures, selection, chunk, &mut values);
+                for (tally, values) in tallies.iter_mut().zip(&values) {
+                    tally.moments = tally.moments.and(&Moments::of(values, chunk));
+                    keys.clear();
+                    keys.extend(values.iter().map(|&value| key(value)));
+                    tally.brackets.iter_mut().for_each(|bracket| bracket.count(&keys));
+                }
+            }
+            tallies
+        });
+        let mut sums = new.to_vec();
+        for part in &parts {
+            for (sum, more) in sums.iter_mut().zip(part) {
+                sum.moments = sum.moments.and(&more.moments);
+                sum.brackets.iter_mut().zip(&more.brackets).for_each(|(sum, more)| sum.add(more));
+            }
+        }
+        sums
+    }
+
+    /// Puts the values of a chunk of the selected triangles into a list for each measure.
+    fn measure(
+        &self,
+        measures: &[Measure],
+        selection: Selection<'_>,
+        chunk: usize,
+        values: &mut [Vec<f64>],
+    ) {
+        values.iter_mut().for_each(Vec::clear);
+        for i in range(chunk, selection) {
+            let triangle = self.triangle(selection.at(i));
+            for (values, measure) in values.iter_mut().zip(measures) {
+                values.push(measure.value(&triangle));
+            }
+        }
+    }
+
+    fn conclude(&self, measure: Measure, selection: Selection<'_>, tally: Tally) -> Statistics {
+        let Tally { moments, mut brackets } = tally;
+        let ranks = QUANTILES.map(|share| rank(share, moments.count));
+        let mut found = ranks.iter().zip(&mut brackets);
+        let quantiles = match found.try_fold(Vec::new(), |mut keys, (&rank, bracket)| {
+            keys.push(bracket.find(rank)?);
+            Some(keys)
+        }) {
+            Some(keys) => [0, 1, 2].map(|i: usize| ranks::value(keys[i])),
+            None => self.ranked(measure, selection, ranks),
+        };
+        let (extreme, chunk) = match measure.definition().better {
+            Better::Higher => moments.least,
+            Better::Lower => moments.most,
+        };
+        let value = |i: &usize| measure.value(&self.triangle(selection.at(*i)));
+        let worst = range(chunk, selection).find(|i| value(i) == extreme);
+        Statistics {
+            measure,
+            count: moments.count,
+            min: moments.least.0,
+            mean: moments.mean,
+            max: moments.most.0,
+            deviation: moments.deviation(),
+            quantiles,
+            worst: worst.map_or(0, |i| selection.at(i)),
+        }
+    }
+
+    /// The values of some ranks by a list of all: where a sample was wrong.
+    #[cold]
+    fn ranked(&self, measure: Measure, selection: Selection<'_>, ranks: [usize; 3]) -> [f64; 3] {
+        let value = |i| measure.value(&self.triangle(selection.at(i)));
+        let mut keys: Vec<u32> = (0..selection.len()).map(|i| key(value(i))).collect();
+        ranks.map(|rank| match rank < keys.len() {
+            true => ranks::value(*keys.select_nth_unstable(rank).1),
+            false => f64::NAN,
+        })
+    }
+}
+
+/// The triangles of a chunk, as places in the selection.
+fn range(chunk: usize, selection: Selection<'_>) -> Range<usize> {
+    let end = selection.len();
+    (chunk * CHUNK).min(end)..((chunk + 1) * CHUNK).min(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::topology::Topology;
+
+    /// Where a sample was wrong, a list of all values takes its place.
+    #[test]
+    fn a_wrong_sample_changes_nothing() {
+        let points = (0..31 * 31).map(|i| {
+            let (x, y) = (f64::from(i % 31), f64::from(i / 31));
+            [x + 0.3 * (1.7 * x * y).sin(), y + 0.3 * (2.3 * x + y * y).cos()]
+        });
+        let squares = (0..30 * 30).map(|i| i / 30 * 31 + i % 30);
+        let halves = squares.flat_map(|a| [[a, a + 1, a + 32], [a, a + 32, a + 31]]);
+        let mesh = Mesh { points: points.collect(), triangles: halves.collect(), fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        let measured = Measured::new(&mesh.points, &topology).unwrap();
+        let all = Selection::All(measured.count());
+        let found = &measured.statistics(&[Measure::Shape])[0];
+        let ranks = QUANTILES.map(|share| rank(share, found.count));
+        assert_eq!(measured.ranked(Measure::Shape, all, ranks), found.quantiles);
+        // A sample of other values, which are all too high.
+        let bracket = Bracket::new(&[key(7.0); 100], 0.5);
+        let brackets = [bracket.clone(), bracket.clone(), bracket];
+        let wrong = Tally { moments: Moments::NONE, brackets };
+        let tally = measured.tallies(&[Measure::Shape], all, &[wrong]).remove(0);
+        assert_eq!(measured.conclude(Measure::Shape, all, tally), *found);
+    }
+}

@@ -1,0 +1,276 @@
+//! The table of quality measures. A measure is one row of it; the command line, the documentation and the tests loop
+//! over [`Measure::ALL`].
+
+use crate::measure::triangle::Triangle;
+use crate::metric::Metric;
+
+/// Which values of a measure are better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Better {
+    /// Large ones: the worst triangle has the least value.
+    Higher,
+    /// Small ones: the worst triangle has the largest value.
+    Lower,
+}
+
+/// What a measure is, for people.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Definition {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// The formula, as text. L are edge lengths, S is the area, r the inradius and R the circumradius.
+    pub formula: &'static str,
+    /// What follows a value: ° for angles, nothing for ratios.
+    pub unit: &'static str,
+    /// The least and the largest value that a triangle can have; inverted ones included.
+    pub range: [f64; 2],
+    /// The value of the best triangle.
+    pub ideal: f64,
+    /// Which values are better.
+    pub better: Better,
+    /// The publication that defines the measure.
+    pub source: &'static str,
+}
+
+const VERDICT: &str = "Stimpson, Ernst, Knupp, Pébay & Thompson, The Verdict Geometric Quality Library, SAND2007-1751 (2007)";
+
+/// Generates the enum, the definitions and the choice of the formula from one row per measure.
+macro_rules! measures {
+    ($($(#[$doc:meta])* $variant:ident = $value:expr, $definition:expr;)*) => {
+        /// A quality measure of a triangle. The ideal triangle is equilateral.
+        ///
+        /// Inverted and flat triangles have the values that the Verdict library gives them: ratios and angles know no
+        /// orientation, so that an inverted triangle counts as its mirror image; `scaled-jacobian` becomes negative,
+        /// `condition` infinite and `shape` 0. What grows without bound is infinite for a flat triangle.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Measure {
+            $($(#[$doc])* $variant,)*
+            /// One of the metrics that smoothing minimizes; the measure is q. Infinite for an inverted or flat
+            /// triangle if the metric has a barrier.
+            Metric(Metric),
+        }
+
+        impl Measure {
+            /// The measures that are not metrics.
+            const OWN: &'static [Measure] = &[$(Measure::$variant,)*];
+
+            /// What the measure is.
+            pub const fn definition(self) -> Definition {
+                match self {
+                    $(Measure::$variant => $definition,)*
+                    Measure::Metric(metric) => of_metric(metric),
+                }
+            }
+
+            /// The value for a triangle.
+            #[inline]
+            pub(crate) fn value(self, triangle: &Triangle) -> f64 {
+                match self {
+                    $(Measure::$variant => { let value: fn(&Triangle) -> f64 = $value; value(triangle) })*
+                    Measure::Metric(metric) => triangle.metric(metric),
+                }
+            }
+        }
+    };
+}
+
+measures! {
+    /// The smallest angle, in degrees.
+    MinAngle = Triangle::min_angle, Definition {
+        name: "min-angle",
+        formula: "the smallest angle, in degrees",
+        unit: "°",
+        range: [0.0, 60.0],
+        ideal: 60.0,
+        better: Better::Higher,
+        source: VERDICT,
+    };
+    /// The largest angle, in degrees.
+    MaxAngle = Triangle::max_angle, Definition {
+        name: "max-angle",
+        formula: "the largest angle, in degrees",
+        unit: "°",
+        range: [60.0, 180.0],
+        ideal: 60.0,
+        better: Better::Lower,
+        source: VERDICT,
+    };
+    /// The longest over the shortest edge.
+    EdgeRatio = Triangle::edge_ratio, Definition {
+        name: "edge-ratio",
+        formula: "Lmax / Lmin",
+        unit: "",
+        range: [1.0, f64::INFINITY],
+        ideal: 1.0,
+        better: Better::Lower,
+        source: VERDICT,
+    };
+    /// The longest edge over the inradius, scaled to 1 for the equilateral triangle. Not the metric `ar`.
+    AspectRatio = Triangle::aspect_ratio, Definition {
+        name: "aspect-ratio",
+        formula: "Lmax / (2√3 r) = Lmax (L1 + L2 + L3) / (4√3 S)",
+        unit: "",
+        range: [1.0, f64::INFINITY],
+        ideal: 1.0,
+        better: Better::Lower,
+        source: VERDICT,
+    };
+    /// The circumradius over twice the inradius.
+    RadiusRatio = Triangle::radius_ratio, Definition {
+        name: "radius-ratio",
+        formula: "R / (2 r) = L1 L2 L3 (L1 + L2 + L3) / (16 S²)",
+        unit: "",
+        range: [1.0, f64::INFINITY],
+        ideal: 1.0,
+        better: Better::Lower,
+        source: VERDICT,
+    };
+    /// Twice the signed area over the largest product of two edges, scaled to 1 for the equilateral triangle: the least
+    /// sine of an angle, over that of 60°.
+    ScaledJacobian = Triangle::scaled_jacobian, Definition {
+        name: "scaled-jacobian",
+        formula: "(2/√3) 2 S / max(L1 L2, L2 L3, L3 L1)",
+        unit: "",
+        range: [-1.0, 1.0],
+        ideal: 1.0,
+        better: Better::Higher,
+        source: VERDICT,
+    };
+    /// The condition number of the map from the equilateral triangle, over 2. Equal to the metric `imr`.
+    Condition = Triangle::condition, Definition {
+        name: "condition",
+        formula: "(L1² + L2² + L3²) / (4√3 S)",
+        unit: "",
+        range: [1.0, f64::INFINITY],
+        ideal: 1.0,
+        better: Better::Lower,
+        source: VERDICT,
+    };
+    /// One over the condition; also called the mean ratio.
+    Shape = Triangle::shape, Definition {
+        name: "shape",
+        formula: "4√3 S / (L1² + L2² + L3²)",
+        unit: "",
+        range: [0.0, 1.0],
+        ideal: 1.0,
+        better: Better::Higher,
+        source: VERDICT,
+    };
+    /// How far the angles are from 60°: the equiangle skewness of CFD.
+    Skewness = Triangle::skewness, Definition {
+        name: "skewness",
+        formula: "max((θmax - 60°) / 120°, (60° - θmin) / 60°)",
+        unit: "",
+        range: [0.0, 1.0],
+        ideal: 0.0,
+        better: Better::Lower,
+        source: "ANSYS Fluent User's Guide, Mesh Quality: equiangle skewness; Verdict as of 2019, equiangle_skew",
+    };
+    /// How much larger or smaller a triangle is than a neighbor: the ratio of the larger to the smaller area, the most
+    /// of the triangles across its edges. 1 for a triangle without neighbors.
+    SizeRatio = |t| t.size_ratio, Definition {
+        name: "size-ratio",
+        formula: "max over the neighbors N across an edge of max(S / S_N, S_N / S)",
+        unit: "",
+        range: [1.0, f64::INFINITY],
+        ideal: 1.0,
+        better: Better::Lower,
+        source: "ANSYS Fluent User's Guide, Mesh Quality: cell size change, as the larger over the smaller area",
+    };
+}
+
+const fn of_metric(metric: Metric) -> Definition {
+    let row = metric.properties();
+    Definition {
+        name: row.name,
+        formula: row.formula,
+        unit: "",
+        // Metrics of size have their ideal at the mean size, and values below it for smaller triangles.
+        range: [if row.scale_invariant { row.ideal } else { 0.0 }, f64::INFINITY],
+        ideal: row.ideal,
+        better: Better::Lower,
+        source: row.citation,
+    }
+}
+
+impl Measure {
+    /// Every measure: those of the field, then the metrics that smoothing minimizes.
+    pub const ALL: &'static [Measure] = &{
+        let mut all = [Measure::MinAngle; Self::OWN.len() + Metric::ALL.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = match i < Self::OWN.len() {
+                true => Self::OWN[i],
+                false => Measure::Metric(Metric::ALL[i - Self::OWN.len()]),
+            };
+            i += 1;
+        }
+        all
+    };
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        self.definition().name
+    }
+
+    /// Whether the value `a` is worse than `b`.
+    pub const fn is_worse(self, a: f64, b: f64) -> bool {
+        match self.definition().better {
+            Better::Higher => a < b,
+            Better::Lower => a > b,
+        }
+    }
+}
+
+impl std::fmt::Display for Measure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Measure {
+    type Err = UnknownMeasure;
+    /// Names may be written with underscores, as in Verdict and VTK.
+    fn from_str(text: &str) -> Result<Self, UnknownMeasure> {
+        let name = text.trim().to_ascii_lowercase().replace('_', "-");
+        let found = Measure::ALL.iter().find(|measure| measure.name() == name);
+        found.copied().ok_or_else(|| UnknownMeasure(text.trim().to_owned()))
+    }
+}
+
+/// A name that is not the name of a measure.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no measure is called '{0}'; there are {names}", names = names())]
+pub struct UnknownMeasure(pub String);
+
+/// The names of all measures, for the error message.
+fn names() -> String {
+    Measure::ALL.iter().map(|measure| measure.name()).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_leads_back_to_its_measure() {
+        for &measure in Measure::ALL {
+            assert_eq!(measure.name().parse(), Ok(measure));
+            assert_eq!(measure.name().to_uppercase().replace('-', "_").parse(), Ok(measure));
+        }
+        let error = "roundness".parse::<Measure>().unwrap_err().to_string();
+        assert!(
+            error.starts_with("no measure is called 'roundness'; there are min-angle, max-angle, ")
+        );
+    }
+
+    #[test]
+    fn the_ideal_is_the_good_end_of_the_range() {
+        // But for rms, the ideal of which is that of the triangle of mean size.
+        for measure in Measure::ALL.iter().filter(|measure| measure.name() != "rms") {
+            let Definition { range: [least, most], ideal, better, .. } = measure.definition();
+            assert!(least < most);
+            assert_eq!(ideal, if better == Better::Higher { most } else { least }, "{measure}");
+        }
+    }
+}

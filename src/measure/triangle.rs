@@ -1,0 +1,212 @@
+//! A triangle as measures see it.
+
+use std::cell::OnceCell;
+
+use crate::metric::{Corner, Metric};
+use crate::topology::predicates::orientation;
+
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// What measures are functions of. Lengths are divided by a power of two near the size of the triangle, so that no
+/// product of them overflows or vanishes; all measures but `size_ratio` and some metrics do not depend on the size.
+pub(crate) struct Triangle {
+    /// From the first corner to the second, from the first to the third, from the second to the third.
+    edges: [[f64; 2]; 3],
+    lengths: [f64; 3],
+    /// Twice the signed area. Its sign is exact.
+    doubled_area: f64,
+    /// The mean area of the mesh, and one over the unit of lengths.
+    mean_area: f64,
+    per_unit: f64,
+    /// The smallest and the largest once they were asked for; they take longer than all else.
+    angles: OnceCell<[f64; 2]>,
+    /// The value of the measure `size-ratio`, which depends on the neighbors.
+    pub(crate) size_ratio: f64,
+}
+
+/// The power of two at or below a positive number, as far as one over it is a number.
+#[inline]
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    f64::from_bits(x.to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
+}
+
+#[inline]
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
+}
+
+#[inline]
+fn difference(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+    [q[0] - p[0], q[1] - p[1]]
+}
+
+#[inline]
+fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
+    u[0] * v[0] + u[1] * v[1]
+}
+
+/// The length of an edge. Squares of short ones would vanish.
+#[inline]
+fn length(edge: [f64; 2]) -> f64 {
+    match dot(edge, edge).sqrt() {
+        length if length > 1e-140 => length,
+        _ => edge[0].hypot(edge[1]),
+    }
+}
+
+impl Triangle {
+    /// A triangle that has shrunk to a point. Also stands for one with a coordinate that is not a finite number.
+    fn point(size_ratio: f64) -> Self {
+        Self {
+            edges: [[0.0; 2]; 3],
+            lengths: [0.0; 3],
+            doubled_area: 0.0,
+            mean_area: 1.0,
+            per_unit: 1.0,
+            angles: OnceCell::new(),
+            size_ratio,
+        }
+    }
+
+    /// The triangle with its corners at `points`, counter-clockwise unless it is inverted. `mean_area` is that of the
+    /// mesh, `size_ratio` the measure of that name.
+    #[inline]
+    pub(crate) fn new(mut points: [[f64; 2]; 3], mean_area: f64, size_ratio: f64) -> Self {
+        if !points.as_flattened().iter().all(|x| x.is_finite()) {
+            return Self::point(size_ratio);
+        }
+        // Coordinates are scaled before their differences or their products can overflow or vanish.
+        let far = largest(points.as_flattened());
+        let mut per_unit = 1.0;
+        if !(1e-100..1e100).contains(&far) {
+            per_unit = 1.0 / power_of_two(far);
+            points = points.map(|point| point.map(|x| x * per_unit));
+        }
+        let [p, q, r] = points;
+        let edges = [difference(p, q), difference(p, r), difference(q, r)];
+        let size = largest(edges.as_flattened());
+        if size == 0.0 {
+            return Self::point(size_ratio);
+        }
+        let shrink = 1.0 / power_of_two(size);
+        let edges = edges.map(|edge| edge.map(|x| x * shrink));
+        Self {
+            edges,
+            lengths: edges.map(length),
+            doubled_area: orientation(&points, &[0, 1, 2]) * shrink * shrink,
+            mean_area,
+            per_unit: per_unit * shrink,
+            angles: OnceCell::new(),
+            size_ratio,
+        }
+    }
+
+    /// The smallest and the largest angle in degrees, of the mirror image if the triangle is inverted.
+    #[inline]
+    fn angles(&self) -> [f64; 2] {
+        *self.angles.get_or_init(|| {
+            if self.lengths.contains(&0.0) {
+                return [0.0, 180.0];
+            }
+            // The cotangent of each angle is a dot product over the same doubled area: the largest is the smallest
+            // angle's.
+            let [a, b, c] = self.edges;
+            let [u, v, w] = [dot(a, b), -dot(a, c), dot(b, c)];
+            let area = self.doubled_area.abs();
+            [u.max(v).max(w), u.min(v).min(w)].map(|dot| area.atan2(dot).to_degrees())
+        })
+    }
+
+    pub(crate) fn min_angle(&self) -> f64 {
+        self.angles()[0]
+    }
+
+    pub(crate) fn max_angle(&self) -> f64 {
+        self.angles()[1]
+    }
+
+    fn longest(&self) -> f64 {
+        largest(&self.lengths)
+    }
+
+    fn perimeter(&self) -> f64 {
+        self.lengths.iter().sum()
+    }
+
+    fn squares(&self) -> f64 {
+        self.edges.as_flattened().iter().map(|x| x * x).sum()
+    }
+
+    pub(crate) fn edge_ratio(&self) -> f64 {
+        let [a, b, c] = self.lengths;
+        match a.min(b).min(c) {
+            0.0 => f64::INFINITY,
+            shortest => self.longest() / shortest,
+        }
+    }
+
+    pub(crate) fn aspect_ratio(&self) -> f64 {
+        // At least 1 but for rounding.
+        unbounded(self.longest() * self.perimeter() / (2.0 * SQRT_3 * self.doubled_area.abs()))
+            .max(1.0)
+    }
+
+    pub(crate) fn radius_ratio(&self) -> f64 {
+        let [a, b, c] = self.lengths;
+        let area = self.doubled_area.abs();
+        unbounded((a * b / area) * (c * self.perimeter() / area) / 4.0).max(1.0)
+    }
+
+    pub(crate) fn scaled_jacobian(&self) -> f64 {
+        let [a, b, c] = self.lengths;
+        match (a * b).max(b * c).max(c * a) {
+            0.0 => 0.0,
+            most => (2.0 / SQRT_3 * self.doubled_area / most).clamp(-1.0, 1.0),
+        }
+    }
+
+    pub(crate) fn condition(&self) -> f64 {
+        match self.doubled_area > 0.0 {
+            true => (self.squares() / (2.0 * SQRT_3 * self.doubled_area)).max(1.0),
+            false => f64::INFINITY,
+        }
+    }
+
+    pub(crate) fn shape(&self) -> f64 {
+        1.0 / self.condition()
+    }
+
+    pub(crate) fn skewness(&self) -> f64 {
+        let [least, most] = self.angles();
+        ((most - 60.0) / 120.0).max((60.0 - least) / 60.0).clamp(0.0, 1.0)
+    }
+
+    /// q of a metric.
+    pub(crate) fn metric(&self, metric: Metric) -> f64 {
+        let is_positive = self.doubled_area > 0.0;
+        if metric.properties().barrier && !is_positive {
+            return f64::INFINITY;
+        }
+        let [a, b, _] = self.edges;
+        let mean_area = self.mean_area * self.per_unit * self.per_unit;
+        let mut corner = Corner { a, b, mean_area };
+        if is_positive != (corner.doubled_area() > 0.0) {
+            // Rounding has changed the sign of the area. In coordinates along and across the first edge, that sign is
+            // the sign of a single coordinate, which takes the exact one.
+            let length = self.lengths[0];
+            corner.a = [length, 0.0];
+            corner.b = [dot(a, b) / length, self.doubled_area / length];
+        }
+        let squared = metric.excess(&corner) + metric.ideal_squared();
+        match squared.is_nan() {
+            true => f64::INFINITY,
+            false => squared.max(0.0).sqrt(),
+        }
+    }
+}
+
+/// A ratio whose denominator may be zero: infinite, also where the numerator is zero too.
+fn unbounded(ratio: f64) -> f64 {
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}

@@ -1,0 +1,49 @@
+//! Vertices of which a mesh has no need.
+
+use crate::measure::measured::Measured;
+use crate::parallel::counting_sort::Groups;
+use crate::parallel::map_ranges;
+
+impl Measured<'_> {
+    /// The vertices at exactly the place of one that comes before them, ascending. Such pairs may be meant, as along a weir
+    /// or a crack.
+    pub fn duplicate_vertices(&self) -> Vec<u32> {
+        let points = self.points();
+        // Zero has two signs.
+        let bits = |v: u32| points[v as usize].map(|x| (x + 0.0).to_bits());
+        let buckets = points.len() / 4 + 1;
+        let bucket = |v: usize| {
+            let [x, y] = bits(v as u32).map(|bits| bits.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+            let mixed = (x ^ y.rotate_left(32)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            ((u128::from(mixed) * buckets as u128) >> 64) as u32
+        };
+        let groups = Groups::new(points.len(), buckets, |v| [bucket(v)]);
+        let mut found = map_ranges(buckets, 1 << 12, |range| {
+            let mut found = Vec::new();
+            for bucket in range {
+                // Ascending within equal places, so that the first stays.
+                let mut members: Vec<([u64; 2], u32)> =
+                    groups.of(bucket).iter().map(|&v| (bits(v), v)).collect();
+                members.sort_unstable();
+                let repeated = members.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+                found.extend(repeated.map(|pair| pair[1].1));
+            }
+            found
+        })
+        .concat();
+        found.sort_unstable();
+        found
+    }
+
+    /// The vertices that no triangle uses, ascending.
+    pub fn unused_vertices(&self) -> Vec<u32> {
+        let topology = self.topology();
+        // Stars that were forgotten are found again here, not by the first of many threads.
+        topology.star(0);
+        let unused = |v: &u32| topology.star(*v).is_empty();
+        map_ranges(self.points().len(), 1 << 14, |range| {
+            range.map(|v| v as u32).filter(unused).collect::<Vec<_>>()
+        })
+        .concat()
+    }
+}

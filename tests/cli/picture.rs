@@ -1,0 +1,202 @@
+//! `--picture`: files that hold what was asked for, the right way up.
+
+use super::output::INVERTED;
+use super::{Folder, assert_holds, finish, small};
+use std::fs;
+
+/// An image and its size.
+struct Image {
+    width: usize,
+    height: usize,
+    pixels: Vec<[u8; 4]>,
+}
+
+impl Image {
+    fn read(folder: &Folder, name: &str) -> Self {
+        let file = std::io::Cursor::new(fs::read(folder.path(name)).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgba, png::BitDepth::Eight));
+        let pixels = bytes.as_chunks().0.to_vec();
+        Self { width: info.width as usize, height: info.height as usize, pixels }
+    }
+
+    /// The places of pixels of some color.
+    fn places(&self, is: impl Fn([u8; 4]) -> bool) -> Vec<[usize; 2]> {
+        let place = |i: usize| [i % self.width, i / self.width];
+        (0..self.pixels.len()).filter(|&i| is(self.pixels[i])).map(place).collect()
+    }
+}
+
+/// Least and largest x and y.
+fn bounds(places: &[[usize; 2]]) -> [[usize; 2]; 2] {
+    [0, 1].map(|axis| {
+        let all = places.iter().map(|place| place[axis]);
+        [all.clone().min().unwrap(), all.max().unwrap()]
+    })
+}
+
+fn is_red(pixel: [u8; 4]) -> bool {
+    pixel == [230, 25, 75, 255]
+}
+
+/// A color of the scale, not of lines and letters.
+fn is_face(pixel: [u8; 4]) -> bool {
+    let [r, g, b, _] = pixel;
+    r.abs_diff(g).max(g.abs_diff(b)) > 20
+}
+
+#[test]
+fn a_picture_is_upright_with_equal_axes_and_shows_inverted_triangles() {
+    // A square 1 wide and high. Its center lies above it, so that the upper triangle is inverted, or to the right of it.
+    let [node, ele] = INVERTED;
+    let above = node.replace("1.5 0.5", "0.5 1.5");
+    for (node, x, y) in [(node, [1.0_f64, 1.5], [0.0_f64, 1.0]), (&above, [0.0, 1.0], [1.0, 1.5])] {
+        let folder = Folder::new(&[("in.node", node), ("in.ele", ele)]);
+        folder.line("quality in --picture p.png --picture-size 700").clean();
+        let image = Image::read(&folder, "p.png");
+        assert_eq!(image.width, 700);
+        // All that is colored above the legend.
+        let mesh = |[_, row]: &[usize; 2]| *row < image.height - 70;
+        let mut red = image.places(is_red);
+        red.retain(mesh);
+        let mut all = image.places(is_face);
+        all.retain(mesh);
+        let [[left, right], [top, bottom]] = bounds(&all);
+        let [width, height] = [right - left, bottom - top].map(|x| x as f64);
+        let [wide, high] = [x[1].max(1.0), y[1].max(1.0)];
+        assert!((width / height - wide / high).abs() < 0.03, "{width} x {height}");
+        let [[red_left, red_right], [red_top, red_bottom]] = bounds(&red);
+        let scale = width / wide;
+        let near = |pixel: usize, place: f64| (pixel as f64 - place).abs() < 6.0;
+        assert!(
+            near(red_left, left as f64 + scale * x[0])
+                && near(red_right, left as f64 + scale * x[1])
+        );
+        assert!(
+            near(red_top, bottom as f64 - scale * y[1])
+                && near(red_bottom, bottom as f64 - scale * y[0])
+        );
+    }
+}
+
+#[test]
+fn a_run_is_drawn_before_and_after_on_one_scale() {
+    let folder = small();
+    folder.line("in out --engine cpu -q --picture p.png --picture-size 900").clean();
+    let image = Image::read(&folder, "p.png");
+    let before = |x: usize| x < 450;
+    // Good triangles are light; the legend is the same on both sides of nothing.
+    let mesh = |[_, row]: &[usize; 2]| *row < image.height - 90;
+    let mean = |is_side: &dyn Fn(usize) -> bool| {
+        let mut places = image.places(is_face);
+        places.retain(|place| mesh(place) && is_side(place[0]));
+        let light = |[x, y]: &[usize; 2]| u64::from(image.pixels[y * image.width + x][1]);
+        places.iter().map(light).sum::<u64>() as f64 / places.len() as f64
+    };
+    let [dark, light] = [mean(&before), mean(&|x| !before(x))];
+    assert!(light > dark + 20.0, "{dark} before, {light} after");
+    assert_eq!(image.places(is_red), [[0; 2]; 0]);
+    // Nothing else is written.
+    assert_eq!(folder.content().len(), 5);
+}
+
+#[test]
+fn an_svg_has_every_triangle() {
+    let folder = small();
+    for ending in ["node", "ele"] {
+        let name = |stem: &str| folder.path(&format!("{stem}.{ending}"));
+        fs::rename(name("in"), name("a&b")).unwrap();
+    }
+    let args = [
+        "quality",
+        "a&b",
+        "--picture",
+        "p.SVG",
+        "--picture-measure",
+        "min_angle",
+        "--picture-size",
+        "800",
+    ];
+    folder.run(args).clean();
+    let text = folder.text("p.SVG");
+    let mut reader = quick_xml::Reader::from_str(&text);
+    let (mut triangles, mut words) = (0, String::new());
+    loop {
+        match reader.read_event().unwrap() {
+            quick_xml::events::Event::Eof => break,
+            quick_xml::events::Event::Empty(tag) if tag.name().as_ref() == b"path" => {
+                let path = tag.try_get_attribute("d").unwrap().unwrap();
+                triangles += path.value.iter().filter(|&&c| c == b'Z').count();
+            }
+            quick_xml::events::Event::Text(text) => words += &text.decode().unwrap(),
+            quick_xml::events::Event::GeneralRef(name) => {
+                words += &format!("&{};", name.decode().unwrap())
+            }
+            _ => {}
+        }
+    }
+    // Those in the insets come on top.
+    assert!(triangles >= 160, "{triangles}");
+    assert_holds(
+        &words,
+        &["a&amp;b", "160 triangles; min-angle ", "min-angle, 60° is best", "boundary"],
+    );
+    assert_holds(&text, &["width=\"800\""]);
+}
+
+#[test]
+fn regions_and_fixed_vertices_are_named_where_they_are() {
+    let folder = small();
+    let plain = "quality in --picture p.svg";
+    folder.line(plain).clean();
+    assert!(
+        !folder.text("p.svg").contains("fixed vertex") && !folder.text("p.svg").contains("regions")
+    );
+    fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 50 51\n0\n").unwrap();
+    folder.line(plain).clean();
+    assert_holds(&folder.text("p.svg"), &[">fixed vertex inside</text>"]);
+    fs::remove_file(folder.path("in.poly")).unwrap();
+    let ele = folder.text("in.ele").replacen("160 3 0", "160 3 1", 1);
+    let mut row = 0;
+    let with_attribute = ele.lines().map(|line| {
+        let is_triangle = line.split(' ').count() == 4;
+        row += usize::from(is_triangle);
+        if is_triangle { format!("{line} {}\n", row / 80) } else { format!("{line}\n") }
+    });
+    fs::write(folder.path("in.ele"), with_attribute.collect::<String>()).unwrap();
+    folder.line(plain).clean();
+    assert_holds(
+        &folder.text("p.svg"),
+        &[">between regions</text>", ">fixed vertex inside</text>"],
+    );
+}
+
+#[test]
+fn pictures_that_cannot_be_written_are_refused_before_the_work() {
+    let folder = small();
+    let before = folder.content();
+    for (line, parts) in [
+        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is .png or .svg"]),
+        ("in out --engine cpu --picture none/p.png", ["the picture cannot be written: ", "none"]),
+        ("quality in --picture p", ["p: ", "is .png or .svg"]),
+        ("quality in in --picture p.png", ["p.png: ", "give one"]),
+        (
+            "in out --engine cpu --picture p.svg --report p.svg",
+            ["p.svg: ", "would replace this file"],
+        ),
+    ] {
+        folder.line(line).refused(&parts);
+    }
+    for (line, part) in [
+        ("in out --picture-size 900", "--picture <FILE>"),
+        ("quality in --picture p.png --picture-size 20", "400..=8000"),
+        ("quality in --picture p.png --picture-measure round", "no measure is called 'round'"),
+    ] {
+        let run = finish(folder.command().args(line.split(' ')));
+        assert_eq!(run.code, Some(2), "{line}");
+        assert_holds(&run.err, &[part]);
+    }
+    assert!(folder.content() == before);
+}
