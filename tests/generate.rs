@@ -365,6 +365,11 @@ fn make_mesh_explains_what_it_refuses() {
         ("a b --perturb 2", "--perturb takes a number from 0 to 1, not '2'"),
         ("a b --color red", "unknown option --color"),
         ("a b --perturb 1 --distort 1", "exclude each other"),
+        ("a b --perturb 1 --tangle fold", "exclude each other"),
+        (
+            "a b --tangle knot",
+            "--tangle takes one of scatter, noise, collapse, fold, turn, not 'knot'",
+        ),
     ];
     for (args, expected) in cases {
         let args: Vec<_> = args.split_whitespace().map(String::from).collect();

@@ -184,7 +184,7 @@ fn options_out_of_range_are_refused() {
             Options { omega: Some(f64::NAN), ..ok() },
             "omega is NaN: over-relaxation must be above 0 and below 2",
         ),
-        (Options { inner: 0, ..ok() }, "inner is 0: a visit takes at least one Newton step"),
+        (Options { inner: 0, ..ok() }, "inner is 0: a visit takes from 1 to 1000 Newton steps"),
         (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();

@@ -1,6 +1,6 @@
 //! The command line of `examples/make_mesh.rs`, here so that a test can run what a mesh says made it.
 
-use super::{Outline, distort_smooth, perturb_random, triangle_text, triangulate};
+use super::{Outline, distort_smooth, perturb_random, tangle, triangle_text, triangulate};
 use gpu_smooth::Mesh;
 use std::path::PathBuf;
 
@@ -8,6 +8,7 @@ const USAGE: &str = "usage: make_mesh OUTLINE OUT_STEM [options]
   --vertices N  make about N vertices, within 1 % (default 2000)
   --perturb S   move each interior vertex at random; 0.5 is mild, 1 leaves some triangles nearly flat
   --distort A   move the interior by long waves; 1 is where the first triangle becomes flat
+  --tangle KIND tangle the interior: scatter, noise, collapse, fold or turn; see docs/untangling.md
   --seed K      of the random moves (default 1)";
 
 /// What the command line asks for.
@@ -20,8 +21,21 @@ pub struct Recipe {
     vertices: usize,
     perturb: Option<f64>,
     distort: Option<f64>,
+    tangle: Option<Tangle>,
     seed: u64,
 }
+
+/// A way to tangle a mesh, given a seed.
+type Tangle = fn(&Mesh, u64) -> Mesh;
+
+/// The ways to tangle a mesh, by their names on the command line.
+const TANGLES: [(&str, Tangle); 5] = [
+    ("scatter", tangle::scattered),
+    ("noise", |mesh, seed| tangle::noisy(mesh, 3.0, seed)),
+    ("collapse", tangle::collapsed),
+    ("fold", tangle::folded),
+    ("turn", |mesh, seed| tangle::turned(mesh, seed as f64 / 10.0)),
+];
 
 impl Recipe {
     /// Parses the arguments after the program's name.
@@ -33,6 +47,7 @@ impl Recipe {
             vertices: 2000,
             perturb: None,
             distort: None,
+            tangle: None,
             seed: 1,
         };
         let mut paths = Vec::new();
@@ -47,12 +62,21 @@ impl Recipe {
                 "--vertices" => recipe.vertices = number(arg, value, 3..=100_000_000)?,
                 "--perturb" => recipe.perturb = Some(number(arg, value, 0.0..=1.0)?),
                 "--distort" => recipe.distort = Some(number(arg, value, 0.0..=1.0)?),
+                "--tangle" => {
+                    let kind = TANGLES.iter().find(|(name, _)| name == value);
+                    let (_, tangle) = kind.ok_or_else(|| {
+                        let names = TANGLES.map(|(name, _)| name).join(", ");
+                        format!("{arg} takes one of {names}, not '{value}'")
+                    })?;
+                    recipe.tangle = Some(*tangle);
+                }
                 "--seed" => recipe.seed = number(arg, value, 0..=u64::MAX)?,
                 _ => return Err(format!("unknown option {arg}\n{USAGE}")),
             }
         }
-        if recipe.perturb.is_some() && recipe.distort.is_some() {
-            return Err("--perturb and --distort exclude each other".into());
+        let given = [recipe.perturb.is_some(), recipe.distort.is_some(), recipe.tangle.is_some()];
+        if given.into_iter().filter(|&given| given).count() > 1 {
+            return Err("--perturb, --distort and --tangle exclude each other".into());
         }
         [recipe.outline, recipe.stem] = paths
             .try_into()
@@ -70,9 +94,10 @@ impl Recipe {
         let text = std::fs::read_to_string(&self.outline).map_err(|e| named(e.to_string()))?;
         let outline = Outline::parse(&text).map_err(named)?;
         let mesh = triangulate(&outline, self.vertices).map_err(named)?;
-        Ok(match (self.perturb, self.distort) {
-            (Some(strength), _) => perturb_random(&mesh, strength, self.seed),
-            (_, Some(amplitude)) => distort_smooth(&mesh, amplitude),
+        Ok(match (self.perturb, self.distort, self.tangle) {
+            (Some(strength), ..) => perturb_random(&mesh, strength, self.seed),
+            (_, Some(amplitude), _) => distort_smooth(&mesh, amplitude),
+            (_, _, Some(tangle)) => tangle(&mesh, self.seed),
             _ => mesh,
         })
     }

@@ -6,8 +6,8 @@
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
 use gpu_smooth::{
-    Backend, Derivatives, Desired, Goal, Mesh, MeshError, Method, Options, Outcome, Precision,
-    Sharpness, SmoothError, Smoother,
+    Backend, Derivatives, Desired, Goal, Mesh, MeshError, MeshFile, Method, Options, Outcome,
+    Precision, Sharpness, SmoothError, Smoother,
 };
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::ops::ControlFlow;
@@ -220,6 +220,22 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
     }
 }
 
+/// Checks that a result is the same once it was written to a file of the mesh and read again.
+fn check_file(mesh: &Mesh, outcome: &Outcome) {
+    let folder = tempfile::tempdir().unwrap();
+    let [input, output] = ["in.node", "out.node"].map(|name| folder.path().join(name));
+    let [node, ele] = support::triangle_text(mesh, "random");
+    std::fs::write(&input, node).unwrap();
+    std::fs::write(input.with_extension("ele"), ele).unwrap();
+    let file = MeshFile::read(&input).unwrap();
+    let bits = |points: &[[f64; 2]]| points.iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
+    assert_eq!(bits(&file.mesh().points), bits(&mesh.points), "the mesh is not as written");
+    file.write(&output, &outcome.points).unwrap();
+    let written = MeshFile::read(&output).unwrap();
+    assert_eq!(bits(&written.mesh().points), bits(&outcome.points), "the result is not as written");
+    assert_eq!(written.mesh().triangles, mesh.triangles);
+}
+
 fn setting(name: &str, default: u64) -> u64 {
     match std::env::var(name) {
         Ok(value) => value.parse().unwrap_or_else(|_| panic!("{name} is not a number: {value}")),
@@ -260,8 +276,10 @@ fn every_mesh_comes_back_finite_feasible_and_no_worse() {
                 Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => continue,
                 Err(error) => panic!("{label}: {error}"),
             };
-            let result =
-                std::panic::catch_unwind(|| check(&mesh, &smoother, &options, &outcome, near));
+            let result = std::panic::catch_unwind(|| {
+                check(&mesh, &smoother, &options, &outcome, near);
+                check_file(&mesh, &outcome);
+            });
             assert!(result.is_ok(), "{label}");
             let again = once().unwrap();
             assert!(

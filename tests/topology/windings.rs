@@ -2,7 +2,8 @@
 
 use crate::support::{self, check};
 use gpu_smooth::{
-    Backend, BadTriangle, Mesh, Metric, Options, Quality, Smoother, Topology, smooth,
+    Backend, BadTriangle, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother,
+    Topology, smooth,
 };
 use std::ops::ControlFlow;
 
@@ -141,10 +142,18 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     assert!(signs.iter().all(|&sign| sign != 0 && sign == signs[0]), "{signs:?}");
     assert_bad(&mesh, &[]);
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { max_sweeps: 5, ..Options::default() };
-    let outcome =
-        smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_bad(&Mesh { points: outcome.points, ..mesh }, &[]);
+    let run = |metric: Metric| {
+        let options = Options { scheme: metric.into(), max_sweeps: 5, ..Options::default() };
+        smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()))
+    };
+    let outcome = run(Metric::Area).unwrap();
+    assert_bad(&Mesh { points: outcome.points, ..mesh.clone() }, &[]);
+    // Its area is rounded to zero or below, so by imr it cannot be judged. It is named, and not called inverted.
+    let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run(Metric::Imr)
+    else {
+        panic!("a mesh without a finite f was smoothed")
+    };
+    assert!(triangle < mesh.triangles.len());
 }
 
 #[test]
