@@ -30,9 +30,13 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
             assert_eq!(history.last(), Some(&f));
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
             let after = with_points(mesh, &outcome.points);
-            // A device evaluates f in single precision. How many sweeps were done by then depends on the machine, and early
-            // ones leave flat triangles, whose areas have fewer digits.
-            let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-5 };
+            // A device evaluates f in single precision. The first sweeps leave flat triangles, whose areas have fewer digits,
+            // and how many sweeps are done by then depends on the machine.
+            let near = match (backend, outcome.sweeps) {
+                (Backend::Cpu, _) => 1e-9,
+                (Backend::Gpu(_), 0..4) => 2e-6,
+                (Backend::Gpu(_), _) => 1e-8,
+            };
             assert!((smoother.quality(&after.points).unwrap().f(base) / best - 1.0).abs() < near);
             assert!(support::is_ccw(&after));
         }
