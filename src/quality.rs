@@ -115,8 +115,9 @@ fn one(
     triangle: usize,
     movable: bool,
 ) -> Tally {
-    let is_positive = predicates::is_positive(points, corners);
-    let Edges { a, b, c, unit } = Edges::of(points, corners);
+    let orientation = predicates::orientation(points, corners);
+    let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
+    let Edges { a, b, c, unit } = Edges::of(points, corners, orientation);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
     // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
     let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
@@ -157,7 +158,8 @@ struct Edges {
 }
 
 impl Edges {
-    fn of(points: &[[f64; 2]], corners: &[u32; 3]) -> Self {
+    /// The edges of a triangle whose exact orientation is known.
+    fn of(points: &[[f64; 2]], corners: &[u32; 3], orientation: f64) -> Self {
         const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
         let [p, q, r] = corners.map(|v| points[v as usize]);
         let to = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
@@ -165,7 +167,7 @@ impl Edges {
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
         let unit = f64::from_bits(size.to_bits() & EXPONENT);
         let [a, b, c] = edges.map(|edge| edge.map(|x| x / unit));
-        let exact = predicates::orientation(points, corners) / unit / unit;
+        let exact = orientation / unit / unit;
         let rounded = a[0] * b[1] - a[1] * b[0];
         if (exact > 0.0) == (rounded > 0.0) {
             return Self { a, b, c, unit };

@@ -9,7 +9,7 @@ use crate::parallel::counting_sort::Groups;
 use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
-use crate::topology::turns::overlapping_star;
+use crate::topology::turns;
 use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
 /// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
@@ -84,6 +84,11 @@ impl<'m> Topology<'m> {
     /// inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free, [`MeshError::OverlappingStar`] if
     /// triangles wind more than once around a free vertex.
     pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        self.check_count(points)?;
+        let is_feasible = turns::is_feasible(points, &self.triangles, &self.free);
+        if is_feasible && self.free.contains(&true) {
+            return Ok(());
+        }
         let triangles = self.bad_triangles(points)?;
         if !triangles.is_empty() {
             return Err(MeshError::Infeasible { triangles });
@@ -91,7 +96,7 @@ impl<'m> Topology<'m> {
         if !self.free.contains(&true) {
             return Err(MeshError::NothingFree { vertices: points.len() });
         }
-        match overlapping_star(points, &self.triangles, &self.free) {
+        match turns::overlapping_star(points, &self.triangles, &self.free) {
             None => Ok(()),
             Some((vertex, turns)) => Err(MeshError::OverlappingStar { vertex, turns }),
         }

@@ -4,6 +4,7 @@
 //! pentagram. Only comparisons of coordinates are needed to see that, so it is exact.
 
 use crate::parallel::map_parts;
+use crate::topology::predicates::is_positive;
 
 /// Whether a point lies above another, or at the same height to the right of it.
 #[inline(always)]
@@ -27,6 +28,17 @@ fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> Option<u32> {
     }
 }
 
+/// Whether every triangle is counter-clockwise and every free vertex has triangles that wind once around it. In one pass,
+/// as nearly all meshes pass.
+pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[bool]) -> bool {
+    let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
+        let turn = |t: &[u32; 3]| is_positive(points, t).then(|| turns_at_free(points, t, free));
+        chunk.iter().map(turn).sum()
+    };
+    let turns: Option<usize> = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
+    turns == Some(count_of(free))
+}
+
 /// A free vertex around which the triangles wind more than once, and how many times, if there is one. All triangles must
 /// be counter-clockwise.
 pub(crate) fn overlapping_star(
@@ -34,17 +46,30 @@ pub(crate) fn overlapping_star(
     triangles: &[[u32; 3]],
     free: &[bool],
 ) -> Option<(u32, u32)> {
-    let at_free = |t: &[u32; 3]| ahead(points, t).filter(|&v| free[v as usize]);
-    let count = |_, chunk: &[[u32; 3]]| chunk.iter().filter_map(at_free).count();
+    let count = |_, chunk: &[[u32; 3]]| -> usize {
+        chunk.iter().map(|t| turns_at_free(points, t, free)).sum()
+    };
     let turns: usize = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
     // Each star winds once at least.
-    if turns == free.iter().filter(|&&free| free).count() {
+    if turns == count_of(free) {
         return None;
     }
     let mut turns = vec![0; free.len()];
+    let at_free = |t: &[u32; 3]| ahead(points, t).filter(|&v| free[v as usize]);
     triangles.iter().filter_map(at_free).for_each(|v| turns[v as usize] += 1);
     let vertex = turns.iter().position(|&turns| turns > 1)?;
     Some((vertex as u32, turns[vertex]))
+}
+
+/// 1 if the corner of a triangle that counts for turns is at a free vertex, else 0.
+#[inline(always)]
+fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usize {
+    usize::from(ahead(points, corners).is_some_and(|v| free[v as usize]))
+}
+
+/// Number of free vertices.
+fn count_of(free: &[bool]) -> usize {
+    free.iter().filter(|&&free| free).count()
 }
 
 #[cfg(test)]
