@@ -41,6 +41,20 @@ fn max_sweeps_ends_a_run() {
 }
 
 #[test]
+fn strict_makes_it_an_error_to_fall_short_and_writes_the_mesh() {
+    let folder = small();
+    let strict = |options: &str| folder.line(&format!("in out --engine cpu --strict {options}"));
+    strict("").clean();
+    strict("--fraction 0.5").clean();
+    std::fs::remove_file(folder.path("out.node")).unwrap();
+    let short = strict("--max-sweeps 2");
+    assert_eq!(short.code, Some(1));
+    assert_holds(&short.err, &["stopped after 2 sweeps", "The mesh was written", "--strict"]);
+    assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+    assert_eq!(strict("--desired 0.5").code, Some(1));
+}
+
+#[test]
 fn a_loose_tolerance_ends_a_run_earlier_and_zero_never() {
     let folder = small();
     let (loose, _) = run(&folder, "--tolerance 1e-2");

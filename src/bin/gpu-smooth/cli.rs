@@ -151,6 +151,9 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
 
+    /// Exit with 1 if the run neither converges nor reaches its goal. The mesh is written all the same
+    #[arg(long, help_heading = "Stopping")]
+    pub(crate) strict: bool,
     /// Stop after N sweeps at the latest
     #[arg(
         long,

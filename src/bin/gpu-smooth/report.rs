@@ -249,6 +249,15 @@ impl Report {
         }
     }
 
+    /// Why the run ended, if it neither converged nor reached its goal.
+    pub(crate) fn fell_short(&self) -> Option<String> {
+        let is_done = match &self.goal {
+            Some(goal) => goal.reached,
+            None => self.stop == "converged" || self.nothing_to_do.is_some(),
+        };
+        (!is_done).then(|| self.ending())
+    }
+
     /// Why the run ended, in a sentence.
     fn ending(&self) -> String {
         if let Some(reason) = &self.nothing_to_do {

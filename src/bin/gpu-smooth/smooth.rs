@@ -121,7 +121,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         if !show.quiet {
             say(&report.summary());
         }
-        Ok(())
+        match report.fell_short().filter(|_| args.strict) {
+            None => Ok(()),
+            Some(ending) => {
+                Err(format!("{ending}. The mesh was written; --strict makes this an error"))
+            }
+        }
     })
 }
 
