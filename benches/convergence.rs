@@ -28,6 +28,12 @@ fn main() {
         Err(error) => println!("no GPU: {error}"),
     }
     println!("sweeps to 95 %, 99 %, 1e-4 and 1e-6 of the limit; time to 1e-6 in plain sweeps");
+    for (start, mesh) in hard_meshes() {
+        for (name, backend) in &backends {
+            let row = measure(&mesh, Metric::Imr, Method::Multilevel, backend);
+            println!("{:>8} {start} imr on {name}: {row}", mesh.points.len());
+        }
+    }
     for vertices in sizes {
         let plate = support::triangulate(&outline, vertices).unwrap();
         let starts = [
@@ -46,6 +52,18 @@ fn main() {
             }
         }
     }
+}
+
+/// Meshes on which corrections without a memory gain little.
+fn hard_meshes() -> Vec<(&'static str, Mesh)> {
+    let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
+    vec![
+        ("graded over 1e3", perturbed(&support::graded(30, 1e-3), 1.0)),
+        ("graded over 1e6", perturbed(&support::graded(30, 1e-6), 1.0)),
+        ("a vertex of 50", perturbed(&support::hub(50, 1e-2), 1.0)),
+        ("a vertex of 200", perturbed(&support::hub(200, 1e-1), 1.0)),
+        ("a layer of 1:30", perturbed(&support::layered(90, 30.0), 0.3)),
+    ]
 }
 
 fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> String {

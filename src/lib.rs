@@ -127,7 +127,7 @@ pub use gpu::{
 };
 pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};
 pub use mesh::{Mesh, Precision};
-pub use metric::{Corner, Metric, Properties, Scheme, Stiffness, UnknownMetric};
+pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use quality::Quality;
 pub use run::{
     Derivatives, Desired, Goal, Method, Objectives, Observer, Options, Phase, Progress, Sharpness,

@@ -22,8 +22,11 @@ fn kernels() -> Vec<Kernel> {
     ]);
     kernels.extend([Kernel::Chebyshev, Kernel::CoarsestSolve, Kernel::SumAlongCorrection]);
     kernels.extend([Kernel::MoveAlongCorrection, Kernel::CheckArithmetic]);
+    kernels.extend([Kernel::CloseSecant, Kernel::SumSecants, Kernel::BendGradient]);
+    kernels.extend([Kernel::MultiplyCorrection, Kernel::OpenSecant]);
     for &metric in Metric::ALL {
         kernels.extend([Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)]);
+        kernels.push(Kernel::Stiffness(metric));
         for derivatives in [Derivatives::Analytic, Derivatives::FiniteDifference] {
             kernels.push(Kernel::Sweep(metric, derivatives));
         }
@@ -56,7 +59,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 2 * (13 + 4 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 2 * (18 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]
@@ -85,7 +88,7 @@ fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
     for (kernel, module) in modules() {
         let size = module.entry_points[0].workgroup_size;
         let width = match kernel {
-            Kernel::Finish(_) | Kernel::SumAlongCorrection => 256,
+            Kernel::Finish(_) | Kernel::SumAlongCorrection | Kernel::SumSecants => 256,
             // One for each metric, one for the inverted and one for the worst.
             Kernel::Publish => Metric::ALL.len() as u32 + 2,
             _ => 64,
@@ -169,7 +172,7 @@ fn no_invocation_leaves_before_a_barrier() {
         let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
         assert_eq!(
             count > 0,
-            matches!(kernel, Kernel::Finish(_) | Kernel::SumAlongCorrection),
+            matches!(kernel, Kernel::Finish(_) | Kernel::SumAlongCorrection | Kernel::SumSecants),
             "{}",
             kernel.label()
         );

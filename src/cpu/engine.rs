@@ -7,11 +7,12 @@ use std::borrow::Cow;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::objective::{Along, mean_excess, mean_excess_along};
+use crate::cpu::secants::{Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::parallel::{for_each_chunk, map_parts};
+use crate::parallel::for_each_chunk;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, History, Objectives, Plan, Proposal, Step};
 
@@ -34,6 +35,7 @@ pub(crate) struct CpuEngine<'a> {
     gradient: Vec<Vec2>,
     /// The last correction, at each free vertex.
     direction: Vec<Vec2>,
+    secants: Option<Secants>,
 }
 
 impl<'a> CpuEngine<'a> {
@@ -51,6 +53,7 @@ impl<'a> CpuEngine<'a> {
             hierarchy: None,
             gradient: Vec::new(),
             direction: Vec::new(),
+            secants: None,
         }
     }
 
@@ -81,16 +84,6 @@ impl<'a> CpuEngine<'a> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
         mean_excess_along(self.base, self.problem, &along, self.step.shape_guard)
-    }
-
-    /// The derivative of the mean excess along the correction.
-    fn slope(&self) -> f64 {
-        let parts = self.gradient.chunks(CHUNK).zip(self.direction.chunks(CHUNK));
-        let dot = |_, (g, d): (&[Vec2], &[Vec2])| -> f64 {
-            g.iter().zip(d).map(|(g, d)| g.as_dvec2().dot(d.as_dvec2())).sum()
-        };
-        // Summed in order, so that the result does not depend on the number of threads.
-        map_parts(parts, dot).iter().sum::<f64>() / self.problem.triangles().len() as f64
     }
 }
 
@@ -135,17 +128,33 @@ impl Engine for CpuEngine<'_> {
         Ok(())
     }
 
-    async fn propose(&mut self, step: &Step, length: f64) -> Result<Proposal, GpuError> {
+    async fn stiffness_roots(&mut self) -> Result<Vec<f32>, GpuError> {
+        let Self { base, problem, positions, step, .. } = self;
+        Ok(sweep::stiffness_roots(*base, problem, positions, step.sharpness))
+    }
+
+    async fn propose(
+        &mut self,
+        step: &Step,
+        length: f64,
+        accelerated: bool,
+    ) -> Result<Proposal, GpuError> {
         self.sweep_now(step);
-        let Self { base, problem, positions, gradient, .. } = self;
+        let Self { base, problem, positions, gradient, secants, .. } = self;
         sweep::gradient(*base, problem, positions, self.step.sharpness, gradient);
         // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
-        self.direction = match &self.hierarchy {
-            Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
-            None => vec![Vec2::ZERO; gradient.len()],
+        let levels = |vector: &[Vec2]| match &self.hierarchy {
+            Some(hierarchy) => vcycle::correction(hierarchy, problem, vector),
+            None => vec![Vec2::ZERO; vector.len()],
         };
-        let slope = self.slope();
+        self.direction = if accelerated {
+            secants.get_or_insert_default().direction(positions, gradient, levels)
+        } else {
+            *secants = None;
+            levels(gradient)
+        };
+        let slope = dot(gradient, &self.direction) / problem.triangles().len() as f64;
         let here = mean_excess(self.base, self.problem, &self.positions);
         let there = if slope < 0.0 { self.try_length(length) } else { None };
         Ok(Proposal { here, slope, there })

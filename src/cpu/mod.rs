@@ -6,6 +6,7 @@ mod lanes;
 mod newton;
 mod objective;
 mod patch;
+mod secants;
 mod sweep;
 mod vcycle;
 

@@ -3,11 +3,11 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::lanes::{LANES, Points, with_lanes};
+use crate::cpu::lanes::{LANES, Lanes, Points, with_lanes};
 use crate::cpu::newton;
 use crate::cpu::patch::{self, Patches};
 use crate::layout::Problem;
-use crate::metric::{Formulas, Metric};
+use crate::metric::{Dual, Formulas, Metric, Real};
 use crate::parallel::for_each_chunk;
 use crate::run::{Derivatives, Step};
 
@@ -17,10 +17,9 @@ const CHUNK: usize = Problem::BLOCK;
 /// Number of positions that one task copies. Fewer are not worth a second thread.
 const COPY: usize = 1 << 14;
 
-/// The result of a visit at a vertex: the new position, or the gradient.
+/// The result of a visit at a vertex: the new position, or values that are found from the derivatives there.
 trait Found: Send {
-    /// Whether the visit takes Newton steps; if not, it finds the gradient. A constant, so that for each type only one
-    /// of the two is compiled.
+    /// Whether the visit takes Newton steps. A constant, so that for each type only what it needs is compiled.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
@@ -41,6 +40,14 @@ impl Found for Vec2 {
     }
 }
 
+/// What a visit without Newton steps finds at a vertex, from the derivatives of Σ q² there.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sought {
+    Gradient,
+    /// The root of the stiffness, see [`stiffness_roots`], in both components.
+    StiffnessRoot,
+}
+
 /// Visits every free vertex once, color by color. `moved` is scratch memory.
 pub(crate) fn sweep(
     problem: &Problem,
@@ -52,7 +59,7 @@ pub(crate) fn sweep(
         let first = color.start as usize;
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of one color are not neighbors, so none reads the position of another.
-        visit(problem, positions, first, step, moved);
+        visit(problem, positions, first, step, Sought::Gradient, moved);
         for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
             to.copy_from_slice(&moved[at..][..to.len()]);
         });
@@ -61,6 +68,30 @@ pub(crate) fn sweep(
 
 /// Writes the gradient of Σ q² at each free vertex to `found`. Single precision is enough for a direction.
 pub(crate) fn gradient(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    sharpness: u32,
+    found: &mut Vec<Vec2>,
+) {
+    find(Sought::Gradient, metric, problem, positions, sharpness, found);
+}
+
+/// The square root of the stiffness at each free vertex: the mean of the absolute eigenvalues of the Hessian of Σ q² with
+/// respect to the vertex, over the number of its neighbors.
+pub(crate) fn stiffness_roots(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+    sharpness: u32,
+) -> Vec<f32> {
+    let mut found = Vec::new();
+    find(Sought::StiffnessRoot, metric, problem, positions, sharpness, &mut found);
+    found.into_iter().map(|root| root.x).collect()
+}
+
+fn find(
+    sought: Sought,
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
@@ -79,7 +110,7 @@ pub(crate) fn gradient(
     // Color by color, as vertices with equally many neighbors are together within a color.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
-        visit(problem, positions, color.start as usize, &step, found);
+        visit(problem, positions, color.start as usize, &step, sought, found);
     }
 }
 
@@ -95,7 +126,7 @@ pub(crate) fn held_back(problem: &Problem, positions: &[DVec2], step: &Step) -> 
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
             moved.resize(color.len(), DVec2::ZERO);
-            visit(problem, positions, first, step, moved);
+            visit(problem, positions, first, step, Sought::Gradient, moved);
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
@@ -112,18 +143,20 @@ fn visit<T: Found>(
     positions: &[DVec2],
     first: usize,
     step: &Step,
+    sought: Sought,
     found: &mut [T],
 ) {
     for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
         with_lanes!(step.metric, simd, formulas => {
-            visit_all(simd, formulas, problem, positions, first, step, found);
+            visit_all(simd, formulas, problem, positions, first, step, sought, found);
         });
     });
 }
 
-/// Visits the vertices from `first` on, and writes their new positions or gradients to `found`.
+/// Visits the vertices from `first` on, and writes their new positions, or what is `sought`, to `found`.
 #[inline(always)]
+#[allow(clippy::too_many_arguments)]
 fn visit_all<S: Simd, T: Found>(
     simd: S,
     formulas: impl Formulas,
@@ -131,6 +164,7 @@ fn visit_all<S: Simd, T: Found>(
     positions: &[DVec2],
     first: usize,
     step: &Step,
+    sought: Sought,
     found: &mut [T],
 ) {
     let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
@@ -150,7 +184,13 @@ fn visit_all<S: Simd, T: Found>(
         let at = patch::points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
             true => newton::visit(formulas, &patches, at, step),
-            false => patches.derivatives(formulas, at, step.sharpness).gradient,
+            false => {
+                let sum = patches.derivatives(formulas, at, step.sharpness);
+                match sought {
+                    Sought::Gradient => sum.gradient,
+                    Sought::StiffnessRoot => [stiffness_root(&sum, degree); 2],
+                }
+            }
         };
         let count = count as usize;
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
@@ -158,4 +198,14 @@ fn visit_all<S: Simd, T: Found>(
         }
         done += count;
     }
+}
+
+/// The root of the stiffness; see [`stiffness_roots`].
+#[inline(always)]
+fn stiffness_root<S: Simd>(sum: &Dual<Lanes<S>>, degree: usize) -> Lanes<S> {
+    let [xx, xy, yy] = sum.hessian;
+    let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
+    let radius = Real::sqrt(half * half + xy * xy);
+    // The eigenvalues are mean ± radius: this is the mean of their absolute values.
+    Real::sqrt(Real::max(mean.abs(), radius) * (1.0 / degree as f64))
 }

@@ -123,6 +123,7 @@ fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync) -> Vec<Vec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cpu::sweep::stiffness_roots;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
     use crate::metric::Metric;
@@ -140,18 +141,17 @@ mod tests {
     }
 
     fn hierarchy(problem: &Problem) -> Hierarchy {
-        let stiffness = Metric::Imr.properties().stiffness.unwrap();
-        Hierarchy::new(problem, problem.positions(), stiffness)
+        Hierarchy::new(problem, stiffness_roots(Metric::Imr, problem, problem.positions(), 0))
     }
 
     /// A hierarchy built for the mesh with stretched positions, then fitted to its own.
-    fn resized(problem: &Problem) -> Hierarchy {
+    fn fitted(problem: &Problem) -> Hierarchy {
         let positions = problem.positions();
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let stretched = |p: &DVec2| *p * (1.0 + 1.5 * *p * *p / (extent * extent));
         let stretched: Vec<DVec2> = positions.iter().map(stretched).collect();
-        let stiffness = Metric::Imr.properties().stiffness.unwrap();
-        Hierarchy::new(problem, &stretched, stiffness).resized(problem, positions, stiffness)
+        let roots = |positions| stiffness_roots(Metric::Imr, problem, positions, 0);
+        Hierarchy::new(problem, roots(&stretched)).fitted_to(problem, roots(positions))
     }
 
     /// Vectors that look random.
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn a_correction_is_symmetric_and_descends() {
         let problem = square();
-        let hierarchies = [hierarchy(&problem), resized(&problem)];
+        let hierarchies = [hierarchy(&problem), fitted(&problem)];
         for (seed, hierarchy) in [0.37, 1.1, 2.9].into_iter().zip(hierarchies.iter().cycle()) {
             let (a, b) =
                 (noise(problem.free_count(), seed), noise(problem.free_count(), seed + 0.2));
@@ -195,11 +195,12 @@ mod tests {
     fn smooth_errors_are_corrected_nearly_whole() {
         // A wave over the whole square. Sweeps alone would take thousands to remove it.
         let problem = square();
-        assert_corrects_a_wave(&problem, &hierarchy(&problem));
-        assert_corrects_a_wave(&problem, &resized(&problem));
+        assert_corrects_a_wave(&problem, &hierarchy(&problem), 0.1);
+        // Stretching has changed shapes as well as sizes, which factors follow less closely.
+        assert_corrects_a_wave(&problem, &fitted(&problem), 0.15);
     }
 
-    fn assert_corrects_a_wave(problem: &Problem, hierarchy: &Hierarchy) {
+    fn assert_corrects_a_wave(problem: &Problem, hierarchy: &Hierarchy, most: f64) {
         let positions = problem.positions();
         let low = positions.iter().copied().reduce(DVec2::min).unwrap();
         let high = positions.iter().copied().reduce(DVec2::max).unwrap();
@@ -224,6 +225,6 @@ mod tests {
             wave.iter().zip(&step).map(|(w, s)| (*w + s.as_dvec2() * length).length_squared());
         let whole: f64 = wave[..free].iter().map(|w| w.length_squared()).sum();
         let share = (left.sum::<f64>() / whole).sqrt();
-        assert!(share < 0.1, "{share} of the wave is left");
+        assert!(share < most, "{share} of the wave is left");
     }
 }

@@ -17,7 +17,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     eigenvalue_floor: 1e-3,
     shape_guard: 30.0,
     omega: 1.9,
-    stiffness: None,
+    is_corrected: false,
     wgsl: include_str!("area.wgsl"),
 };
 

@@ -15,7 +15,7 @@ mod table;
 
 pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};
-pub use properties::{Properties, Stiffness};
+pub use properties::Properties;
 pub use scheme::Scheme;
 pub(crate) use table::{
     AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric, with_formulas,

@@ -29,20 +29,9 @@ pub struct Properties {
     pub shape_guard: f64,
     /// The default over-relaxation in runs by this metric alone; see [`Options::omega`](crate::Options::omega).
     pub omega: f64,
-    /// The graph Laplacian that approximates the objective's Hessian in corrections from coarser levels. `None` if the
-    /// metric has no corrections.
-    pub stiffness: Option<Stiffness>,
+    /// Whether sweeps by this metric alone can be corrected from coarser levels; see
+    /// [`Method::Multilevel`](crate::Method::Multilevel).
+    pub is_corrected: bool,
     /// The text of the metric's WGSL file.
     pub wgsl: &'static str,
 }
-
-/// The weight of an edge in the graph Laplacian that approximates the Hessian of Σ q² on a good mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stiffness {
-    /// This number divided by the mean doubled area of the triangles nearby.
-    BySize(f64),
-    /// This number divided by the mean doubled area of all triangles.
-    Uniform(f64),
-}
-
-pub(super) const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -2,7 +2,7 @@
 
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
-use crate::metric::properties::{Properties, SQRT_3, Stiffness};
+use crate::metric::properties::Properties;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "shape-size",
@@ -17,7 +17,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     eigenvalue_floor: 1e-3,
     shape_guard: f64::INFINITY,
     omega: 1.9,
-    stiffness: Some(Stiffness::Uniform(8.0 / SQRT_3)),
+    is_corrected: true,
     wgsl: include_str!("shape_size.wgsl"),
 };
 

@@ -2,7 +2,7 @@
 
 use crate::error::GpuError;
 use crate::layout::Problem;
-use crate::metric::{Metric, Stiffness};
+use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
 use crate::run::history::History;
 use crate::run::multilevel::{Hierarchy, Search};
@@ -40,11 +40,18 @@ const SWEPT: f64 = 0.1;
 /// A window longer than any history: turns off the tests of the stop rule that look at the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
+/// Corrections are accelerated once the slope along one is more than this share of that along the one before: on most
+/// meshes it falls to a sixth or less each time, and there is nothing to gain.
+const ACCELERATED_FROM: f64 = 0.3;
+/// A run with accelerated corrections is over when as many estimates in a row say so, as its gains are irregular. One is
+/// enough if the last gains were each less than [`STEADY`] of the one before.
+const ESTIMATES: usize = 3;
+const STEADY: f64 = 0.3;
+
 /// The state of a run with corrections from coarser levels.
 pub(crate) struct Corrections<'a> {
     problem: &'a Problem,
     plan: &'a Plan,
-    stiffness: Stiffness,
     stage: Stage,
     /// How many times corrections have begun.
     attempts: u32,
@@ -52,6 +59,12 @@ pub(crate) struct Corrections<'a> {
     taken: u32,
     /// Whether the last correction was expected to gain nothing.
     settled: bool,
+    /// The slope along the last correction of the present stage.
+    slope: Option<f64>,
+    /// Whether corrections are accelerated by secant pairs.
+    accelerated: bool,
+    /// The latest estimates of the share of f that is left to gain, infinite where there is none.
+    estimates: [f64; ESTIMATES],
     /// Why there are no corrections, if the engine has no room for the levels.
     left_out: Option<GpuError>,
 }
@@ -69,17 +82,18 @@ enum Stage {
 }
 
 impl<'a> Corrections<'a> {
-    /// The start of a run. All sweeps of `plan` are by its base metric, which must have a stiffness.
+    /// The start of a run. All sweeps of `plan` are by its base metric.
     pub(crate) fn new(problem: &'a Problem, plan: &'a Plan) -> Self {
-        let properties = plan.scheme.base().properties();
         Self {
             problem,
             plan,
-            stiffness: properties.stiffness.unwrap_or(Stiffness::Uniform(1.0)),
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
             settled: false,
+            slope: None,
+            accelerated: false,
+            estimates: [f64::INFINITY; ESTIMATES],
             left_out: None,
         }
     }
@@ -147,6 +161,8 @@ impl<'a> Corrections<'a> {
         let now = objectives.of(self.metric()).unwrap_or(f64::NAN) - self.metric().ideal_squared();
         if done >= until && last - now < SWEEPS_PAY * last {
             self.attempts += 1;
+            (self.slope, self.accelerated) = (None, false);
+            self.estimates = [f64::INFINITY; ESTIMATES];
             self.stage = Stage::Correcting { since: done, length: 1.0, proposed: 0, refused: 0 };
         }
         Ok(objectives)
@@ -159,7 +175,7 @@ impl<'a> Corrections<'a> {
         engine.objectives().await
     }
 
-    /// Builds the levels, or fits them to new sizes if `proposed` is not 0, and hands them to the engine. Returns
+    /// Builds the levels, or fits them to the present stiffness if `proposed` is not 0, and hands them to the engine. Returns
     /// whether it has room for them.
     async fn build_levels(
         &mut self,
@@ -169,12 +185,11 @@ impl<'a> Corrections<'a> {
         yield_now().await;
         // Levels that are not used again are freed before new ones are built.
         let before = engine.take_hierarchy().filter(|_| proposed > 0);
-        let positions = engine.positions().await?;
+        let roots = engine.stiffness_roots().await?;
         let hierarchy = match before {
-            Some(before) => before.resized(self.problem, &positions, self.stiffness),
-            None => Hierarchy::new(self.problem, &positions, self.stiffness),
+            Some(before) => before.fitted_to(self.problem, roots),
+            None => Hierarchy::new(self.problem, roots),
         };
-        drop(positions);
         yield_now().await;
         match engine.set_hierarchy(hierarchy) {
             Err(error @ GpuError::Limit { .. }) => {
@@ -203,7 +218,8 @@ impl<'a> Corrections<'a> {
         }
         let mut length = Search::first_length(last_length);
         let step = self.plan.base_step(OMEGA_BETWEEN);
-        let Proposal { here, slope, there } = engine.propose(&step, length).await?;
+        let Proposal { here, slope, there } =
+            engine.propose(&step, length, self.accelerated).await?;
         // The slope is the squared norm of the gradient, as the levels weigh it: about twice what is left to gain in what
         // is smooth. The rest is left to sweeps, which take most of it each.
         let scale = (here + self.metric().ideal_squared()).max(LEAST_SCALE);
@@ -226,6 +242,10 @@ impl<'a> Corrections<'a> {
             }
             None => (here, last_length, refused + 1),
         };
+        // A direction that fails may do so because of what was remembered. It is forgotten.
+        let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
+        self.accelerated = (self.accelerated || slow) && refused == 0;
+        self.slope = Some(slope);
         self.stage = match refused {
             MOST_REFUSED if self.attempts == ATTEMPTS => Stage::Without { since: done },
             MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
@@ -245,7 +265,7 @@ impl<'a> Corrections<'a> {
     }
 
     /// Records objectives and applies the stop rule to the present stage.
-    fn record(&self, objectives: Objectives, history: &mut History) {
+    fn record(&mut self, objectives: Objectives, history: &mut History) {
         history.add(objectives);
         // The decay is extrapolated from the present stage alone. A window of one sweep is enough with corrections,
         // as they leave no slow modes.
@@ -260,8 +280,17 @@ impl<'a> Corrections<'a> {
         let rule = history.rule();
         let rule = StopRule { max_sweeps: rule.max_sweeps.saturating_sub(since as u32), ..rule };
         let best = history.best().saturating_sub(since);
-        let mut stop = rule.judge(of_stage, best, window);
         let mut remaining = rule.remaining(of_stage, window);
+        let mut judged = window;
+        if self.accelerated {
+            self.estimates.rotate_left(1);
+            self.estimates[ESTIMATES - 1] = remaining.unwrap_or(f64::INFINITY);
+            let asked = if decays_steadily(of_stage) { 1 } else { ESTIMATES };
+            let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
+            remaining = Some(most).filter(|most| most.is_finite());
+            judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
+        }
+        let mut stop = rule.judge(of_stage, best, judged);
         if self.settled {
             remaining = Some(NOISE);
             if stop.is_none() || stop == Some(Stop::MaxSweeps) {
@@ -274,4 +303,11 @@ impl<'a> Corrections<'a> {
         }
         history.end(stop, remaining);
     }
+}
+
+/// Whether the last two gains of f were each less than [`STEADY`] of the one before.
+fn decays_steadily(f: &[f64]) -> bool {
+    let [.., a, b, c, d] = f else { return false };
+    let gains = [a - b, b - c, c - d];
+    gains.windows(2).all(|pair| pair[1] < STEADY * pair[0])
 }

@@ -43,11 +43,18 @@ pub(crate) trait Engine: Send {
     /// Hands the coarser levels to the engine. Fails with [`GpuError::Limit`] if there is no room for them.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
-    /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`.
+    /// The square root of the base metric's stiffness at each free vertex: of the mean absolute eigenvalue of the Hessian
+    /// of Σ q² with respect to the vertex, over the number of its neighbors.
+    fn stiffness_roots(&mut self) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
+
+    /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`. If `accelerated`,
+    /// the correction also takes account of what the gradient did since the last ones that were; see
+    /// [`secant`](crate::run::secant). If not, what is remembered of them is forgotten.
     fn propose(
         &mut self,
         step: &Step,
         length: f64,
+        accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
     /// The mean excess of the base metric if all free vertices were moved by `length` times the correction;

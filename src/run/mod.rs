@@ -11,6 +11,7 @@ mod objectives;
 pub(crate) mod opening;
 mod options;
 mod plan;
+pub(crate) mod secant;
 mod shape_guard;
 mod step;
 mod stop;

@@ -16,7 +16,7 @@ pub enum Method {
     Auto,
     /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels.
     /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Requires a
-    /// scheme of one metric that has a [`Stiffness`](crate::Stiffness) (imr, ar, rms, shape-size), analytic
+    /// scheme of one metric that [is corrected](crate::Properties::is_corrected) (imr, ar, rms, shape-size), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
@@ -100,7 +100,7 @@ impl Options {
         let metric = self.scheme.base();
         if self.scheme.period() > 1 {
             Some("metrics that alternate have no correction: give one metric")
-        } else if metric.properties().stiffness.is_none() {
+        } else if !metric.properties().is_corrected {
             Some("this metric has no correction: take imr, ar, rms or shape-size")
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")

@@ -73,6 +73,31 @@ pub fn graded(around: usize, ratio: f64) -> Mesh {
     }
 }
 
+/// A vertex with `around` neighbors in the middle of rings of as many vertices, which grow outward to `1 / ratio` times the
+/// innermost. Beyond the innermost, triangles are nearly equilateral.
+pub fn hub(around: usize, ratio: f64) -> Mesh {
+    let mut mesh = graded(around, ratio);
+    let center = mesh.points.len() as u32;
+    let ring = center - around as u32;
+    mesh.points.push([0.0, 0.0]);
+    let turn = |i: u32| [ring + i, ring + (i + 1) % around as u32, center];
+    mesh.triangles.extend((0..around as u32).map(turn));
+    mesh
+}
+
+/// A square lattice whose rows are pressed together toward the middle: triangles there are stretched by about `ratio`.
+pub fn layered(columns: usize, ratio: f64) -> Mesh {
+    let rows = columns / 2 * 2;
+    let mut mesh = lattice(columns, rows);
+    let height = mesh.points.iter().map(|p| p[1]).fold(0.0, f64::max);
+    let bend = ratio.asinh();
+    for point in &mut mesh.points {
+        let along = 2.0 * point[1] / height - 1.0;
+        point[1] = 0.5 * height * (bend * along).sinh() / ratio;
+    }
+    mesh
+}
+
 /// Triangles inside the outline with no angle below [`ANGLE_LIMIT`] but at its own sharper corners,
 /// of a size that makes the number of vertices `vertices` within 1 %. The corners of the outline come
 /// first, in its order. The same for the same version of spade, wherever it runs.

@@ -46,6 +46,50 @@ fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
     }
 }
 
+/// Meshes on which corrections that remember nothing took 50 to 400 sweeps and more.
+fn hard_meshes() -> [(&'static str, Mesh, u32); 3] {
+    let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
+    [
+        ("graded", perturbed(&support::graded(30, 1e-6), 1.0), 40),
+        ("a vertex of 50", perturbed(&support::hub(50, 1e-2), 1.0), 40),
+        ("a layer", perturbed(&support::layered(40, 30.0), 0.3), 110),
+    ]
+}
+
+#[test]
+fn hard_meshes_take_a_few_dozen_sweeps_and_the_promise_holds() {
+    for (label, mesh, most) in hard_meshes() {
+        let smoother = Smoother::new(&mesh).unwrap();
+        let long = Options { tolerance: 1e-12, ..multilevel(Metric::Imr) };
+        let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
+        for backend in backends() {
+            let label = format!("{label} on the {}", name(backend));
+            let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            assert!(outcome.sweeps <= most, "{label}: {} sweeps", outcome.sweeps);
+            let left = last(&outcome, Metric::Imr) / limit - 1.0;
+            assert!(left < 1e-6, "{label}: {left:e} left");
+            let said = outcome.remaining.unwrap();
+            assert!(left < said + 1e-8 && said <= 1e-6, "{label}: {left:e} left, {said:e} said");
+        }
+    }
+}
+
+#[test]
+fn accelerated_runs_repeat_bit_for_bit_on_any_number_of_threads() {
+    let [_, (_, mesh, _), _] = hard_meshes();
+    let smoother = Smoother::new(&mesh).unwrap();
+    for backend in backends() {
+        let [first, second] = [(); 2].map(|()| run(&smoother, &multilevel(Metric::Imr), backend));
+        assert_eq!(first.points, second.points, "{}", name(backend));
+    }
+    let with_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(&smoother, &multilevel(Metric::Imr), &Backend::Cpu)).points
+    };
+    assert_eq!(with_threads(1), with_threads(3));
+}
+
 #[test]
 fn it_ends_at_the_global_optimum() {
     let rms = global::rms_optimum(perturbed());

@@ -57,6 +57,17 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
             ReadWrite,
         ],
         Interface::Coarse => &[UNIFORM, Uniform { dynamic: true }, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Secants => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+        ],
         Interface::Arithmetic => &[UNIFORM, ReadOnly, ReadWrite],
     }
 }

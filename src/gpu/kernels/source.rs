@@ -8,6 +8,7 @@ use crate::gpu::kernels::uniforms::{
 };
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
+use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
 use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search};
 
@@ -49,6 +50,14 @@ const SUM_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/sum_along_correction.wgsl");
 const MOVE_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/move_along_correction.wgsl");
+const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
+
+const SECANTS: &str = include_str!("../../../shaders/secants/common.wgsl");
+const CLOSE_SECANT: &str = include_str!("../../../shaders/secants/close.wgsl");
+const SUM_SECANTS: &str = include_str!("../../../shaders/secants/sum_secants.wgsl");
+const BEND_GRADIENT: &str = include_str!("../../../shaders/secants/bend_gradient.wgsl");
+const MULTIPLY_CORRECTION: &str = include_str!("../../../shaders/secants/multiply_correction.wgsl");
+const OPEN_SECANT: &str = include_str!("../../../shaders/secants/open.wgsl");
 
 impl Kernel {
     /// The complete WGSL module.
@@ -70,6 +79,7 @@ impl Kernel {
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
+            Interface::Secants => (&[PARAMS, PAIRS, PATCH, SECANTS], Some((2, 9))),
             Interface::Arithmetic => (&[PARAMS, PAIRS, PATCH], None),
         };
         parts.iter().for_each(|part| source.push_str(part));
@@ -101,15 +111,22 @@ impl Kernel {
             Kernel::Import => source.push_str(IMPORT),
             Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
-            Kernel::Gradient(metric) | Kernel::ObjectiveAlongCorrection(metric) => {
+            Kernel::Gradient(metric)
+            | Kernel::Stiffness(metric)
+            | Kernel::ObjectiveAlongCorrection(metric) => {
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
-                source.push_str(if matches!(self, Kernel::ObjectiveAlongCorrection(_)) {
-                    OBJECTIVE_ALONG_CORRECTION
-                } else {
-                    GRADIENT
+                source.push_str(match self {
+                    Kernel::ObjectiveAlongCorrection(_) => OBJECTIVE_ALONG_CORRECTION,
+                    Kernel::Stiffness(_) => STIFFNESS,
+                    _ => GRADIENT,
                 });
             }
+            Kernel::CloseSecant => source.push_str(CLOSE_SECANT),
+            Kernel::SumSecants => source.push_str(SUM_SECANTS),
+            Kernel::BendGradient => source.push_str(BEND_GRADIENT),
+            Kernel::MultiplyCorrection => source.push_str(MULTIPLY_CORRECTION),
+            Kernel::OpenSecant => source.push_str(OPEN_SECANT),
             Kernel::SmoothGradient => {
                 [NEIGHBORS, SMOOTH_GRADIENT].iter().for_each(|part| source.push_str(part))
             }
@@ -158,6 +175,7 @@ fn constants() -> String {
         ("JITTER", JITTER),
         ("LEAST_SCALE", LEAST_SCALE),
         ("SMOOTHING", SMOOTHING.into()),
+        ("LEAST_CURVATURE", LEAST_CURVATURE),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
     }

@@ -40,6 +40,18 @@ pub enum Kernel {
     SumAlongCorrection,
     /// Moves the free vertices along the correction.
     MoveAlongCorrection,
+    /// The root of the stiffness at the free vertices, from which the coarser levels are built.
+    Stiffness(Metric),
+    /// Closes the open secant pair, with partial sums of its products.
+    CloseSecant,
+    /// Completes the sums of products of secant pairs.
+    SumSecants,
+    /// Bends the gradient by the secant pairs, before the levels are given it.
+    BendGradient,
+    /// Partial sums of products of secant pairs with the correction.
+    MultiplyCorrection,
+    /// Completes a correction by the secant pairs, and opens the next pair.
+    OpenSecant,
     /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
     CheckArithmetic,
 }
@@ -59,18 +71,21 @@ pub enum Interface {
     Transfer,
     /// The coarse levels: `shaders/levels/coarse.wgsl`.
     Coarse,
+    /// Secant pairs of a mesh: `shaders/secants/common.wgsl`.
+    Secants,
     /// Inputs and results of [`Kernel::CheckArithmetic`]: `shaders/check_arithmetic.wgsl`.
     Arithmetic,
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
+        Interface::Secants,
         Interface::Arithmetic,
     ];
 
@@ -78,7 +93,9 @@ impl Interface {
     /// without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
-            Interface::Run | Interface::Exchange | Interface::Fine => positions,
+            Interface::Run | Interface::Exchange | Interface::Fine | Interface::Secants => {
+                positions
+            }
             Interface::Publish
             | Interface::Transfer
             | Interface::Coarse
@@ -120,7 +137,11 @@ impl Kernel {
 
     /// Every kernel that corrections from coarser levels need.
     pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
-        let of_metric = [Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)];
+        let of_metric = [
+            Kernel::Stiffness(metric),
+            Kernel::Gradient(metric),
+            Kernel::ObjectiveAlongCorrection(metric),
+        ];
         let others = [
             Kernel::SmoothGradient,
             Kernel::Restrict,
@@ -130,6 +151,11 @@ impl Kernel {
             Kernel::CoarsestSolve,
             Kernel::SumAlongCorrection,
             Kernel::MoveAlongCorrection,
+            Kernel::CloseSecant,
+            Kernel::SumSecants,
+            Kernel::BendGradient,
+            Kernel::MultiplyCorrection,
+            Kernel::OpenSecant,
         ];
         of_metric.into_iter().chain(others).collect()
     }
@@ -154,6 +180,12 @@ impl Kernel {
             Kernel::ObjectiveAlongCorrection(_) => "objective_along_correction",
             Kernel::SumAlongCorrection => "sum_along_correction",
             Kernel::MoveAlongCorrection => "move_along_correction",
+            Kernel::Stiffness(_) => "find_stiffness",
+            Kernel::CloseSecant => "close_secant",
+            Kernel::SumSecants => "sum_secants",
+            Kernel::BendGradient => "bend_gradient",
+            Kernel::MultiplyCorrection => "multiply_correction",
+            Kernel::OpenSecant => "open_secant",
             Kernel::CheckArithmetic => "check_arithmetic",
         }
     }
@@ -167,7 +199,13 @@ impl Kernel {
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }
+            Kernel::CloseSecant
+            | Kernel::SumSecants
+            | Kernel::BendGradient
+            | Kernel::MultiplyCorrection
+            | Kernel::OpenSecant => Interface::Secants,
             Kernel::Gradient(_)
+            | Kernel::Stiffness(_)
             | Kernel::ObjectiveAlongCorrection(_)
             | Kernel::MoveAlongCorrection => Interface::Fine,
             Kernel::SmoothGradient | Kernel::Restrict | Kernel::Prolong => Interface::Transfer,

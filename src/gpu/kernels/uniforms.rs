@@ -75,6 +75,19 @@ pub(crate) struct LevelOp {
     pub(crate) padding: u32,
 }
 
+/// `SecantOp` in shaders/secants/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SecantOp {
+    pub(crate) free: u32,
+    pub(crate) newer: u32,
+    pub(crate) older: u32,
+    pub(crate) pairs: u32,
+    pub(crate) partials: u32,
+    pub(crate) is_after: u32,
+    pub(crate) padding: [u32; 2],
+}
+
 /// `Control` in shaders/control.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -221,6 +234,8 @@ mod tests {
                 shape_guard
             }
         );
+        let secants = &Kernel::OpenSecant;
+        mirrors!(secants, SecantOp { free, newer, older, pairs, partials, is_after });
         for kernel in [run, &Kernel::Publish] {
             mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
         }

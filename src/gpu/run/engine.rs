@@ -12,6 +12,8 @@ use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::Levels;
+use crate::gpu::run::secants::Secants;
+use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::multilevel::Hierarchy;
@@ -25,6 +27,7 @@ pub(crate) struct GpuEngine<'a> {
     mesh: MeshBuffers,
     dispatches: Dispatches,
     levels: Option<Levels>,
+    secants: Option<Secants>,
     /// The hierarchy that the levels were made from.
     hierarchy: Option<Hierarchy>,
     waiting: Waiting,
@@ -51,8 +54,20 @@ impl<'a> GpuEngine<'a> {
         let mesh = MeshBuffers::new(gpu, problem, start)?;
         let keep_best = !plan.is_monotone();
         let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best)?;
-        let (levels, hierarchy) = (None, None);
-        Ok(Self { gpu, problem, start, mesh, dispatches, levels, hierarchy, waiting, evaluated: 0 })
+        let (levels, secants, hierarchy) = (None, None, None);
+        let evaluated = 0;
+        Ok(Self {
+            gpu,
+            problem,
+            start,
+            mesh,
+            dispatches,
+            levels,
+            secants,
+            hierarchy,
+            waiting,
+            evaluated,
+        })
     }
 
     fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
@@ -174,24 +189,47 @@ impl Engine for GpuEngine<'_> {
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         // The old levels go first: both at once would take more memory than the mesh itself.
-        self.levels = None;
+        (self.secants, self.levels) = (None, None);
         let Self { gpu, problem, mesh, dispatches, .. } = self;
         self.levels = Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy)?);
         self.hierarchy = Some(hierarchy);
         Ok(())
     }
 
-    async fn propose(&mut self, step: &Step, length: f64) -> Result<Proposal, GpuError> {
+    async fn stiffness_roots(&mut self) -> Result<Vec<f32>, GpuError> {
+        let free = self.problem.free_count() as u32;
+        stiffness::roots(self.gpu, &self.mesh, &self.dispatches, free, self.waiting).await
+    }
+
+    async fn propose(
+        &mut self,
+        step: &Step,
+        length: f64,
+        accelerated: bool,
+    ) -> Result<Proposal, GpuError> {
         let Some(levels) = &self.levels else {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
         };
         levels.set_length(self.gpu, length as f32);
+        let mut secants = self.secants.take().filter(|_| accelerated);
+        if accelerated && secants.is_none() {
+            let (params, free) = (&self.dispatches.params, self.problem.free_count() as u32);
+            secants = Secants::new(self.gpu, &self.mesh, params, levels, free)?;
+        }
         self.submit(|passes| {
             self.dispatches.encode_sweep(passes, step);
-            levels.encode_correction(passes);
+            match &mut secants {
+                Some(secants) => secants.encode_correction(self.gpu, levels, passes),
+                None => {
+                    levels.encode_gradient(passes);
+                    levels.encode_cycle(passes);
+                }
+            }
             levels.encode_objective(passes);
         })?;
-        self.totals(levels).await
+        let totals = self.totals(levels).await;
+        self.secants = secants;
+        totals
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {

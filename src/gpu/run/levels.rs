@@ -25,12 +25,18 @@ pub(crate) struct Levels {
     ops: wgpu::Buffer,
     /// Bytes from one uniform to the next.
     stride: u32,
-    /// What computes the correction from the positions.
+    /// What computes the gradient from the positions.
+    find_gradient: Vec<Dispatch>,
+    /// What computes the correction from the gradient.
     correction: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
     movement: Dispatch,
     pub(crate) vectors: wgpu::Buffer,
+    /// The gradient of Σ q² at each free vertex.
+    pub(crate) gradient: wgpu::Buffer,
+    /// The correction at each free vertex.
+    pub(crate) direction: wgpu::Buffer,
 }
 
 struct Dispatch {
@@ -205,7 +211,7 @@ impl Listing<'_> {
             gpu.pipelines.bind(&gpu.device, interface, self.positions, &resources)
         });
         let bind_groups = bind_groups.collect();
-        Uploaded { bind_groups, ops, vectors }
+        Uploaded { bind_groups, ops, vectors, gradient, direction }
     }
 }
 
@@ -213,6 +219,8 @@ struct Uploaded {
     bind_groups: Vec<wgpu::BindGroup>,
     ops: wgpu::Buffer,
     vectors: wgpu::Buffer,
+    gradient: wgpu::Buffer,
+    direction: wgpu::Buffer,
 }
 
 impl Levels {
@@ -266,8 +274,9 @@ impl Levels {
                 Ok::<(), GpuError>(())
             };
 
+        let mut find_gradient = Vec::new();
+        by_rings(&mut listing, &mut find_gradient, Kernel::Gradient(metric), fine)?;
         let mut correction = Vec::new();
-        by_rings(&mut listing, &mut correction, Kernel::Gradient(metric), fine)?;
         by_rings(&mut listing, &mut correction, Kernel::SmoothGradient, fine)?;
         let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
         let bound = Bound::Transfer { part: 0, structure: members, values };
@@ -307,17 +316,35 @@ impl Levels {
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
         let mut ops = vec![0u8; (stride * listing.listed) as usize];
-        for step in correction.iter().chain(&objective).chain([&sum, &movement]) {
+        let listed = find_gradient.iter().chain(&correction).chain(&objective);
+        for step in listed.chain([&sum, &movement]) {
             let at = (step.number * stride) as usize;
             ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
         }
-        let Uploaded { bind_groups, ops, vectors } =
+        let Uploaded { bind_groups, ops, vectors, gradient, direction } =
             scoped(&gpu.device, || listing.upload(mesh, free, &dispatches.params, &ops))?;
-        Ok(Self { bind_groups, ops, stride, correction, objective, sum, movement, vectors })
+        Ok(Self {
+            bind_groups,
+            ops,
+            stride,
+            find_gradient,
+            correction,
+            objective,
+            sum,
+            movement,
+            vectors,
+            gradient,
+            direction,
+        })
     }
 
-    /// Encodes the computation of the correction from the positions.
-    pub(crate) fn encode_correction(&self, passes: &mut Passes<'_>) {
+    /// Encodes the computation of the gradient from the positions.
+    pub(crate) fn encode_gradient(&self, passes: &mut Passes<'_>) {
+        self.find_gradient.iter().for_each(|step| self.encode(passes, step));
+    }
+
+    /// Encodes the computation of the correction from the gradient, or from what stands in its place.
+    pub(crate) fn encode_cycle(&self, passes: &mut Passes<'_>) {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 

@@ -4,6 +4,8 @@ mod dispatches;
 mod engine;
 mod levels;
 mod pages;
+mod secants;
+mod stiffness;
 
 pub(crate) use dispatches::Dispatches;
 pub(crate) use engine::GpuEngine;

@@ -1,9 +1,6 @@
 //! The coarser levels of a mesh: aggregates, and graph Laplacians on them.
 
-use glam::DVec2;
-
 use crate::layout::Problem;
-use crate::metric::Stiffness;
 use crate::parallel::collect;
 use crate::run::multilevel::aggregate::{Aggregates, NONE};
 use crate::run::multilevel::dense;
@@ -58,9 +55,10 @@ pub(crate) enum Coarser {
 }
 
 impl Hierarchy {
-    /// Builds the levels, with weights by the sizes of elements at `positions`.
-    pub(crate) fn new(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Self {
-        Self::with_roots(problem, || roots(problem, positions, stiffness))
+    /// Builds the levels. The weight of an edge is the product of the `roots` of its ends, one for each free vertex: the
+    /// square roots of the objective's stiffness there.
+    pub(crate) fn new(problem: &Problem, roots: Vec<f32>) -> Self {
+        Self::with_roots(problem, || usable(roots))
     }
 
     /// Builds the levels, with the reciprocals of the areas that elements should have at each vertex as weights.
@@ -90,16 +88,11 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fits the levels to the sizes of elements at `positions`. Aggregates stay, and couplings between them are scaled
-    /// by the average change of their members. Sizes change by nearly the same factors in neighboring aggregates, so
-    /// this is close to the Galerkin operator at a small part of the work.
-    pub(crate) fn resized(
-        mut self,
-        problem: &Problem,
-        positions: &[DVec2],
-        stiffness: Stiffness,
-    ) -> Self {
-        let root = roots(problem, positions, stiffness);
+    /// Fits the levels to new `roots`. Aggregates stay, and couplings between them are scaled by the average change of
+    /// their members. Roots change by nearly the same factors in neighboring aggregates, so this is close to the Galerkin
+    /// operator at a small part of the work.
+    pub(crate) fn fitted_to(mut self, problem: &Problem, roots: Vec<f32>) -> Self {
+        let root = usable(roots);
         let mean = |members: &[u32]| {
             let factor = |&v: &u32| root[v as usize] / self.root[v as usize];
             members.iter().map(factor).sum::<f32>() / members.len() as f32
@@ -167,8 +160,8 @@ impl Hierarchy {
         near * self.root.get(k).copied().unwrap_or(near)
     }
 
-    /// The square root of stiffness over element size at each free vertex. The weight of an edge is the product of the
-    /// roots at its ends.
+    /// The square root of the stiffness at each free vertex. The weight of an edge is the product of the roots at its
+    /// ends.
     pub(crate) fn roots(&self) -> &[f32] {
         &self.root
     }
@@ -247,38 +240,13 @@ fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
     problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
 }
 
-/// The square root of stiffness over element size at each free vertex.
-fn roots(problem: &Problem, positions: &[DVec2], stiffness: Stiffness) -> Vec<f32> {
-    match stiffness {
-        Stiffness::BySize(factor) => {
-            let sizes = element_sizes(problem, positions);
-            sizes.into_iter().map(|size| (factor as f32 / size).sqrt()).collect()
-        }
-        Stiffness::Uniform(factor) => {
-            let root = (factor / (2.0 * problem.mean_area())).sqrt();
-            vec![root as f32; problem.free_count()]
-        }
+/// Roots with those replaced by the least that are no finite numbers above zero, so that every weight is one.
+fn usable(mut roots: Vec<f32>) -> Vec<f32> {
+    let is_usable = |root: &f32| *root > 0.0 && *root < f32::INFINITY;
+    let least = roots.iter().copied().filter(is_usable).fold(f32::INFINITY, f32::min);
+    let least = if least.is_finite() { least } else { 1.0 };
+    for root in roots.iter_mut().filter(|root| !is_usable(root)) {
+        *root = least;
     }
-}
-
-/// The mean doubled area of the triangles at each free vertex, averaged once with that of its free neighbors.
-fn element_sizes(problem: &Problem, positions: &[DVec2]) -> Vec<f32> {
-    let free = problem.free_count();
-    let own: Vec<f32> = collect(free, |v| {
-        let start = problem.ring_start();
-        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-        let edge = |k: u32| positions[k as usize] - positions[v];
-        let next = ring.iter().skip(1).chain(ring.first());
-        let doubled: f64 =
-            ring.iter().zip(next).map(|(&a, &b)| edge(a).perp_dot(edge(b)).abs()).sum();
-        (doubled / ring.len() as f64) as f32
-    });
-    collect(free, |v| {
-        let (mut sum, mut count) = (own[v], 1.0);
-        for size in neighbors(problem, v).filter_map(|k| own.get(k as usize)) {
-            sum += size;
-            count += 1.0;
-        }
-        sum / count
-    })
+    roots
 }

@@ -1,0 +1,28 @@
+// The root of the stiffness at each free vertex, in both components of `gradient`: of the mean absolute eigenvalue of the
+// Hessian of the sum of q² with respect to the vertex, over the number of its neighbors.
+
+@compute @workgroup_size(WORKGROUP)
+fn find_stiffness(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let index = invocation(id, groups);
+    if index >= op.rows {
+        return;
+    }
+    let vertex = op.first + index;
+    let p = patch_of(vertex);
+    var sum = vec3(0.0);
+    var a = ring_edge(p, p.end - 1u);
+    for (var i = p.start; i < p.end; i++) {
+        let b = ring_edge(p, i);
+        sum += metric_derivatives(Corner(a, b, p.mean_area), 0.0).hessian;
+        a = b;
+    }
+    let mean = 0.5 * (sum.x + sum.z);
+    let half = 0.5 * (sum.x - sum.z);
+    // The eigenvalues are the mean plus and minus the radius.
+    let radius = sqrt(half * half + sum.y * sum.y);
+    let root = sqrt(max(abs(mean), radius) / f32(p.end - p.start));
+    gradient[vertex] = vec2(root * p.unit);
+}

@@ -1,0 +1,159 @@
+//! Secant pairs on the CPU; see [`crate::run::secant`].
+
+use glam::{DVec2, Vec2};
+
+use crate::parallel::{for_each_chunk, map_parts};
+use crate::run::secant::Products;
+
+/// Number of vertices of one task.
+const CHUNK: usize = 1 << 12;
+
+/// Two secant pairs at the free vertices, the newer one first, in single precision.
+///
+/// From one correction to the next, a pair is open: the high halves of the positions stand for its step, minus the
+/// gradient for its change. So two pairs and the low halves, 40 bytes a vertex, are all that is kept.
+#[derive(Default)]
+pub(crate) struct Secants {
+    steps: [Vec<Vec2>; 2],
+    changes: [Vec<Vec2>; 2],
+    low: Vec<Vec2>,
+    products: Products,
+    is_open: bool,
+}
+
+impl Secants {
+    /// The direction from a gradient, given the correction -M⁻¹ v of the levels for any vector v. Closes the open pair,
+    /// and opens the next one.
+    pub(crate) fn direction(
+        &mut self,
+        positions: &[DVec2],
+        gradient: &[Vec2],
+        levels: impl Fn(&[Vec2]) -> Vec<Vec2>,
+    ) -> Vec<Vec2> {
+        let direction = if self.is_open {
+            self.close(positions, gradient);
+            let before = self.products.before();
+            let [newer, older] = before.map(|factor| factor as f32);
+            let [new, old] = &self.changes;
+            let mut bent = gradient.to_vec();
+            for_each_chunk(&mut bent, CHUNK, |first, bent| {
+                for (v, bent) in (first..).zip(bent) {
+                    *bent -= new[v] * newer + at(old, v) * older;
+                }
+            });
+            let mut direction = levels(&bent);
+            drop(bent);
+            // The direction has the other sign than what the levels make of the vector.
+            let corrected = self.changes.each_ref().map(|change| -dot(change, &direction));
+            let [newer, older] = self.products.after(before, corrected).map(|factor| factor as f32);
+            let [new, old] = &self.steps;
+            for_each_chunk(&mut direction, CHUNK, |first, direction| {
+                for (v, direction) in (first..).zip(direction) {
+                    *direction -= new[v] * newer + at(old, v) * older;
+                }
+            });
+            direction
+        } else {
+            levels(gradient)
+        };
+        self.open(positions, gradient);
+        direction
+    }
+
+    fn close(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
+        let Self { steps: [step, old], changes: [change, _], low, products, .. } = self;
+        let chunks = step.chunks_mut(CHUNK).zip(change.chunks_mut(CHUNK));
+        let sums = map_parts(chunks, |chunk, (step, change)| {
+            let mut sums = [0.0; 4];
+            for ((step, change), v) in step.iter_mut().zip(change).zip(chunk * CHUNK..) {
+                let start = step.as_dvec2() + low[v].as_dvec2();
+                *step = (positions[v] - start).as_vec2();
+                *change += gradient[v];
+                let (s, y, g) = (step.as_dvec2(), change.as_dvec2(), gradient[v].as_dvec2());
+                let older = at(old, v).as_dvec2();
+                let terms = [s.dot(g), s.dot(y), older.dot(g), older.dot(y)];
+                sums = std::array::from_fn(|i| sums[i] + terms[i]);
+            }
+            sums
+        });
+        // Summed in order, so that the result does not depend on the number of threads.
+        let [sg, sy, older_g, older_y] =
+            sums.iter().fold([0.0; 4], |total, sums| std::array::from_fn(|i| total[i] + sums[i]));
+        *products = Products::new([sg, older_g], [sy, products.curvature[0]], older_y);
+    }
+
+    fn open(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
+        let Self { steps, changes, low, is_open, .. } = self;
+        if *is_open {
+            steps.swap(0, 1);
+            changes.swap(0, 1);
+        }
+        *is_open = true;
+        let (step, change) = (&mut steps[0], &mut changes[0]);
+        for values in [&mut *step, &mut *change, &mut *low] {
+            values.resize(gradient.len(), Vec2::ZERO);
+        }
+        let parts = step.chunks_mut(CHUNK).zip(change.chunks_mut(CHUNK)).zip(low.chunks_mut(CHUNK));
+        map_parts(parts, |chunk, ((step, change), low)| {
+            for (((step, change), low), v) in
+                step.iter_mut().zip(change).zip(low).zip(chunk * CHUNK..)
+            {
+                *step = positions[v].as_vec2();
+                *low = (positions[v] - step.as_dvec2()).as_vec2();
+                *change = -gradient[v];
+            }
+        });
+    }
+}
+
+/// A value of a pair that may not be there yet.
+#[inline(always)]
+fn at(values: &[Vec2], v: usize) -> Vec2 {
+    values.get(v).copied().unwrap_or_default()
+}
+
+/// The inner product, summed in an order that does not depend on the number of threads. 0 if `a` is empty.
+pub(crate) fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
+    let of_part = |_, (a, b): (&[Vec2], &[Vec2])| -> f64 {
+        a.iter().zip(b).map(|(a, b)| a.as_dvec2().dot(b.as_dvec2())).sum()
+    };
+    map_parts(a.chunks(CHUNK).zip(b.chunks(CHUNK)), of_part).iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a quadratic with a diagonal Hessian, and the identity for the levels, pairs make directions that converge, where
+    /// steps along the gradient alone would diverge.
+    #[test]
+    fn a_quadratic_is_minimized() {
+        let stiffness = |v: usize| [0.1, 0.5, 2.0, 10.0][v % 4];
+        let mut positions: Vec<DVec2> =
+            (0..8).map(|v| DVec2::new(1.0, -0.5) * (f64::from(v) - 3.3)).collect();
+        let mut secants = Secants::default();
+        let f = |positions: &[DVec2]| -> f64 {
+            positions.iter().enumerate().map(|(v, p)| 0.5 * stiffness(v) * p.length_squared()).sum()
+        };
+        let start = f(&positions);
+        for _ in 0..40 {
+            let gradient: Vec<Vec2> =
+                positions.iter().enumerate().map(|(v, p)| (*p * stiffness(v)).as_vec2()).collect();
+            let direction =
+                secants.direction(&positions, &gradient, |v| v.iter().map(|v| *v * -0.5).collect());
+            let slope = dot(&direction, &gradient);
+            assert!(slope <= 0.0, "{slope}");
+            // The exact minimum along the direction.
+            let bend: f64 = direction
+                .iter()
+                .enumerate()
+                .map(|(v, d)| stiffness(v) * f64::from(d.length_squared()))
+                .sum();
+            let length = if bend > 0.0 { -slope / bend } else { 0.0 };
+            for (position, along) in positions.iter_mut().zip(&direction) {
+                *position += along.as_dvec2() * length;
+            }
+        }
+        assert!(f(&positions) < 1e-10 * start, "{} of {start}", f(&positions));
+    }
+}

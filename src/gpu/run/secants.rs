@@ -1,0 +1,127 @@
+//! Secant pairs on the device; see [`crate::run::secant`].
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::device::size::objective_invocations;
+use crate::gpu::encode::Passes;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::uniforms::{SecantOp, WORKGROUP};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::run::levels::Levels;
+use crate::gpu::scope::scoped;
+
+/// Scalars in front of the partial sums in the buffer of sums, as in shaders/secants/common.wgsl.
+const SCALARS: u32 = 4;
+
+/// Two secant pairs bound to a mesh and its levels: encodes, submits nothing.
+pub(crate) struct Secants {
+    bind_group: wgpu::BindGroup,
+    ops: wgpu::Buffer,
+    /// Bytes from the first uniform to the second.
+    stride: u32,
+    close: Pipeline,
+    sum: Pipeline,
+    bend: Pipeline,
+    multiply: Pipeline,
+    open: Pipeline,
+    op: SecantOp,
+}
+
+impl Secants {
+    /// Pairs of which none is there yet; `None` if the device cannot bind them.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        params: &wgpu::Buffer,
+        levels: &Levels,
+        free: u32,
+    ) -> Result<Option<Self>, GpuError> {
+        let limits = gpu.device.limits();
+        let vector = u64::from(free) * size_of::<[f32; 2]>() as u64;
+        if 2 * vector > limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) {
+            return Ok(None);
+        }
+        let positions = mesh.parts.positions();
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
+        let close = pipeline(Kernel::CloseSecant)?;
+        let sum = pipeline(Kernel::SumSecants)?;
+        let bend = pipeline(Kernel::BendGradient)?;
+        let multiply = pipeline(Kernel::MultiplyCorrection)?;
+        let open = pipeline(Kernel::OpenSecant)?;
+        let partials = objective_invocations(free as usize);
+        // The first pair opens in the place of the older one.
+        let op = SecantOp { free, newer: free, partials, ..SecantOp::default() };
+        let alignment = limits.min_uniform_buffer_offset_alignment;
+        let stride = (size_of::<SecantOp>() as u32).next_multiple_of(alignment);
+        let (bind_group, ops) = scoped(&gpu.device, || {
+            let zeros = vec![0_u8; 2 * stride as usize];
+            let ops = filled(gpu, "secant steps", &zeros, Usage::UNIFORM | Usage::COPY_DST);
+            let sums = u64::from(SCALARS + 4 * partials) * size_of::<[f32; 2]>() as u64;
+            let [steps, changes, low_starts, sums] = [
+                ("secant steps", 2 * vector),
+                ("secant changes", 2 * vector),
+                ("secant starts", vector),
+                ("secant sums", sums),
+            ]
+            .map(|(label, size)| zeroed(gpu, label, size, Usage::STORAGE));
+            let (positions, beyond) = mesh.bind_positions();
+            let mut resources =
+                vec![params.as_entire_binding(), uniform::<SecantOp>(&ops), positions];
+            let vectors = [&levels.gradient, &levels.direction, &steps, &changes, &low_starts];
+            resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
+            resources.push(sums.as_entire_binding());
+            resources.extend(beyond);
+            let form = mesh.parts.positions();
+            (gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources), ops)
+        })?;
+        Ok(Some(Self { bind_group, ops, stride, close, sum, bend, multiply, open, op }))
+    }
+
+    /// Encodes a correction by the levels and the pairs. Closes the open pair, and opens the next one.
+    pub(crate) fn encode_correction(
+        &mut self,
+        gpu: &Gpu,
+        levels: &Levels,
+        passes: &mut Passes<'_>,
+    ) {
+        for is_after in 0..2 {
+            let op = SecantOp { is_after, ..self.op };
+            let at = u64::from(is_after * self.stride);
+            gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
+        }
+        levels.encode_gradient(passes);
+        let groups = self.op.partials / WORKGROUP;
+        let free = self.op.free;
+        if self.op.pairs > 0 {
+            self.run(passes, &self.close, 0, |pass| pass.dispatch_workgroups(groups, 1, 1));
+            self.run(passes, &self.sum, 0, |pass| pass.dispatch_workgroups(1, 1, 1));
+            self.run(passes, &self.bend, 0, |pass| dispatch(pass, free));
+        }
+        levels.encode_cycle(passes);
+        if self.op.pairs > 0 {
+            self.run(passes, &self.multiply, 1, |pass| pass.dispatch_workgroups(groups, 1, 1));
+            self.run(passes, &self.sum, 1, |pass| pass.dispatch_workgroups(1, 1, 1));
+        }
+        self.run(passes, &self.open, 0, |pass| dispatch(pass, free));
+        let SecantOp { newer, older, pairs, .. } = self.op;
+        self.op = SecantOp { newer: older, older: newer, pairs: (pairs + 1).min(2), ..self.op };
+    }
+
+    fn run(
+        &self,
+        passes: &mut Passes<'_>,
+        pipeline: &Pipeline,
+        op: u32,
+        dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
+        passes.run(pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[op * self.stride]);
+            dispatch(pass);
+        });
+    }
+}

@@ -1,0 +1,76 @@
+//! The stiffness of the base metric at the free vertices, found on the device.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::encode::sealed::Target;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::uniforms::LevelOp;
+use crate::gpu::mesh::{MeshBuffers, RingPart};
+use crate::gpu::run::dispatches::Dispatches;
+use crate::gpu::scope::scoped;
+
+/// The root of the stiffness at each of the first `free` vertices; see
+/// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots).
+pub(crate) async fn roots(
+    gpu: &Gpu,
+    mesh: &MeshBuffers,
+    dispatches: &Dispatches,
+    free: u32,
+    waiting: Waiting,
+) -> Result<Vec<f32>, GpuError> {
+    let positions = mesh.parts.positions();
+    let kernel = Kernel::Stiffness(dispatches.plan.scheme.base());
+    let pipeline = gpu.pipelines.get(&gpu.device, &kernel, positions)?;
+    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+    let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
+    let mut bytes = vec![0_u8; stride as usize * mesh.parts.rings.len()];
+    for (RingPart { vertices, entries }, to) in
+        mesh.parts.rings.iter().zip(bytes.chunks_exact_mut(stride as usize))
+    {
+        let rows = vertices.end - vertices.start;
+        let (first, ring_base) = (vertices.start, entries.start);
+        let op = LevelOp { rows, first, free, ring_base, ..LevelOp::default() };
+        to[..size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&op));
+    }
+    let found = scoped(&gpu.device, || {
+        let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
+        let size = u64::from(free) * size_of::<[f32; 2]>() as u64;
+        let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
+        // The kernel has no use for these two bindings of its interface.
+        let [direction, vectors] = ["no correction", "no vectors"]
+            .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
+        let label = "gpu-smooth stiffness";
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let mut passes = encoder.passes(label);
+        for (part, RingPart { vertices, .. }) in mesh.parts.rings.iter().enumerate() {
+            let (high, low) = mesh.bind_positions();
+            let mut resources = vec![
+                dispatches.params.as_entire_binding(),
+                uniform::<LevelOp>(&ops),
+                high,
+                mesh.ring_start.as_entire_binding(),
+                mesh.bind_ring(part),
+                mesh.bind_triangles(0),
+            ];
+            let vectors = [&found, &direction, &vectors];
+            resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
+            resources.extend(low);
+            let bound = gpu.pipelines.bind(&gpu.device, Interface::Fine, positions, &resources);
+            passes.run(&pipeline, None, |pass| {
+                pass.set_bind_group(0, &bound, &[part as u32 * stride]);
+                dispatch(pass, vertices.end - vertices.start);
+            });
+        }
+        drop(passes);
+        gpu.queue.submit([encoder.finish()]);
+        found
+    })?;
+    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, free as usize, waiting).await?;
+    Ok(roots.into_iter().map(|[root, _]| root).collect())
+}
