@@ -192,3 +192,31 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     assert_eq!(names(&folder), ["in.ele", "in.node", "out.node"]);
     assert_eq!(folder.text("out.node"), "old\n");
 }
+
+/// Of many meshes, those that are done stay, and one under way leaves nothing.
+#[test]
+fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {
+    let folder = small();
+    make_pipe(&folder, "waits.msh");
+    let args = ["waits.msh", "in.node", "--out-dir", "out", "--engine", "cpu", "--json"];
+    let run = Started::new(&folder, &args);
+    // The pipe has no size, so that it is read last.
+    let pipe = fs::OpenOptions::new().write(true).open(folder.path("waits.msh")).unwrap();
+    let start = Instant::now();
+    while !folder.path("out/in.ele").exists() {
+        assert!(start.elapsed() < PATIENCE, "the other mesh is not smoothed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.signal("-INT");
+    std::thread::sleep(Duration::from_millis(200));
+    // Reading goes on to the end of the file.
+    drop(pipe);
+    let (code, out, err) = run.end();
+    assert_eq!(code, Some(130), "{err}");
+    assert_holds(&err, &["interrupted: meshes under way are given up"]);
+    let told: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let statuses = [0, 1].map(|i| told[i]["status"].as_str().unwrap());
+    assert_eq!(statuses, ["interrupted", "smoothed"], "{out}");
+    let mut written = fs::read_dir(folder.path("out")).unwrap();
+    assert!(written.all(|entry| entry.unwrap().file_name().to_string_lossy().starts_with("in.")));
+}

@@ -12,6 +12,7 @@ mod files;
 mod formats;
 mod groups;
 mod interrupt;
+mod many;
 mod moving;
 mod options;
 mod output;

@@ -2,12 +2,15 @@
 
 mod bench;
 mod cli;
+mod columns;
 mod compare;
 mod engine;
 mod explain;
 mod groups;
 mod interrupt;
+mod many;
 mod moving;
+mod numbers;
 mod picture;
 mod progress;
 mod quality;
@@ -30,7 +33,10 @@ fn main() -> ExitCode {
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
-        None => smooth::run(&cli.smooth, &cli.output),
+        None => match &cli.smooth.out_dir {
+            Some(directory) => many::run(&cli.smooth, directory, &cli.output),
+            None => smooth::run(&cli.smooth, &cli.output),
+        },
     };
     match done {
         Ok(()) => interrupt::exit_code(),

@@ -1,6 +1,7 @@
 //! The bar on the terminal during long runs.
 
 use std::io::IsTerminal;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{Phase, Progress};
@@ -70,6 +71,50 @@ impl Bar {
         }
         self.bar.set_message(message);
         self.bar.set_position(sweep.into());
+    }
+
+    pub(crate) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Shows how many of many meshes are done.
+pub(crate) struct Tally {
+    bar: ProgressBar,
+    verbose: bool,
+    failed: usize,
+}
+
+impl Tally {
+    pub(crate) fn new(show: &OutputArgs, meshes: usize) -> Self {
+        let target =
+            if show.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(meshes as u64), target);
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:24} {pos}/{len} meshes{msg}  {eta} left")
+        {
+            bar.set_style(style);
+        }
+        Self { bar, verbose: show.verbose, failed: 0 }
+    }
+
+    /// Another mesh is done, or failed for a reason.
+    pub(crate) fn add(&mut self, mesh: &Path, problem: Option<&str>) {
+        if problem.is_some() {
+            self.failed += 1;
+            self.bar.set_message(format!(", {} failed", self.failed));
+        }
+        self.bar.inc(1);
+        if self.verbose {
+            let text = problem.unwrap_or("smoothed");
+            let line = format!(
+                "{} of {}: {}: {text}",
+                self.bar.position(),
+                self.bar.length().unwrap_or_default(),
+                mesh.display()
+            );
+            self.bar.suspend(|| tell::note(false, &line));
+        }
     }
 
     pub(crate) fn clear(&self) {

@@ -7,6 +7,7 @@ use gpu_smooth::{Metric, Outcome, Quality, Scheme};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
+use crate::numbers::{percent, six};
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -161,6 +162,11 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
 }
 
 impl Report {
+    /// The metric that judges.
+    pub(crate) fn base(&self) -> &str {
+        self.scheme.split('+').next().unwrap_or("imr")
+    }
+
     /// The summary for the terminal: what was done, before and after, and where the time went.
     pub(crate) fn summary(&self) -> String {
         let mut text = String::new();
@@ -194,7 +200,7 @@ impl Report {
         let mut row = |name: &str, before: String, after: String| {
             let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
         };
-        let base = self.scheme.split('+').next().unwrap_or("imr");
+        let base = self.base();
         let mut metrics = vec![base];
         if !matches!(base, "imr" | "ar") {
             metrics.push("imr");
@@ -232,7 +238,7 @@ impl Report {
         let judges_shape =
             |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier);
         let shape = self.scheme.split('+').any(judges_shape);
-        let base = self.scheme.split('+').next().unwrap_or_default();
+        let base = self.base();
         let remedy = match shape {
             true => "f is a mean, which may fall as one element gets worse".to_owned(),
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
@@ -321,58 +327,5 @@ impl Report {
             let _ = write!(text, "; vertices put back for rounding: {}", self.returned);
         }
         text
-    }
-}
-
-/// A number with about six significant digits.
-pub(crate) fn six(x: f64) -> String {
-    match x.abs() {
-        a if !a.is_finite() => "infinite".into(),
-        a if (1e-4..1e6).contains(&a) || a == 0.0 => {
-            let before_point = if a < 1.0 { 1 } else { a.log10().floor() as usize + 1 };
-            format!("{x:.*}", 7usize.saturating_sub(before_point).max(1))
-        }
-        _ => format!("{x:.4e}"),
-    }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.2}", (share * 1e4).floor() / 1e2)
-}
-
-/// A number with four or five significant digits, in at most eight characters.
-pub(crate) fn five(x: f64) -> String {
-    match x.abs() {
-        a if !a.is_finite() => "infinite".into(),
-        0.0 => "0".into(),
-        a if (1e-3..99_999.5).contains(&a) => {
-            let decimals = 4 - a.log10().floor().max(-4.0) as i32 - i32::from(a < 1.0);
-            format!("{x:.*}", (decimals - i32::from(x < 0.0)).max(0) as usize)
-        }
-        _ => format!("{x:.1e}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_fit_their_column() {
-        let cases = [
-            (60.0, "60.000"),
-            (0.0012487, "0.001249"),
-            (0.25, "0.2500"),
-            (-0.0012487, "-0.00125"),
-            (1.0, "1.0000"),
-            (99_999.4, "99999"),
-            (99_999.6, "1.0e5"),
-            (0.000999, "1.0e-3"),
-            (-1e-300, "-1.0e-300"),
-            (f64::INFINITY, "infinite"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(five(x), text);
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! `gpu-smooth bench`: how fast this machine smooths.
 
+mod args;
 mod kernels;
 mod lattice;
 mod rates;
@@ -11,10 +12,11 @@ use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
 use gpu_smooth::{Gpu, Mesh, Options, SmoothError};
 
-use crate::cli::{BenchArgs, EngineChoice};
-use crate::smooth::read;
+use crate::smooth::EngineChoice;
+use crate::streams::read;
 use crate::tell;
 use crate::{engine, explain};
+pub(crate) use args::BenchArgs;
 use report::{KernelRow, Row};
 
 /// An engine, and how many bytes a second it reads and writes when it copies.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Place;
 use super::kernels::KernelTime;
-use crate::cli::BenchArgs;
+use crate::bench::BenchArgs;
 use crate::tell;
 
 /// What was measured of one mesh on one engine.

@@ -20,7 +20,7 @@ use gpu_smooth::{Measured, MeshError, MeshFile, Topology, output};
 use outlines::Outlines;
 use scene::{Panel, Scene};
 
-use crate::report::five;
+use crate::numbers::five;
 
 /// Among so many of the worst triangles, some are marked that are apart from each other.
 const CANDIDATES: usize = 1000;

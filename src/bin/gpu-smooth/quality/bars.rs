@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
+use crate::numbers::five;
 use crate::quality::sheet::Histogram;
-use crate::report::five;
 
 /// How to draw.
 pub(crate) struct Style {

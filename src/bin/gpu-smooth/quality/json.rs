@@ -5,6 +5,7 @@ use std::fmt::Write;
 use gpu_smooth::{Place, QUANTILES, Statistics};
 use serde_json::{Map, Value, json};
 
+use crate::columns::quoted;
 use crate::quality::sheet::{Histogram, Sheet, Violation, Worst, location};
 
 /// An object for one mesh, a list of them for several.
@@ -119,12 +120,4 @@ pub(crate) fn csv(sheets: &[Sheet]) -> String {
         }
     }
     text
-}
-
-/// A field of CSV, in quotes if it needs them.
-fn quoted(field: &str) -> String {
-    match field.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field.to_owned(),
-    }
 }

@@ -11,7 +11,7 @@ use crate::picture::{self, Shot};
 use crate::quality::args::{QualityArgs, Threshold};
 use crate::quality::bins;
 use crate::report::QualityReport;
-use crate::smooth::read;
+use crate::streams::read;
 use crate::tell;
 
 /// What is told of one mesh. The mesh itself is not kept, so that many can be told side by side.

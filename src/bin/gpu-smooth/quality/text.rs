@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use gpu_smooth::{Measure, Metric, Statistics};
 
+use crate::columns::{left, shortened};
 use crate::explain;
+use crate::numbers::{five, six};
 use crate::quality::bars::{self, Style};
 use crate::quality::sheet::{Sheet, Worst};
-use crate::report::{five, six};
 
 /// The width of a table's first column.
 const NAME: usize = 18;
@@ -60,7 +61,7 @@ fn head() -> String {
 
 fn row(name: &str, statistics: &Statistics) -> String {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
-    let mut text = format!("{name:<NAME$}");
+    let mut text = left(name, NAME);
     for number in [min, low, median, mean, high, max, deviation] {
         let _ = write!(text, "{:>9}", five(*number));
     }
@@ -73,15 +74,6 @@ fn named(measure: Measure, style: &Style) -> String {
         ("", _) => measure.name().to_owned(),
         ("°", true) => format!("{measure} (deg)"),
         (unit, _) => format!("{measure} {unit}"),
-    }
-}
-
-/// The end of a name that is too long.
-fn shortened(name: &str, most: usize) -> String {
-    let length = name.chars().count();
-    match length > most {
-        true => format!("..{}", name.chars().skip(length + 2 - most).collect::<String>()),
-        false => name.to_owned(),
     }
 }
 
@@ -163,16 +155,5 @@ pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
         ("°", true) => format!("{measure} {} deg", five(value)),
         (unit, _) => format!("{measure} {}{unit}", five(value)),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_names_lose_their_start() {
-        assert_eq!(shortened("a/long/name.msh", 9), "..ame.msh");
-        assert_eq!(shortened("name.msh", 9), "name.msh");
     }
 }

@@ -1,0 +1,55 @@
+//! What became of a mesh.
+
+use std::path::PathBuf;
+
+use crate::report::Report;
+use crate::smooth::Failure;
+
+/// A mesh and what became of it.
+pub(crate) struct Entry {
+    pub(crate) input: PathBuf,
+    pub(crate) out: PathBuf,
+    /// The files that are the mesh.
+    pub(crate) files: Vec<PathBuf>,
+    pub(crate) told: Told,
+}
+
+/// What became of a mesh.
+pub(crate) enum Told {
+    Smoothed {
+        report: Box<Report>,
+        remarks: Vec<String>,
+    },
+    /// It was done before.
+    Skipped,
+    Failed(Failure),
+    /// The user ended the call before the mesh was done.
+    Interrupted,
+}
+
+impl Told {
+    /// In one word.
+    pub(crate) fn status(&self) -> &'static str {
+        match self {
+            Self::Smoothed { .. } => "smoothed",
+            Self::Skipped => "skipped",
+            Self::Failed(_) => "failed",
+            Self::Interrupted => "interrupted",
+        }
+    }
+
+    pub(crate) fn report(&self) -> Option<&Report> {
+        match self {
+            Self::Smoothed { report, .. } => Some(report),
+            _ => None,
+        }
+    }
+
+    /// Why it failed, in one line.
+    pub(crate) fn problem(&self) -> Option<&str> {
+        match self {
+            Self::Failed(failure) => failure.message.lines().next(),
+            _ => None,
+        }
+    }
+}
