@@ -11,6 +11,7 @@ mod compare;
 mod files;
 mod formats;
 mod groups;
+mod html;
 mod interrupt;
 mod many;
 mod moving;

@@ -7,6 +7,7 @@ mod compare;
 mod engine;
 mod explain;
 mod groups;
+mod html;
 mod interrupt;
 mod many;
 mod moving;

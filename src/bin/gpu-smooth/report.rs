@@ -169,6 +169,25 @@ impl Report {
 
     /// The summary for the terminal: what was done, before and after, and where the time went.
     pub(crate) fn summary(&self) -> String {
+        let mut text = self.subject() + "\n\n";
+        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
+        for [name, before, after] in self.rows() {
+            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
+        }
+        let _ = writeln!(text, "\n{}", self.ending());
+        if let Some(warning) = self.warning() {
+            let _ = writeln!(text, "{warning}");
+        }
+        let Seconds { read, prepare, smooth, write, total } = self.seconds;
+        let _ = write!(
+            text,
+            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
+        );
+        text
+    }
+
+    /// What was smoothed, where and by what.
+    pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
         let s = if colors == 1 { "" } else { "s" };
@@ -195,12 +214,14 @@ impl Report {
                 count(moved, "vertex", "vertices"),
             );
         }
-        text.push('\n');
-        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
-        let mut row = |name: &str, before: String, after: String| {
-            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
-        };
+        text.trim_end().to_owned()
+    }
+
+    /// What changed: a name, and the values before and after.
+    pub(crate) fn rows(&self) -> Vec<[String; 3]> {
         let base = self.base();
+        let mut rows = Vec::new();
+        let mut row = |name: &str, before, after| rows.push([name.to_owned(), before, after]);
         let mut metrics = vec![base];
         if !matches!(base, "imr" | "ar") {
             metrics.push("imr");
@@ -217,20 +238,11 @@ impl Report {
             row("  of movable", six(before), six(after));
         }
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
-        let _ = writeln!(text, "\n{}", self.ending());
-        if let Some(warning) = self.warning() {
-            let _ = writeln!(text, "{warning}");
-        }
-        let Seconds { read, prepare, smooth, write, total } = self.seconds;
-        let _ = write!(
-            text,
-            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
-        );
-        text
+        rows
     }
 
     /// A remark on the worst element if it is worse than before by a hundredth or more.
-    fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<String> {
         let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
         if after <= 1.01 * before {
             return None;
@@ -256,7 +268,7 @@ impl Report {
     }
 
     /// Why the run ended, in a sentence.
-    fn ending(&self) -> String {
+    pub(crate) fn ending(&self) -> String {
         if let Some(reason) = &self.nothing_to_do {
             return format!("nothing to do: {reason}; the mesh is written as it was");
         }

@@ -132,7 +132,8 @@ fn regions(file: &MeshFile, measured: &Measured<'_>) -> Vec<Region> {
     first.iter().zip(statistics).map(region).collect()
 }
 
-fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
+/// How many triangles have their value in each bin of a measure.
+pub(crate) fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
     let edges = bins::edges(measure);
     let counts = measured.histogram(measure, &edges);
     Histogram { measure, edges, counts }

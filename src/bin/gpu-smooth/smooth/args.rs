@@ -107,6 +107,10 @@ pub(crate) struct SmoothArgs {
     /// What f the report's history holds: the first metric's, or every metric's
     #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
+    /// Write a page for a browser, in one file that needs nothing else: the mesh before and after to be enlarged, histograms,
+    /// f by sweep and time, statistics, the worst triangles
+    #[arg(long, value_name = "FILE", help_heading = "Output", conflicts_with = "out_dir")]
+    pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gpu_smooth::{MeshFile, output};
 
+use crate::html;
 use crate::picture;
 use crate::smooth::args::SmoothArgs;
 use crate::streams::is_standard;
@@ -27,6 +28,8 @@ pub(crate) fn check(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<()
     let of_meshes = || file.paths().chain(written.iter().map(PathBuf::as_path));
     let report = args.report.as_deref();
     picture::check(&args.picture, of_meshes().chain(report))?;
+    let others = of_meshes().chain(report).chain(args.picture.picture.as_deref());
+    html::check(args.html.as_deref(), others)?;
     check_report(args, of_meshes())
 }
 

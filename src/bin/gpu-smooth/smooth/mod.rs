@@ -8,4 +8,4 @@ mod task;
 pub(crate) use args::{EngineChoice, SmoothArgs};
 pub(crate) use destinations::check_report;
 pub(crate) use single::run;
-pub(crate) use task::{Failure, Follow, Task, carry_out};
+pub(crate) use task::{Done, Failure, Follow, Task, carry_out};

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::OutputArgs;
 use crate::engine;
+use crate::html;
 use crate::interrupt;
 use crate::picture::{self, Shot};
 use crate::progress::Bar;
@@ -76,9 +77,10 @@ impl Follow for Shown<'_> {
 /// Writes and prints what a run was asked to tell.
 fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     let Task { args, show, out, .. } = *task;
-    let Done { file, smoother, outcome, report } = done;
+    let Done { file, smoother, outcome, report, .. } = done;
     write_report(args, report)
         .and_then(|()| draw(args, file, smoother, outcome))
+        .and_then(|()| html::write(args.html.as_deref(), task, done))
         .map_err(|problem| format!("{problem}. The mesh was written"))?;
     let say = |text: &str| streams::say_beside(out, text);
     if show.verbose {

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, MeshError, MeshFile, MeshSize, Options, Outcome, Precision, Progress, SmoothError,
-    Smoother, Stop,
+    Backend, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
+    SmoothError, Smoother, Stop,
 };
 
 use crate::cli::OutputArgs;
@@ -45,6 +45,8 @@ pub(crate) struct Done<'a> {
     pub(crate) file: &'a MeshFile,
     pub(crate) smoother: &'a Smoother<'a>,
     pub(crate) outcome: &'a Outcome,
+    /// Sweeps, and after how many seconds of the run they were done, where that is known.
+    pub(crate) times: Vec<(u32, f64)>,
     pub(crate) report: Report,
 }
 
@@ -112,7 +114,7 @@ pub(crate) fn carry_out<T>(
     let prepared = Instant::now();
 
     let options = options(args, &choice, file.precision());
-    let (outcome, taken) = smooth(args, &options, &smoother, &file, taken, follow)?;
+    let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
     follow.has_smoothed()?;
     let after = smoother.quality(&outcome.points).map_err(told)?;
     let smoothed = Instant::now();
@@ -154,7 +156,7 @@ pub(crate) fn carry_out<T>(
         history: report::history(&outcome, &args.scheme, args.history == History::All),
         seconds,
     };
-    let done = Done { file: &file, smoother: &smoother, outcome: &outcome, report };
+    let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };
     Ok(finish(done)?)
 }
 
@@ -173,6 +175,13 @@ fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
     }
 }
 
+/// A run, the engine that did it, and after how many seconds how many sweeps were done.
+struct Ran {
+    outcome: Outcome,
+    taken: Taken,
+    times: Vec<(u32, f64)>,
+}
+
 /// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
 fn smooth(
     args: &SmoothArgs,
@@ -181,8 +190,13 @@ fn smooth(
     file: &MeshFile,
     mut taken: Taken,
     follow: &mut dyn Follow,
-) -> Result<(Outcome, Taken), String> {
+) -> Result<Ran, String> {
+    let start = Instant::now();
+    let mut times = Vec::new();
     let mut observe = |progress: &Progress| {
+        if progress.phase == Phase::Smoothing {
+            times.push((progress.sweep, start.elapsed().as_secs_f64()));
+        }
         follow.sweep(progress);
         match interrupt::is_requested() {
             true => ControlFlow::Break(()),
@@ -199,8 +213,12 @@ fn smooth(
         taken = Taken::new(Backend::Cpu, Some(error.to_string()));
         outcome = smoother.run(options, &taken.backend, &mut observe);
     }
-    let outcome = outcome.map(|outcome| (outcome, taken));
-    outcome.map_err(|error: SmoothError| match &error {
+    if let Ok(outcome) = &outcome {
+        times.retain(|time| time.0 < outcome.sweeps);
+        times.push((outcome.sweeps, start.elapsed().as_secs_f64()));
+    }
+    let ran = outcome.map(|outcome| Ran { outcome, taken, times });
+    ran.map_err(|error: SmoothError| match &error {
         SmoothError::Mesh(error) => explain::mesh_error(file, error),
         error if engine::is_too_large(error) => {
             format!("{error}. Smooth on the CPU: --engine cpu")
