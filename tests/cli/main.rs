@@ -19,6 +19,7 @@ mod options;
 mod output;
 mod picture;
 mod plate;
+mod progress;
 mod quality;
 mod refusals;
 mod regions;

@@ -23,10 +23,13 @@ mod untangle;
 
 use std::process::ExitCode;
 
-use cli::{Cli, Command};
+use cli::{Cli, Command, LogForm};
 
 fn main() -> ExitCode {
     let cli = Cli::read();
+    if cli.output.log == LogForm::Json {
+        tell::log_json();
+    }
     let done = match &cli.command {
         Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),

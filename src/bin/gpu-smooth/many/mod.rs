@@ -10,17 +10,17 @@ use std::time::Instant;
 
 use gpu_smooth::{MeshFile, Progress, output};
 
-use crate::cli::OutputArgs;
+use crate::cli::{LogForm, OutputArgs};
 use crate::engine::Engines;
 use crate::interrupt;
-use crate::progress::Tally;
+use crate::progress::{Stage, Tally};
 use crate::smooth::{Follow, SmoothArgs, Task, carry_out, check_report};
 use crate::tell;
 use entry::{Entry, Told};
 use listing::Listed;
 
 /// What a run does in silence, as other runs go on beside it.
-const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false };
+const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
 
 /// Smooths all meshes. An error at the end if one could not be smoothed.
 pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), String> {
@@ -119,6 +119,8 @@ impl Follow for Followed<'_> {
     fn remark(&mut self, text: &str) {
         self.remarks.push(text.to_owned());
     }
+
+    fn stage(&mut self, _: Stage) {}
 
     fn sweep(&mut self, _: &Progress) {}
 

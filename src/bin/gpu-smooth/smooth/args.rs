@@ -154,6 +154,12 @@ impl SmoothArgs {
         self.input.iter().chain(&self.output).chain(&self.more)
     }
 
+    /// The share of f within which the run ends, if it has no other goal.
+    pub(crate) fn estimated_end(&self) -> Option<f64> {
+        let has_goal = self.fraction.is_some() || self.desired.is_some();
+        (!has_goal).then_some(self.tolerance)
+    }
+
     /// An option given along with another that settles the same.
     pub(crate) fn contradiction(&self) -> Option<(&str, &str)> {
         if self.method == MethodChoice::Paper && self.omega.is_some() {

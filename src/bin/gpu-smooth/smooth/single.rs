@@ -4,13 +4,14 @@ use std::path::Path;
 
 use gpu_smooth::{MeshFile, Outcome, Phase, Progress, Smoother, output};
 use serde::Serialize;
+use serde_json::json;
 
 use crate::cli::OutputArgs;
 use crate::engine;
 use crate::html;
 use crate::interrupt;
 use crate::picture::{self, Shot};
-use crate::progress::Bar;
+use crate::progress::{Display, Stage};
 use crate::report::{Refusal, Report};
 use crate::smooth::args::SmoothArgs;
 use crate::smooth::destinations;
@@ -24,7 +25,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     };
     interrupt::watch(show.quiet);
     let task = Task { args, show, input, out };
-    let mut follow = Shown { args, show, out, bar: Bar::new(show, args.max_sweeps) };
+    let display = Display::new(show, args.estimated_end(), args.max_sweeps);
+    let mut follow = Shown { args, show, out, display: &display };
     // The driver starts while the mesh is read, or while it is prepared if its size decides on the engine.
     let done = std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
@@ -34,8 +36,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             }
             None => Ok(engine::choose(args, size)),
         };
-        carry_out(&task, engine, &mut follow, |done| finish(&task, &done))
+        carry_out(&task, engine, &mut follow, |done| {
+            display.clear();
+            finish(&task, &done)
+        })
     });
+    display.clear();
     done.map_err(|failure| told_with_report(args, failure))
 }
 
@@ -44,30 +50,33 @@ struct Shown<'a> {
     args: &'a SmoothArgs,
     show: &'a OutputArgs,
     out: &'a Path,
-    bar: Bar,
+    display: &'a Display,
 }
 
 impl Follow for Shown<'_> {
+    fn stage(&mut self, stage: Stage) {
+        self.display.stage(stage);
+    }
+
     fn has_read(&mut self, file: &MeshFile) -> Result<(), String> {
         destinations::check(self.args, file, self.out)
     }
 
     fn remark(&mut self, text: &str) {
-        tell::note(self.show.quiet, text);
+        self.display.aside(|| tell::note(self.show.quiet, text));
     }
 
     fn sweep(&mut self, progress: &Progress) {
         if progress.phase == Phase::Smoothing {
             interrupt::has_result();
         }
-        self.bar.update(progress);
+        self.display.sweep(progress);
     }
 
     fn has_smoothed(&mut self) -> Result<(), String> {
-        self.bar.clear();
         if interrupt::is_requested() {
             let text = "interrupted: writing the best mesh so far (once more to end without it)";
-            tell::note(self.show.quiet, text);
+            self.display.aside(|| tell::note(self.show.quiet, text));
         }
         interrupt::has_result();
         destinations::can_write_report(self.args)
@@ -88,6 +97,13 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     }
     if !show.quiet {
         say(&report.summary());
+        if tell::is_json() {
+            let (before, after) = (report.before.f[report.base()], report.after.f[report.base()]);
+            tell::event(json!({
+                "event": "end", "mesh": task.input.display().to_string(), "stop": report.stop,
+                "sweeps": report.sweeps, "f_before": before, "f_after": after,
+            }));
+        }
     }
     Ok(())
 }

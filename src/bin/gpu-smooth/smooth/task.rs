@@ -14,6 +14,7 @@ use crate::engine::{self, Taken};
 use crate::explain::{self, BadTriangleReport};
 use crate::interrupt;
 use crate::moving::Choice;
+use crate::progress::Stage;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds, UntangleReport};
 use crate::smooth::args::{History, SmoothArgs};
 use crate::streams;
@@ -30,6 +31,8 @@ pub(crate) struct Task<'a> {
 
 /// Who follows a mesh through its run.
 pub(crate) trait Follow {
+    /// A stage of the run begins.
+    fn stage(&mut self, stage: Stage);
     /// The mesh has been read. An error ends the run before any work is done.
     fn has_read(&mut self, file: &MeshFile) -> Result<(), String>;
     /// Something about the mesh is worth telling.
@@ -76,6 +79,8 @@ pub(crate) fn carry_out<T>(
 ) -> Result<T, Failure> {
     let Task { args, show, input, out } = *task;
     let start = Instant::now();
+    let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
+    follow.stage(Stage::Reading { bytes });
     let mut file = streams::read(input)?;
     let choice = args.moving.apply(&mut file)?;
     let file = file;
@@ -86,6 +91,7 @@ pub(crate) fn carry_out<T>(
     }
     let mesh = file.mesh();
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    follow.stage(Stage::Preparing { vertices: size.vertices });
     // The driver may start while the mesh is prepared.
     let (prepared, taken) = std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
@@ -114,11 +120,13 @@ pub(crate) fn carry_out<T>(
     let prepared = Instant::now();
 
     let options = options(args, &choice, file.precision());
+    follow.stage(Stage::Smoothing);
     let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
     follow.has_smoothed()?;
     let after = smoother.quality(&outcome.points).map_err(told)?;
     let smoothed = Instant::now();
 
+    follow.stage(Stage::Writing { bytes });
     streams::write(&file, out, &outcome.points)?;
     let written = Instant::now();
 
