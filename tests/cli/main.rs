@@ -25,6 +25,7 @@ mod refusals;
 mod regions;
 mod report;
 mod schemes;
+mod shell;
 mod streams;
 mod untangle;
 

@@ -9,6 +9,7 @@ use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcom
 use crate::bench::BenchArgs;
 use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
+use crate::shell::{CompletionsArgs, ManArgs};
 use crate::smooth::SmoothArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
@@ -26,6 +27,8 @@ use crate::smooth::SmoothArgs;
                   gpu-smooth coast.msh better.msh --picture better.png\n  \
                   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
                   gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
+                  gpu-smooth *.msh --out-dir smoothed --resume\n  \
+                  gpu-smooth part.msh better.msh --html run.html\n  \
                   gpu-smooth quality better.msh\n  \
                   gpu-smooth bench"
 )]
@@ -65,20 +68,43 @@ pub(crate) enum LogForm {
     Json,
 }
 
+/// Where shells look for completions.
+const COMPLETIONS: &str = "Examples:
+  gpu-smooth completions bash > ~/.local/share/bash-completion/completions/gpu-smooth
+  gpu-smooth completions zsh > ~/.zfunc/_gpu-smooth
+  gpu-smooth completions fish > ~/.config/fish/completions/gpu-smooth.fish";
+
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Tells how good meshes are, and where they are worst
+    #[command(after_help = "Examples:\n  \
+        gpu-smooth quality coast.msh -m min-angle,skewness --picture coast.png\n  \
+        gpu-smooth quality before.su2 after.su2 --csv\n  \
+        gpu-smooth quality part.msh --threshold 'min-angle<20' --threshold 'size-ratio>4'")]
     Quality(QualityArgs),
     /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
+    #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
+    #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters,
     /// Tells what each metric measures and what it is good for
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
+    #[command(
+        after_help = "Examples:\n  gpu-smooth bench\n  gpu-smooth bench coast.msh --scheme edge+imr --engine gpu"
+    )]
     Bench(BenchArgs),
+    /// Prints completions for a shell
+    #[command(after_help = COMPLETIONS)]
+    Completions(CompletionsArgs),
+    /// Prints the manual page, or writes the pages of all commands into a directory
+    #[command(
+        after_help = "Examples:\n  gpu-smooth man | man -l -\n  gpu-smooth man ~/.local/share/man/man1"
+    )]
+    Man(ManArgs),
 }
 
 #[derive(Args)]

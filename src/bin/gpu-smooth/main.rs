@@ -16,6 +16,7 @@ mod picture;
 mod progress;
 mod quality;
 mod report;
+mod shell;
 mod smooth;
 mod streams;
 mod tell;
@@ -37,6 +38,8 @@ fn main() -> ExitCode {
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
+        Some(Command::Completions(args)) => shell::completions(args),
+        Some(Command::Man(args)) => shell::man(args),
         None => match &cli.smooth.out_dir {
             Some(directory) => many::run(&cli.smooth, directory, &cli.output),
             None => smooth::run(&cli.smooth, &cli.output),

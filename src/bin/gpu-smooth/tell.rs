@@ -70,8 +70,18 @@ pub(crate) fn leave_bar() {
 pub(crate) fn error(text: &str) {
     match is_json() {
         true => event(json!({ "event": "error", "message": text })),
+        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {text}"),
         false => eprintln!("gpu-smooth: error: {text}"),
     }
+}
+
+/// Whether standard error is to be colored: on a terminal that can, unless `NO_COLOR` (<https://no-color.org>) is set; anywhere
+/// if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is.
+fn is_colored() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let forced = set("CLICOLOR_FORCE");
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
 }
 
 /// Remarks on a mesh besides its size, one line each.

@@ -22,41 +22,22 @@ pub(crate) struct SmoothArgs {
     #[arg(hide = true, value_name = "MESH")]
     pub(crate) more: Vec<PathBuf>,
 
-    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it is not there. Small ones
-    /// are smoothed side by side; one that fails does not stop the rest
-    #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
-    pub(crate) out_dir: Option<PathBuf>,
-    /// Skip meshes whose smoothed files are all in DIR and newer than the mesh
-    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "keep_going")]
-    pub(crate) resume: bool,
-    /// Print the table of the meshes as CSV
-    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "json")]
-    pub(crate) csv: bool,
-    /// Print the table of the meshes as JSON
-    #[arg(long, requires = "out_dir", help_heading = "Many meshes")]
-    pub(crate) json: bool,
-
     /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
     /// convergence. Metrics: edge, area, rms, imr, ar, shape-size (see `gpu-smooth metrics`)
-    #[arg(long, default_value = "imr", value_name = "A[+B...]")]
+    #[arg(
+        long,
+        default_value = "imr",
+        value_name = "A[+B...]",
+        help_heading = "Metric and engine"
+    )]
     pub(crate) scheme: Scheme,
-
-    #[command(flatten)]
-    pub(crate) moving: MoveArgs,
-
-    /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
-    #[arg(long)]
-    pub(crate) untangle: bool,
-    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1
-    #[arg(long, requires = "untangle")]
-    pub(crate) keep_going: bool,
 
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
     /// done first, but no software adapter
-    #[arg(long, value_enum, default_value = "auto")]
+    #[arg(long, value_enum, default_value = "auto", help_heading = "Metric and engine")]
     pub(crate) engine: EngineChoice,
     /// Take the first GPU adapter with NAME in its name (see `gpu-smooth adapters`)
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Metric and engine")]
     pub(crate) adapter: Option<String>,
 
     /// Stop after N sweeps at the latest
@@ -100,6 +81,16 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
     pub(crate) edge_norm: EdgeNorm,
 
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
+
+    /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
+    #[arg(long, help_heading = "Untangling")]
+    pub(crate) untangle: bool,
+    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1
+    #[arg(long, requires = "untangle", help_heading = "Untangling")]
+    pub(crate) keep_going: bool,
+
     /// Write a report with the history of every sweep, as JSON; if inverted or flat triangles keep the mesh from
     /// being smoothed, a list of them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -113,6 +104,20 @@ pub(crate) struct SmoothArgs {
     pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+
+    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it is not there. Small ones
+    /// are smoothed side by side; one that fails does not stop the rest
+    #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
+    pub(crate) out_dir: Option<PathBuf>,
+    /// Skip meshes whose smoothed files are all in DIR and newer than the mesh
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "keep_going")]
+    pub(crate) resume: bool,
+    /// Print the table of the meshes as CSV
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "json")]
+    pub(crate) csv: bool,
+    /// Print the table of the meshes as JSON
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes")]
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
