@@ -1,6 +1,14 @@
 //! Text in columns, of a terminal or of CSV.
 
+use std::io::IsTerminal;
+
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+/// The columns of the terminal that standard output is, if it is one.
+pub(crate) fn of_terminal() -> Option<usize> {
+    let size = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
+    size.map(|(width, _)| usize::from(width.0))
+}
 
 /// A text and spaces after it, together as many columns wide as `width` says.
 pub(crate) fn left(text: &str, width: usize) -> String {

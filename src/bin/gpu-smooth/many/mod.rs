@@ -11,6 +11,7 @@ use std::time::Instant;
 use gpu_smooth::{MeshFile, Progress, output};
 
 use crate::cli::{LogForm, OutputArgs};
+use crate::columns;
 use crate::engine::Engines;
 use crate::interrupt;
 use crate::progress::{Stage, Tally};
@@ -65,7 +66,7 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
     } else if args.csv {
         tell::say(&table::csv(&entries));
     } else if !show.quiet {
-        tell::say(&table::text(&entries, seconds));
+        tell::say(&table::text(&entries, seconds, columns::of_terminal()));
     }
     match table::failures(&entries) {
         Some(text) if interrupt::is_requested() => {

@@ -4,33 +4,67 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
+use unicode_width::UnicodeWidthStr;
 
 use crate::columns::{left, quoted, right, shortened};
 use crate::many::entry::{Entry, Told};
-use crate::numbers::{five, six};
+use crate::numbers::five;
 use crate::report::Report;
 
-/// The width of the names in the table.
-const NAME: usize = 22;
+/// The columns of numbers with their widths. The first two are left out where a terminal is narrow.
+const WIDTHS: [usize; 7] = [9, 7, 10, 10, 10, 8, 8];
 
-/// A line for each mesh, and one for all of them.
-pub(crate) fn text(entries: &[Entry], seconds: f64) -> String {
+/// The widths of the names and of all columns of numbers that are shown.
+struct Widths {
+    name: usize,
+    is_narrow: bool,
+}
+
+impl Widths {
+    fn new(entries: &[Entry], terminal: Option<usize>) -> Self {
+        let longest = entries.iter().map(|entry| name(entry).width()).max().unwrap_or(0);
+        let numbers: usize = WIDTHS.iter().sum();
+        let room = terminal.unwrap_or(120).saturating_sub(numbers);
+        let is_narrow = room < 12;
+        let room = if is_narrow { room + WIDTHS[0] + WIDTHS[1] } else { room };
+        Self { name: longest.clamp(7, room.max(8)), is_narrow }
+    }
+
+    fn line(&self, name: &str, columns: [String; WIDTHS.len()]) -> String {
+        let mut text = left(&shortened(name, self.name), self.name);
+        let skipped = if self.is_narrow { 2 } else { 0 };
+        for (column, width) in columns.iter().zip(WIDTHS).skip(skipped) {
+            text += &right(column, width);
+        }
+        text
+    }
+}
+
+/// No two have the same.
+fn name(entry: &Entry) -> String {
+    entry.input.file_name().unwrap_or_default().display().to_string()
+}
+
+/// A line for each mesh, and one for all of them. A terminal has so many columns.
+pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> String {
+    let widths = Widths::new(entries, terminal);
     let base = entries.iter().find_map(|entry| entry.told.report()).map_or("imr", Report::base);
-    let mut text = left("mesh", NAME);
-    for column in ["vertices", "sweeps"] {
-        text += &right(column, 9);
-    }
-    for column in [format!("f {base}"), "after".into(), "min angle".into(), "after".into()] {
-        text += &right(&column, 11);
-    }
-    text += &right("s", 9);
+    let base = format!("f {base}");
+    let head = ["vertices", "sweeps", &base, "after", "min angle", "after", "s"];
+    let mut text = widths.line("mesh", head.map(str::to_owned));
     for entry in entries {
-        // No two have the same.
-        let name = entry.input.file_name().unwrap_or_default().display().to_string();
-        let _ = write!(text, "\n{}", left(&shortened(&name, NAME - 1), NAME));
+        text.push('\n');
         match entry.told.report() {
-            Some(report) => text += &numbers(report),
-            None => text += &format!("  {}", entry.told.status()),
+            Some(report) => {
+                text += &widths.line(&name(entry), numbers(report));
+                if !matches!(report.stop, "converged" | "reached") {
+                    text += &format!("  {}", report.stop);
+                }
+            }
+            None => {
+                let name = left(&shortened(&name(entry), widths.name), widths.name);
+                text += &format!("{name}  {}", entry.told.status());
+            }
         }
     }
     let _ = write!(text, "\n\n{}", counts(entries));
@@ -41,22 +75,19 @@ pub(crate) fn text(entries: &[Entry], seconds: f64) -> String {
 }
 
 /// The columns of a mesh that was smoothed.
-fn numbers(report: &Report) -> String {
+fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     let (before, after) = (&report.before, &report.after);
     let base = report.base();
-    let mut text = right(&report.mesh.vertices.to_string(), 9);
-    text += &right(&report.sweeps.to_string(), 9);
     let angle = |angle: f64| format!("{angle:.2}°");
-    for column in
-        [six(before.f[base]), six(after.f[base]), angle(before.min_angle), angle(after.min_angle)]
-    {
-        text += &right(&column, 11);
-    }
-    text += &right(&five(report.seconds.total), 9);
-    match report.stop {
-        "converged" | "reached" => text,
-        stop => text + "  " + stop,
-    }
+    [
+        report.mesh.vertices.to_string(),
+        report.sweeps.to_string(),
+        five(before.f[base]),
+        five(after.f[base]),
+        angle(before.min_angle),
+        angle(after.min_angle),
+        five(report.seconds.total),
+    ]
 }
 
 /// How many meshes came to which end.
@@ -192,4 +223,34 @@ pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, String> 
     }
     let all = json!({ "meshes": meshes, "seconds": seconds });
     serde_json::to_string_pretty(&all).map(|text| text + "\n").map_err(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn entry(name: &str) -> Entry {
+        let path = PathBuf::from(name);
+        Entry { input: path.clone(), out: path.clone(), files: vec![path], told: Told::Skipped }
+    }
+
+    #[test]
+    fn tables_fit_their_terminal() {
+        let entries = ["a.msh", "東京湾の網格.msh", "a-mesh-with-quite-a-long-name-of-its-own.msh"];
+        let entries = entries.map(entry);
+        for (terminal, name, is_narrow) in
+            [(Some(80), 18, false), (Some(60), 14, true), (Some(200), 44, false), (None, 44, false)]
+        {
+            let widths = Widths::new(&entries, terminal);
+            assert_eq!((widths.name, widths.is_narrow), (name, is_narrow), "{terminal:?}");
+            let text = text(&entries, 0.0, terminal);
+            let head = text.lines().next().unwrap();
+            assert!(head.width() <= terminal.unwrap_or(120), "{text}");
+            for line in text.lines().filter(|line| line.ends_with("skipped")) {
+                assert_eq!(line.width(), name + "  skipped".len(), "{text}");
+            }
+            assert_eq!(head.contains("sweeps"), !is_narrow);
+        }
+    }
 }

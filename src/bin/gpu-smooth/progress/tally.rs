@@ -27,10 +27,11 @@ impl Tally {
     pub(crate) fn new(show: &OutputArgs, meshes: usize) -> Self {
         let (form, now) = (Form::new(show), Instant::now());
         let bar = form.bar();
-        bar.set_length(meshes as u64);
         if let Ok(style) = ProgressStyle::with_template("{bar:16} {wide_msg}") {
             bar.set_style(style);
         }
+        bar.set_message(format!("0 of {meshes} meshes"));
+        bar.set_length(meshes as u64);
         Self {
             form,
             bar,

@@ -4,14 +4,26 @@ use std::fmt::Write;
 
 use gpu_smooth::{Measure, Metric, Statistics};
 
-use crate::columns::{left, shortened};
+use crate::columns::{left, right, shortened};
 use crate::explain;
 use crate::numbers::{five, six};
 use crate::quality::bars::{self, Style};
 use crate::quality::sheet::{Sheet, Worst};
 
 /// The width of a table's first column.
-const NAME: usize = 18;
+const NAME: usize = 17;
+
+/// The columns of numbers, in which seven fit the usual terminal.
+const COLUMNS: [&str; 7] = ["min", "5 %", "median", "mean", "95 %", "max", "sd"];
+const COLUMN: usize = 9;
+
+/// The columns that fit a terminal, which go without the others: the most important first.
+fn shown(style: &Style) -> [bool; COLUMNS.len()] {
+    let fit = style.width.saturating_sub(NAME) / COLUMN;
+    let mut shown = [false; COLUMNS.len()];
+    [0, 5, 3, 2, 6, 1, 4].into_iter().take(fit).for_each(|column| shown[column] = true);
+    shown
+}
 
 /// All that is told of some meshes.
 pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
@@ -35,15 +47,15 @@ pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
 
 /// The statistics of every measure: a row for each, or for each measure and file.
 fn table(sheets: &[Sheet], style: &Style) -> String {
-    let mut text = head();
+    let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
         match sheets {
-            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i])),
+            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
             several => {
                 let _ = writeln!(text, "{}", named(*measure, style));
                 for sheet in several {
                     let name = shortened(&sheet.path.display().to_string(), NAME - 2);
-                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i]));
+                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i], style));
                 }
             }
         }
@@ -51,19 +63,21 @@ fn table(sheets: &[Sheet], style: &Style) -> String {
     text
 }
 
-fn head() -> String {
-    let mut text = " ".repeat(NAME);
-    for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
-        let _ = write!(text, "{column:>9}");
-    }
-    text + "\n"
+fn head(style: &Style) -> String {
+    line("", COLUMNS.map(str::to_owned), style)
 }
 
-fn row(name: &str, statistics: &Statistics) -> String {
+fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
+    line(name, [min, low, median, mean, high, max, deviation].map(|number| five(*number)), style)
+}
+
+fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
     let mut text = left(name, NAME);
-    for number in [min, low, median, mean, high, max, deviation] {
-        let _ = write!(text, "{:>9}", five(*number));
+    for (field, is_shown) in fields.iter().zip(shown(style)) {
+        if is_shown {
+            text += &right(field, COLUMN);
+        }
     }
     text + "\n"
 }
@@ -122,10 +136,10 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
         let measure = histogram.measure;
         let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
         let _ = writeln!(text, "{} by region", named(measure, style));
-        text.push_str(&head());
+        text.push_str(&head(style));
         for (number, region) in (1..).zip(&sheet.regions) {
             let statistics = &region.statistics[at];
-            text.push_str(&row(&format!("region {number}"), statistics));
+            text.push_str(&row(&format!("region {number}"), statistics, style));
         }
         text.push('\n');
     }
