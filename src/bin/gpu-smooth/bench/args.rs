@@ -35,9 +35,15 @@ pub(crate) struct BenchArgs {
     /// Seconds to measure for each line
     #[arg(long, default_value_t = 2.0, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
-    /// As JSON
+    /// As JSON, which --baseline takes
     #[arg(long)]
     pub(crate) json: bool,
+    /// As Markdown, with the machine and the version, ready to be pasted
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) markdown: bool,
+    /// Compare with measurements that `bench --json` has printed
+    #[arg(long, value_name = "FILE")]
+    pub(crate) baseline: Option<PathBuf>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

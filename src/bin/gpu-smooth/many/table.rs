@@ -24,9 +24,10 @@ impl Widths {
     fn new(entries: &[Entry], terminal: Option<usize>) -> Self {
         let longest = entries.iter().map(|entry| name(entry).width()).max().unwrap_or(0);
         let numbers: usize = WIDTHS.iter().sum();
-        let room = terminal.unwrap_or(120).saturating_sub(numbers);
-        let is_narrow = room < 12;
-        let room = if is_narrow { room + WIDTHS[0] + WIDTHS[1] } else { room };
+        let room = |numbers: usize| terminal.unwrap_or(120).saturating_sub(numbers);
+        let is_narrow = room(numbers) < 12;
+        let left_out = if is_narrow { WIDTHS[0] + WIDTHS[1] } else { 0 };
+        let room = room(numbers - left_out);
         Self { name: longest.clamp(7, room.max(8)), is_narrow }
     }
 
