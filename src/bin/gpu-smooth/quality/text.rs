@@ -8,7 +8,7 @@ use crate::columns::{left, right, shortened};
 use crate::explain;
 use crate::numbers::{five, six};
 use crate::quality::bars::{self, Style};
-use crate::quality::sheet::{Sheet, Worst};
+use crate::quality::sheet::{Region, Sheet, Worst};
 
 /// The width of a table's first column.
 const NAME: usize = 17;
@@ -138,14 +138,20 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
         let _ = writeln!(text, "{} by region", named(measure, style));
         text.push_str(&head(style));
         for (number, region) in (1..).zip(&sheet.regions) {
-            let statistics = &region.statistics[at];
-            text.push_str(&row(&format!("region {number}"), statistics, style));
+            let name = match region.groups.first() {
+                Some(group) => format!("{number} {}", group.short),
+                None => format!("region {number}"),
+            };
+            text.push_str(&row(&shortened(&name, NAME - 1), &region.statistics[at], style));
         }
         text.push('\n');
     }
     for (number, region) in (1..).zip(&sheet.regions) {
-        let (first, count) = (&region.first, region.statistics[0].count);
-        let _ = writeln!(text, "region {number}: {count} triangles, the first at {first}");
+        let Region { first, groups, statistics } = region;
+        let groups: Vec<&str> = groups.iter().map(|group| &*group.full).collect();
+        let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
+        let count = statistics[0].count;
+        let _ = writeln!(text, "region {number}: {named}{count} triangles, the first at {first}");
     }
     if !sheet.regions.is_empty() {
         text.push('\n');
