@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::bench::BenchArgs;
 use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
-use crate::shell::{CompletionsArgs, ManArgs};
-use crate::smooth::SmoothArgs;
+use crate::run_args::SmoothArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -125,6 +125,18 @@ pub(crate) struct CompareArgs {
     /// What may have moved: the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct ManArgs {
+    /// Where to write a page for the program and one for each command [default: the page of the program is printed]
+    pub(crate) directory: Option<PathBuf>,
 }
 
 impl Cli {

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
-use crate::smooth::{EngineChoice, SmoothArgs};
+use crate::run_args::{EngineChoice, SmoothArgs};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";

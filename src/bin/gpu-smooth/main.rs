@@ -16,9 +16,11 @@ mod picture;
 mod progress;
 mod quality;
 mod report;
+mod run_args;
 mod shell;
 mod smooth;
 mod streams;
+mod task;
 mod tell;
 mod untangle;
 

@@ -1,27 +1,14 @@
 //! `gpu-smooth completions` and `gpu-smooth man`: what a shell and a manual take from the definitions of the options.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::{Args, Command, CommandFactory};
-use clap_complete::Shell;
+use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use gpu_smooth::output;
 
-use crate::cli::Cli;
+use crate::cli::{Cli, CompletionsArgs, ManArgs};
 use crate::tell;
-
-#[derive(Args)]
-pub(crate) struct CompletionsArgs {
-    /// The shell
-    shell: Shell,
-}
-
-#[derive(Args)]
-pub(crate) struct ManArgs {
-    /// Where to write a page for the program and one for each command [default: the page of the program is printed]
-    directory: Option<PathBuf>,
-}
 
 /// Prints the completions for a shell.
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), String> {

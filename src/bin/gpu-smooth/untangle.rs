@@ -8,7 +8,7 @@ use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Untangled, Untangling};
 use crate::cli::OutputArgs;
 use crate::explain;
 use crate::interrupt;
-use crate::smooth::SmoothArgs;
+use crate::run_args::SmoothArgs;
 use crate::streams;
 
 /// A mesh that was untangled, and how.

@@ -6,7 +6,7 @@ use clap::Args;
 use gpu_smooth::Scheme;
 
 use crate::numbers::number;
-use crate::smooth::EngineChoice;
+use crate::run_args::EngineChoice;
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {

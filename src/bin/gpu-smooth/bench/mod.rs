@@ -14,7 +14,7 @@ use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
 use gpu_smooth::{Gpu, Mesh, Options, SmoothError};
 
-use crate::smooth::EngineChoice;
+use crate::run_args::EngineChoice;
 use crate::streams::read;
 use crate::tell;
 use crate::{engine, explain};

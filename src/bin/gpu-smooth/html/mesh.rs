@@ -4,12 +4,15 @@ use std::collections::HashSet;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use gpu_smooth::{Measured, MeshFile, Topology};
+use gpu_smooth::{Measure, Measured, MeshFile, Topology};
 use serde_json::{Value, json};
 
-use crate::html::SHOWN;
 use crate::html::worst::Spot;
 use crate::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
+
+/// The measures that the mesh can be colored by. The picture of a large one has the colors of the first.
+const SHOWN: [Measure; 4] =
+    [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
 
 /// Meshes of more triangles are shown as a picture and by parts. With fewer, the page has up to some 20 MB.
 pub(crate) const MOST: usize = 250_000;

@@ -12,12 +12,9 @@ use std::path::Path;
 use gpu_smooth::{Measure, Measured, output};
 
 use crate::quality::{Histogram, histogram};
-use crate::smooth::{Done, Task};
+use crate::task::{Done, Task};
 use page::{Page, escape};
-
-/// The measures that the mesh can be colored by, the first of which judges what is worst.
-const SHOWN: [Measure; 4] =
-    [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
+use tables::measure_name;
 
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
@@ -101,12 +98,4 @@ fn convergence(done: &Done<'_>) -> String {
         charts::lines("f against time", "s", &by_time, [true, true]),
         charts::lines("f above its least value", "sweep", &excess, [false, true]),
     )
-}
-
-/// The name of a measure with its unit.
-fn measure_name(measure: Measure) -> String {
-    match measure.definition().unit {
-        "" => measure.name().to_owned(),
-        unit => format!("{measure}, {unit}"),
-    }
 }

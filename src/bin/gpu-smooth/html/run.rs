@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::html::page::escape;
 use crate::numbers::six;
-use crate::smooth::{Done, Task};
+use crate::task::{Done, Task};
 
 /// The command, versions, the engine, and the certificate.
 pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use gpu_smooth::{Measure, Measured, Statistics};
 
-use crate::html::measure_name;
 use crate::html::page::escape;
 use crate::numbers::{five, six};
 use crate::report::{Report, Seconds};
@@ -75,4 +74,12 @@ pub(crate) fn time(seconds: &Seconds) -> String {
         "<div class=\"parts\">{bar}</div><ul class=\"keys\">{names}<li>total {} s</li></ul>",
         six(total)
     )
+}
+
+/// The name of a measure with its unit.
+pub(crate) fn measure_name(measure: Measure) -> String {
+    match measure.definition().unit {
+        "" => measure.name().to_owned(),
+        unit => format!("{measure}, {unit}"),
+    }
 }

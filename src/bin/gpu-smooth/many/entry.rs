@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::report::Report;
-use crate::smooth::Failure;
+use crate::task::Failure;
 
 /// A mesh and what became of it.
 pub(crate) struct Entry {

@@ -8,9 +8,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::cli::OutputArgs;
+use crate::progress::form::{Form, PATIENCE};
 use crate::progress::left::{Decay, Pace, told};
 use crate::progress::stage::Stage;
-use crate::progress::{Form, PATIENCE};
 use crate::tell;
 
 /// How often a bar is drawn again.

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::cli::OutputArgs;
-use crate::progress::Form;
+use crate::progress::form::Form;
 use crate::progress::left::told;
 use crate::tell;
 

@@ -6,7 +6,7 @@ use gpu_smooth::{MeshFile, output};
 
 use crate::html;
 use crate::picture;
-use crate::smooth::args::SmoothArgs;
+use crate::run_args::SmoothArgs;
 use crate::streams::is_standard;
 
 /// The files that the smoothed mesh is written to; none if it goes to the standard output. An error if they cannot be

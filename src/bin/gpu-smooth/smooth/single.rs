@@ -13,10 +13,10 @@ use crate::interrupt;
 use crate::picture::{self, Shot};
 use crate::progress::{Display, Stage};
 use crate::report::{Refusal, Report};
-use crate::smooth::args::SmoothArgs;
+use crate::run_args::SmoothArgs;
 use crate::smooth::destinations;
-use crate::smooth::task::{Done, Failure, Follow, Task, carry_out};
 use crate::streams;
+use crate::task::{Done, Failure, Follow, Task, carry_out};
 use crate::tell;
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {

@@ -16,7 +16,7 @@ use crate::interrupt;
 use crate::moving::Choice;
 use crate::progress::Stage;
 use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds, UntangleReport};
-use crate::smooth::args::{History, SmoothArgs};
+use crate::run_args::{History, SmoothArgs};
 use crate::streams;
 use crate::tell;
 use crate::untangle;
