@@ -125,11 +125,10 @@ fn codes(
     let bad = topology.bad_triangles(state.points()).map_err(|error| error.to_string())?;
     let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
     let of = |measure| {
-        let values = state.values(measure);
         let code = |&t: &usize| -> u16 {
             match bad.contains(&t) {
                 true => 0,
-                false => 1 + (65533.0 * goodness(measure, values[t])).round() as u16,
+                false => 1 + (65533.0 * goodness(measure, state.value(measure, t))).round() as u16,
             }
         };
         encoded(shown.iter().map(|t| code(t).to_le_bytes()))

@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fmt::Write;
+use std::time::SystemTime;
 
 use crate::html::page::escape;
 use crate::numbers::six;
@@ -23,6 +24,9 @@ pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     let format = &done.report.mesh.format;
     item("from", &format!("{} ({format})", task.input.display()));
     item("to", &task.out.display().to_string());
+    if let Ok(now) = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH) {
+        item("written", &date(now.as_secs()));
+    }
     item("program", concat!("gpu-smooth ", env!("CARGO_PKG_VERSION")));
     item("system", &format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH));
     item("scheme", &done.report.scheme);
@@ -60,6 +64,29 @@ fn certificate(done: &Done<'_>) -> Result<String, String> {
     ))
 }
 
+/// Day and time, from the seconds since 1970.
+fn date(seconds: u64) -> String {
+    let (mut days, minutes) = (seconds / 86_400, seconds % 86_400 / 60);
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
+    let mut year = 1970;
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year}-{month:02}-{:02} {:02}:{:02} UTC", days + 1, minutes / 60, minutes % 60)
+}
+
 /// A word as a shell takes it.
 fn quoted(word: &OsStr) -> String {
     let word = word.to_string_lossy();
@@ -73,6 +100,20 @@ fn quoted(word: &OsStr) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        let cases = [
+            (0, "1970-01-01 00:00 UTC"),
+            (951_782_399, "2000-02-28 23:59 UTC"),
+            (951_782_400, "2000-02-29 00:00 UTC"),
+            (1_735_689_599, "2024-12-31 23:59 UTC"),
+            (1_772_323_200, "2026-03-01 00:00 UTC"),
+        ];
+        for (seconds, text) in cases {
+            assert_eq!(date(seconds), text);
+        }
+    }
 
     #[test]
     fn words_are_quoted_for_a_shell() {

@@ -252,7 +252,7 @@ function show(i) {
   view.isWhole = false;
   view.spot = i;
   redraw();
-  document.getElementById("mesh").scrollIntoView();
+  document.getElementById("views").scrollIntoView({ block: "center" });
 }
 
 function fromMiddle(canvas, event) {

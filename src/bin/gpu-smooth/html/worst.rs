@@ -87,22 +87,22 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
         }
         let _ = write!(
             text,
-            "<div class=\"wide\"><table><caption>{title}</caption><thead><tr><th>triangle</th><th>x</th><th>y</th>\
-             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th></tr></thead><tbody>"
+            "<div class=\"wide\"><table><caption>{title}</caption><thead><tr><th>triangle</th>\
+             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
         );
         for (i, spot) in of_list() {
             let Spot { label, place, at: [x, y], values: [before, after], is_movable, .. } = spot;
             let held = if *is_movable { "" } else { " (fixed)" };
             let _ = write!(
                 text,
-                "<tr><td><a href=\"#spot-{i}\" title=\"{}\">{label}</a>{held}</td><td>{}</td><td>{}</td><td>{}</td><td>→ {}</td><td>{}°</td><td>→ {}°</td></tr>",
+                "<tr><td><a href=\"#spot-{i}\" title=\"{}\">{label}</a>{held}</td><td>{}</td><td>→ {}</td><td>{}°</td><td>→ {}°</td><td>{}</td><td>{}</td></tr>",
                 escape(place),
-                coordinate(*x),
-                coordinate(*y),
                 five(before[0]),
                 five(after[0]),
                 five(before[1]),
                 five(after[1]),
+                coordinate(*x),
+                coordinate(*y),
             );
         }
         text += "</tbody></table></div>";
