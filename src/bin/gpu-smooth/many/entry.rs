@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::numbers::five;
 use crate::report::Report;
 use crate::task::Failure;
 
@@ -42,6 +43,23 @@ impl Told {
         match self {
             Self::Smoothed { report, .. } => Some(report),
             _ => None,
+        }
+    }
+
+    /// In one line.
+    pub(crate) fn text(&self) -> String {
+        match (self.report(), self.problem()) {
+            (Some(report), _) => {
+                let (base, seconds) = (report.base(), report.seconds.total);
+                let [before, after] = [&report.before, &report.after].map(|q| five(q.f[base]));
+                let sweeps = report.sweeps;
+                format!(
+                    "{}, {sweeps} sweeps, f {base} {before} to {after}, {seconds:.2} s",
+                    report.stop
+                )
+            }
+            (None, Some(problem)) => problem.to_owned(),
+            (None, None) => self.status().to_owned(),
         }
     }
 

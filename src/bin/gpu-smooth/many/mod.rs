@@ -21,6 +21,7 @@ use crate::task::{Follow, Task, carry_out};
 use crate::tell;
 use entry::{Entry, Told};
 use listing::Listed;
+use workers::Watch;
 
 /// What a run does in silence, as other runs go on beside it.
 const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
@@ -41,19 +42,10 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
     skipped.iter().for_each(|&i| told[i] = Some(Told::Skipped));
     if !open.is_empty() {
         let engines = Engines::new(args)?;
-        let mut tally = Tally::new(show, open.len());
-        let mut done = |i: usize, result: Told| {
-            tally.add(&list[i].input, result.problem());
-            told[i] = Some(result);
-        };
-        let mut interrupted = || {
-            tell::leave_bar();
-            let text = "interrupted: meshes under way are given up (once more to end at once)";
-            tell::note(show.quiet, text);
-        };
-        let work = |mesh: &Listed| smooth(args, &engines, mesh);
-        workers::run(&list, &open, &work, &mut done, &mut interrupted);
-        tally.clear();
+        let tally = Tally::new(show, open.len());
+        let mut watch = Watched { list: &list, show, tally, told: &mut told };
+        workers::run(&list, &open, &|mesh| smooth(args, &engines, mesh), &mut watch);
+        watch.tally.clear();
     }
     let entry = |(mesh, told): (Listed, Option<Told>)| {
         let told = told.unwrap_or(Told::Interrupted);
@@ -84,6 +76,31 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
 fn make(directory: &Path) -> Result<(), String> {
     std::fs::create_dir_all(directory)
         .map_err(|error| format!("{}: the directory cannot be made: {error}", directory.display()))
+}
+
+/// Shows how far the call is, and keeps what became of each mesh.
+struct Watched<'a> {
+    list: &'a [Listed],
+    show: &'a OutputArgs,
+    tally: Tally,
+    told: &'a mut [Option<Told>],
+}
+
+impl Watch for Watched<'_> {
+    fn done(&mut self, mesh: usize, told: Told) {
+        self.tally.add(&self.list[mesh].input, told.problem(), &told.text());
+        self.told[mesh] = Some(told);
+    }
+
+    fn waits(&mut self) {
+        self.tally.waits();
+    }
+
+    fn interrupted(&mut self) {
+        tell::leave_bar();
+        let text = "interrupted: meshes under way are given up (once more to end at once)";
+        tell::note(self.show.quiet, text);
+    }
 }
 
 /// One of the meshes.

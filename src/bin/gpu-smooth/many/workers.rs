@@ -14,14 +14,22 @@ const LARGE: u64 = 10 << 20;
 /// How often an interrupt is looked for.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Calls `work` for each of the `open` meshes of a list, and `done` on this thread as each is done. `interrupted` is
-/// called once if the user ends the call; no mesh is begun after that.
+/// Who follows the work on many meshes.
+pub(crate) trait Watch {
+    /// A mesh of the list is done.
+    fn done(&mut self, mesh: usize, told: Told);
+    /// Nothing has happened for a while.
+    fn waits(&mut self);
+    /// The user ends the call. No mesh is begun after that.
+    fn interrupted(&mut self);
+}
+
+/// Calls `work` for each of the `open` meshes of a list, and tells `watch` of it on this thread.
 pub(crate) fn run(
     list: &[Listed],
     open: &[usize],
     work: &(dyn Fn(&Listed) -> Told + Sync),
-    done: &mut dyn FnMut(usize, Told),
-    interrupted: &mut dyn FnMut(),
+    watch: &mut dyn Watch,
 ) {
     let mut sized: Vec<(u64, usize)> = open.iter().map(|&i| (list[i].bytes(), i)).collect();
     // The largest first, so that no core is left with one at the end.
@@ -39,13 +47,13 @@ pub(crate) fn run(
         let mut is_told = false;
         loop {
             match receiver.recv_timeout(INTERVAL) {
-                Ok((i, told)) => done(i, told),
+                Ok((i, told)) => watch.done(i, told),
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
-                Err(mpsc::RecvTimeoutError::Timeout) => {}
+                Err(mpsc::RecvTimeoutError::Timeout) => watch.waits(),
             }
             if interrupt::is_requested() && !is_told {
                 is_told = true;
-                interrupted();
+                watch.interrupted();
             }
         }
     });

@@ -44,43 +44,56 @@ impl Tally {
         }
     }
 
-    /// Another mesh is done, or failed for a reason.
-    pub(crate) fn add(&mut self, mesh: &Path, problem: Option<&str>) {
+    /// Another mesh is done, or failed for a reason; `text` says so in a line.
+    pub(crate) fn add(&mut self, mesh: &Path, problem: Option<&str>, text: &str) {
         self.done += 1;
         self.failed += usize::from(problem.is_some());
         let (done, meshes) = (self.done, self.meshes);
-        let took = self.started.elapsed().as_secs_f64();
-        let left = took / done as f64 * (meshes - done) as f64;
         if tell::is_json() && self.form != Form::None {
-            tell::event(json!({
+            return tell::event(json!({
                 "event": "mesh", "mesh": mesh.display().to_string(), "problem": problem, "done": done,
-                "meshes": meshes, "seconds_left": left,
+                "meshes": meshes, "seconds_left": self.left(),
             }));
-            return;
         }
-        let failed = match self.failed {
-            0 => String::new(),
-            n => format!(", {n} failed"),
-        };
-        let text = format!("{done} of {meshes} meshes{failed}  about {} left", told(left));
-        match self.form {
-            Form::None => {}
-            _ if self.verbose => {
-                let line = format!(
-                    "{done} of {meshes}: {}: {}",
-                    mesh.display(),
-                    problem.unwrap_or("smoothed")
-                );
-                self.bar.suspend(|| tell::note(false, &line));
-            }
-            Form::Lines(interval) if self.last_line.elapsed() >= interval && done < meshes => {
-                self.last_line = Instant::now();
-                tell::note(false, &text);
-            }
-            Form::Lines(_) | Form::Bar => {}
+        if self.verbose && self.form != Form::None {
+            let line = format!("{done} of {meshes}: {}: {text}", mesh.display());
+            self.bar.suspend(|| tell::note(false, &line));
         }
-        self.bar.set_message(text);
         self.bar.set_position(done as u64);
+        self.waits();
+    }
+
+    /// Shows how long it has been, and how long it will be.
+    pub(crate) fn waits(&mut self) {
+        match self.form {
+            Form::Bar => self.bar.set_message(self.text()),
+            Form::Lines(interval) if !self.verbose && self.last_line.elapsed() >= interval => {
+                self.last_line = Instant::now();
+                if !tell::is_json() {
+                    tell::note(false, &self.text());
+                }
+            }
+            Form::Lines(_) | Form::None => {}
+        }
+    }
+
+    /// Seconds until all meshes are done, as far as those that are can tell.
+    fn left(&self) -> Option<f64> {
+        let took = self.started.elapsed().as_secs_f64();
+        let left = took / self.done as f64 * (self.meshes - self.done) as f64;
+        (self.done > 0).then_some(left)
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("{} of {} meshes", self.done, self.meshes);
+        if self.failed > 0 {
+            text += &format!(", {} failed", self.failed);
+        }
+        text += &format!("  {}", told(self.started.elapsed().as_secs_f64()));
+        if let Some(left) = self.left().filter(|left| *left > 0.5) {
+            text += &format!(", about {} left", told(left));
+        }
+        text
     }
 
     pub(crate) fn clear(&self) {
