@@ -20,14 +20,18 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The files of the library by module path, without those that only declare modules and pass names on.
+/// The files of the library by module path.
 fn modules() -> BTreeMap<String, String> {
-    let source = root().join("src");
+    modules_in(&root().join("src"))
+}
+
+/// The files of a crate by module path.
+fn modules_in(source: &Path) -> BTreeMap<String, String> {
     let mut files = Vec::new();
-    rust_files(&source, &mut files);
+    rust_files(source, &mut files);
     let mut modules = BTreeMap::new();
     for file in files {
-        let relative = file.strip_prefix(&source).unwrap().with_extension("");
+        let relative = file.strip_prefix(source).unwrap().with_extension("");
         let parts: Vec<_> = relative.iter().map(|part| part.to_str().unwrap()).collect();
         if parts[0] != "bin" {
             modules.insert(parts.join("::"), fs::read_to_string(&file).unwrap());
@@ -93,15 +97,19 @@ fn defined_in(path: &str, modules: &BTreeMap<String, String>) -> Option<String> 
 
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
-/// What each file uses of the others.
+/// What each file of the library uses of the others.
 fn uses() -> Uses {
-    let modules = modules();
+    uses_of(&modules())
+}
+
+/// What each file uses of the others.
+fn uses_of(modules: &BTreeMap<String, String>) -> Uses {
     let mut uses = Uses::new();
-    for (module, text) in &modules {
+    for (module, text) in modules {
         if module.ends_with("::mod") || module == "lib" {
             continue;
         }
-        let used = imports(text).into_iter().filter_map(|path| defined_in(&path, &modules));
+        let used = imports(text).into_iter().filter_map(|path| defined_in(&path, modules));
         uses.insert(module.clone(), used.filter(|used| used != module).collect());
     }
     uses
@@ -157,6 +165,16 @@ fn no_folders_use_each_other_in_a_circle() {
     for depth in [1, 2] {
         assert_eq!(circle(&by_folder(&uses, depth)), None, "{depth} folders deep");
     }
+}
+
+#[test]
+fn the_command_has_no_circles() {
+    let modules = modules_in(&root().join("src/bin/gpu-smooth"));
+    let uses = uses_of(&modules);
+    let count: usize = uses.values().map(BTreeSet::len).sum();
+    assert!(count > 100, "only {count} imports were found: the test looks in the wrong place");
+    assert_eq!(circle(&uses), None);
+    assert_eq!(circle(&by_folder(&uses, 1)), None);
 }
 
 #[test]

@@ -51,6 +51,61 @@ fn a_mesh_of_ones_own_is_measured_and_told_as_text() {
     assert!(!run.out.contains("cpu, "), "{}", run.out);
 }
 
+/// Lines of a table of Markdown, field by field.
+fn table(text: &str) -> Vec<Vec<String>> {
+    let rows = text.lines().filter(|line| line.starts_with('|'));
+    let fields =
+        |row: &str| row.trim_matches('|').split('|').map(|f| f.trim().to_owned()).collect();
+    rows.map(fields).collect()
+}
+
+#[test]
+fn markdown_tells_the_machine_and_compares_with_a_baseline() {
+    let folder = small();
+    let line = "bench in --engine cpu --seconds 0";
+    let saved = folder.line(&format!("{line} --json")).clean().out;
+    let mut known = rows(&saved);
+    assert_holds(
+        known[0]["version"].as_str().unwrap(),
+        &["gpu-smooth ", env!("CARGO_PKG_VERSION")],
+    );
+    // As if it had taken a thousand seconds.
+    known[0]["seconds_per_sweep"] = 1000.0.into();
+    std::fs::write(folder.path("saved.json"), Value::from(known).to_string()).unwrap();
+
+    let plain = folder.line(&format!("{line} --markdown")).clean().out;
+    assert_holds(&plain, &["- gpu-smooth ", " threads, ", "- cpu, ", ": copies "]);
+    let rows = table(&plain);
+    assert_eq!(rows[0], ["vertices", "ms/sweep", "M updates/s", "GB/s", "of copying", "engine"]);
+    assert_eq!((rows.len(), rows[2].len(), rows[2][0].as_str()), (3, 6, "99"));
+    assert!(rows[1].iter().all(|field| field.starts_with("---")));
+
+    let compared = folder.line(&format!("{line} --markdown --baseline saved.json")).clean().out;
+    let rows = table(&compared);
+    assert_eq!(rows[0][1..4], ["ms/sweep", "baseline", "change"]);
+    assert_eq!(rows[2][2..4], ["1000000.000", "-100.0 %"]);
+    let text = folder.line(&format!("{line} --baseline saved.json")).clean().out;
+    assert_holds(&text, &["  baseline    change ", " 1000000.000  -100.0 % "]);
+    let told = folder.line(&format!("{line} --baseline saved.json --json")).clean().out;
+    assert_eq!(self::rows(&told)[0]["baseline_seconds_per_sweep"], 1000.0);
+    // Of another size, nothing is known.
+    let other = "bench --vertices 400 --engine cpu --seconds 0 --markdown --baseline saved.json";
+    assert_eq!(table(&folder.line(other).clean().out)[2][2..4], ["-", "-"]);
+
+    folder.line(&format!("{line} --baseline in.node")).refused(&["in.node: ", "bench --json"]);
+    folder.line(&format!("{line} --baseline none.json")).refused(&["none.json: "]);
+    assert_eq!(folder.line(&format!("{line} --json --markdown")).code, Some(2));
+}
+
+#[test]
+fn kernels_are_told_as_markdown() {
+    let folder = small();
+    let out = folder.line("bench in --engine gpu --seconds 0 --markdown").clean().out;
+    let rows = table(&out);
+    let sweep = rows.iter().find(|row| row[0] == "sweep imr").unwrap();
+    assert_eq!((sweep.len(), rows[3][0].as_str()), (5, "kernel"));
+}
+
 #[test]
 fn what_cannot_be_measured_is_refused() {
     let folder = small();

@@ -185,7 +185,11 @@ fn no_bar_is_drawn_where_there_is_no_terminal() {
         let mut command = folder.command();
         command.arg(plate_path()).args(["out", "--engine", "cpu", "--tolerance", "0"]);
         command.args(["--report", "r.json", "--max-sweeps", &sweeps.to_string()]);
-        finish(&mut command).clean();
+        let run = finish(&mut command);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        // A line now and then at most, as in a log.
+        assert!(!run.err.contains(['\r', '\u{1b}']), "{}", run.err);
+        assert!(run.err.lines().all(super::is_progress), "{}", run.err);
         // Long enough for a bar to show.
         if number(&folder.json("r.json")["seconds"]["smooth"]) > 1.0 {
             return;

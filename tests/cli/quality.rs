@@ -183,7 +183,7 @@ fn several_meshes_stand_in_one_table() {
     folder.line("in a-long-name-of-a-mesh --engine cpu").clean();
     let text = folder.line("quality in a-long-name-of-a-mesh.node").clean().out;
     let rows: Vec<&str> = text.lines().skip_while(|row| *row != "shape").take(3).collect();
-    assert!(rows[1].starts_with("  in  ") && rows[2].starts_with("  ..of-a-mesh.node "), "{text}");
+    assert!(rows[1].starts_with("  in  ") && rows[2].starts_with("  ..f-a-mesh.node "), "{text}");
     let means = [1, 2].map(|i| numbers(rows[i])[3]);
     assert!(means[1] > means[0], "{text}");
     assert_holds(&text, &["\n== in\n", "\n== a-long-name-of-a-mesh.node\n"]);
@@ -221,14 +221,23 @@ fn regions_are_told_apart() {
         let list = first.path.file_name().unwrap().display();
         let region = &told["regions"][i];
         assert_eq!(region["first_triangle"], first.label);
-        let least = shapes[range].iter().copied().fold(1.0, f64::min);
+        let least = shapes[range.clone()].iter().copied().fold(1.0, f64::min);
         assert!((number(&region["measures"]["shape"]["min"]) / least - 1.0).abs() < 1e-12);
+        // By what `--only` takes.
+        let group = region["groups"][0].as_str().unwrap();
+        let groups = file.groups().unwrap();
+        let found = groups.find(group).unwrap();
+        let tag = found.tag.map_or_else(|| found.name.clone().unwrap(), |tag| tag.to_string());
+        let only = folder.line(&format!("{input} out --only {group} --engine cpu"));
+        assert_holds(&only.err, &[&format!("--only {group} (")]);
         let text = folder.line(&format!("quality {input} --by-region")).clean().out;
         assert_holds(
             &text,
             &[
                 "\nshape by region\n",
-                "\nregion 2 ",
+                &format!("\n{} {} {tag} ", i + 1, found.what)[..16],
+                &format!("\nregion {}: {found}", i + 1),
+                &format!("; {} triangles, the first at ", range.len()),
                 &format!("the first at {list}{}\n", first.location),
             ],
         );
@@ -238,6 +247,14 @@ fn regions_are_told_apart() {
         csv.lines().filter(|row| row.starts_with(&format!("{input},2,"))).count(),
         Measure::ALL.len()
     );
+    assert_holds(csv.lines().next().unwrap(), &[",p95,groups"]);
+    // A name is told before a tag.
+    let named = support::write_msh22(&mesh)
+        .replace("$Nodes", "$PhysicalNames\n1\n2 1 \"outer wall\"\n$EndPhysicalNames\n$Nodes");
+    fs::write(folder.path("named.msh"), named).unwrap();
+    let text = folder.line("quality named.msh --by-region").clean().out;
+    let rows = ["\n1 outer wall ", "\nregion 1: physical surface outer wall"];
+    assert_holds(&text, &rows);
     // A mesh of one region has that region.
     let folder = small();
     assert_holds(

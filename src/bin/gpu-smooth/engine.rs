@@ -1,16 +1,32 @@
 //! Which engine a run gets.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
-use crate::cli::{EngineChoice, SmoothArgs};
+use crate::run_args::{EngineChoice, SmoothArgs};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
 /// An engine, and why it was taken if the command line left that open.
+#[derive(Clone)]
 pub(crate) struct Taken {
-    pub(crate) backend: Backend,
+    pub(crate) backend: Arc<Backend>,
     pub(crate) reason: Option<String>,
+    /// Held during a run, where other runs wait for the same device.
+    turn: Option<Arc<Mutex<()>>>,
+}
+
+impl Taken {
+    pub(crate) fn new(backend: Backend, reason: Option<String>) -> Self {
+        Self { backend: Arc::new(backend), reason, turn: None }
+    }
+
+    /// Waits until no other run uses the device.
+    pub(crate) fn turn(&self) -> Option<MutexGuard<'_, ()>> {
+        self.turn.as_ref().map(|turn| turn.lock().unwrap_or_else(PoisonError::into_inner))
+    }
 }
 
 /// Whether the engine is to be chosen by the size of the mesh.
@@ -26,18 +42,98 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
             Backend::Gpu(open_adapter(args.adapter.as_deref())?)
         }
     };
-    Ok(Taken { backend, reason: None })
+    Ok(Taken::new(backend, None))
 }
 
 /// Chooses the engine for a mesh of this size and opens it.
 pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
     let (backend, reason) = Backend::auto(size, &args.options(Precision::Double));
-    let reason = match reason {
+    Taken::new(backend, Some(worded(&reason)))
+}
+
+/// The reason of a choice, and the option that makes another.
+fn worded(reason: &Reason) -> String {
+    match reason {
         Reason::GpuFails(_) => reason.to_string(),
         Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
         _ => format!("{reason}; --engine gpu to force"),
-    };
-    Taken { backend, reason: Some(reason) }
+    }
+}
+
+/// The engines of many runs. A device is opened once, and runs take turns on it.
+pub(crate) struct Engines<'a> {
+    args: &'a SmoothArgs,
+    /// The engine that the command line asks for.
+    asked: Option<Taken>,
+    found: Mutex<Found>,
+}
+
+/// What the choices so far have found.
+#[derive(Default)]
+struct Found {
+    /// A device, and from how many vertices it is taken.
+    gpu: Option<(Taken, usize)>,
+    /// The CPU, and up to how many vertices it is taken.
+    cpu: Option<(Taken, usize)>,
+}
+
+impl<'a> Engines<'a> {
+    /// Opens the engine that the command line asks for, if it does.
+    pub(crate) fn new(args: &'a SmoothArgs) -> Result<Self, String> {
+        let asked = match is_open(args) {
+            true => None,
+            false => Some(in_turns(open(args)?)),
+        };
+        Ok(Self { args, asked, found: Mutex::default() })
+    }
+
+    /// The engine for a mesh of this size. Not to be called from a thread of a rayon pool: the choice counts the threads.
+    pub(crate) fn take(&self, size: MeshSize) -> Taken {
+        if let Some(asked) = &self.asked {
+            return asked.clone();
+        }
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let Found { gpu, cpu } = &mut *found;
+        if let Some((taken, least)) = gpu
+            && size.vertices >= *least
+            && let Backend::Gpu(gpu) = &*taken.backend
+            && gpu.check_size(size).is_ok()
+        {
+            return taken.clone();
+        }
+        if let Some((taken, most)) = cpu
+            && size.vertices <= *most
+        {
+            return taken.clone();
+        }
+        let (backend, reason) = Backend::auto(size, &self.args.options(Precision::Double));
+        let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
+        let holds_up_to = match reason {
+            Reason::GpuIsFaster { pays_from } => {
+                *gpu = Some((taken.clone(), pays_from));
+                None
+            }
+            // So it is with any smaller mesh.
+            Reason::CpuIsFaster { .. } => Some(size.vertices),
+            Reason::OnlySoftware(_) | Reason::GpuFails(GpuError::NoAdapter { .. }) => {
+                Some(usize::MAX)
+            }
+            // Another mesh may fit.
+            _ => None,
+        };
+        if let Some(most) = holds_up_to {
+            *cpu = Some((taken.clone(), most));
+        }
+        taken
+    }
+}
+
+/// An engine that several runs share.
+fn in_turns(taken: Taken) -> Taken {
+    match &*taken.backend {
+        Backend::Cpu => taken,
+        Backend::Gpu(_) => Taken { turn: Some(Arc::default()), ..taken },
+    }
 }
 
 /// Opens an adapter, for a command that needs one.

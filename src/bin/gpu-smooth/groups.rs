@@ -2,8 +2,10 @@
 
 use gpu_smooth::{Group, Groups};
 use serde_json::json;
+use unicode_width::UnicodeWidthStr;
 
 use crate::cli::GroupsArgs;
+use crate::columns::{left, right};
 use crate::streams::read;
 use crate::tell;
 
@@ -68,13 +70,13 @@ fn table(groups: &Groups) -> String {
         let numbers = used.iter().map(|&column| counts[column].to_string());
         rows.push(texts(group, &spelling).into_iter().chain(numbers).collect());
     }
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let width = |column: usize| rows.iter().map(|row| row[column].width()).max();
     let widths: Vec<usize> = (0..rows[0].len()).filter_map(width).collect();
     let line = |row: &Vec<String>| {
         let cell = |(column, text): (usize, &String)| match column {
             // Words to the left, numbers to the right.
-            0 | 1 => format!("{text:<width$}", width = widths[column]),
-            _ => format!("{text:>width$}", width = widths[column]),
+            0 | 1 => left(text, widths[column]),
+            _ => right(text, widths[column]),
         };
         row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
     };

@@ -29,14 +29,12 @@ pub(crate) fn watch(quiet: bool) {
         let arrived = Arc::new(AtomicBool::new(false));
         flag::register(signal, Arc::clone(&arrived)).ok().map(|_| (signal, arrived))
     };
-    let wait = move || {
-        let signals: Vec<_> = [SIGINT, SIGTERM].into_iter().filter_map(register).collect();
-        loop {
-            std::thread::sleep(INTERVAL);
-            for (signal, arrived) in &signals {
-                if arrived.swap(false, Ordering::SeqCst) {
-                    received(*signal, quiet);
-                }
+    let signals: Vec<_> = [SIGINT, SIGTERM].into_iter().filter_map(register).collect();
+    let wait = move || loop {
+        std::thread::sleep(INTERVAL);
+        for (signal, arrived) in &signals {
+            if arrived.swap(false, Ordering::SeqCst) {
+                received(*signal, quiet);
             }
         }
     };

@@ -2,27 +2,37 @@
 
 mod bench;
 mod cli;
+mod columns;
 mod compare;
 mod engine;
 mod explain;
 mod groups;
+mod html;
 mod interrupt;
+mod many;
 mod moving;
+mod numbers;
 mod picture;
 mod progress;
 mod quality;
 mod report;
+mod run_args;
+mod shell;
 mod smooth;
 mod streams;
+mod task;
 mod tell;
 mod untangle;
 
 use std::process::ExitCode;
 
-use cli::{Cli, Command};
+use cli::{Cli, Command, LogForm};
 
 fn main() -> ExitCode {
     let cli = Cli::read();
+    if cli.output.log == LogForm::Json {
+        tell::log_json();
+    }
     let done = match &cli.command {
         Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),
@@ -30,7 +40,12 @@ fn main() -> ExitCode {
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
-        None => smooth::run(&cli.smooth, &cli.output),
+        Some(Command::Completions(args)) => shell::completions(args),
+        Some(Command::Man(args)) => shell::man(args),
+        None => match &cli.smooth.out_dir {
+            Some(directory) => many::run(&cli.smooth, directory, &cli.output),
+            None => smooth::run(&cli.smooth, &cli.output),
+        },
     };
     match done {
         Ok(()) => interrupt::exit_code(),

@@ -6,7 +6,7 @@ use clap::Args;
 use gpu_smooth::{Group, Groups, MeshError, MeshFile, Topology, select};
 
 use crate::explain;
-use crate::report::six;
+use crate::numbers::six;
 
 const HEADING: &str = "What may move";
 

@@ -7,6 +7,7 @@ use gpu_smooth::{Metric, Outcome, Quality, Scheme};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
+use crate::numbers::{percent, six};
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -161,8 +162,32 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
 }
 
 impl Report {
+    /// The metric that judges.
+    pub(crate) fn base(&self) -> &str {
+        self.scheme.split('+').next().unwrap_or("imr")
+    }
+
     /// The summary for the terminal: what was done, before and after, and where the time went.
     pub(crate) fn summary(&self) -> String {
+        let mut text = self.subject() + "\n\n";
+        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
+        for [name, before, after] in self.rows() {
+            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
+        }
+        let _ = writeln!(text, "\n{}", self.ending());
+        if let Some(warning) = self.warning() {
+            let _ = writeln!(text, "{warning}");
+        }
+        let Seconds { read, prepare, smooth, write, total } = self.seconds;
+        let _ = write!(
+            text,
+            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
+        );
+        text
+    }
+
+    /// What was smoothed, where and by what.
+    pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
         let s = if colors == 1 { "" } else { "s" };
@@ -189,12 +214,14 @@ impl Report {
                 count(moved, "vertex", "vertices"),
             );
         }
-        text.push('\n');
-        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
-        let mut row = |name: &str, before: String, after: String| {
-            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
-        };
-        let base = self.scheme.split('+').next().unwrap_or("imr");
+        text.trim_end().to_owned()
+    }
+
+    /// What changed: a name, and the values before and after.
+    pub(crate) fn rows(&self) -> Vec<[String; 3]> {
+        let base = self.base();
+        let mut rows = Vec::new();
+        let mut row = |name: &str, before, after| rows.push([name.to_owned(), before, after]);
         let mut metrics = vec![base];
         if !matches!(base, "imr" | "ar") {
             metrics.push("imr");
@@ -211,20 +238,11 @@ impl Report {
             row("  of movable", six(before), six(after));
         }
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
-        let _ = writeln!(text, "\n{}", self.ending());
-        if let Some(warning) = self.warning() {
-            let _ = writeln!(text, "{warning}");
-        }
-        let Seconds { read, prepare, smooth, write, total } = self.seconds;
-        let _ = write!(
-            text,
-            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
-        );
-        text
+        rows
     }
 
     /// A remark on the worst element if it is worse than before by a hundredth or more.
-    fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<String> {
         let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
         if after <= 1.01 * before {
             return None;
@@ -232,7 +250,7 @@ impl Report {
         let judges_shape =
             |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier);
         let shape = self.scheme.split('+').any(judges_shape);
-        let base = self.scheme.split('+').next().unwrap_or_default();
+        let base = self.base();
         let remedy = match shape {
             true => "f is a mean, which may fall as one element gets worse".to_owned(),
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
@@ -259,7 +277,7 @@ impl Report {
     }
 
     /// Why the run ended, in a sentence.
-    fn ending(&self) -> String {
+    pub(crate) fn ending(&self) -> String {
         if let Some(reason) = &self.nothing_to_do {
             return format!("nothing to do: {reason}; the mesh is written as it was");
         }
@@ -330,58 +348,5 @@ impl Report {
             let _ = write!(text, "; vertices put back for rounding: {}", self.returned);
         }
         text
-    }
-}
-
-/// A number with about six significant digits.
-pub(crate) fn six(x: f64) -> String {
-    match x.abs() {
-        a if !a.is_finite() => "infinite".into(),
-        a if (1e-4..1e6).contains(&a) || a == 0.0 => {
-            let before_point = if a < 1.0 { 1 } else { a.log10().floor() as usize + 1 };
-            format!("{x:.*}", 7usize.saturating_sub(before_point).max(1))
-        }
-        _ => format!("{x:.4e}"),
-    }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.2}", (share * 1e4).floor() / 1e2)
-}
-
-/// A number with four or five significant digits, in at most eight characters.
-pub(crate) fn five(x: f64) -> String {
-    match x.abs() {
-        a if !a.is_finite() => "infinite".into(),
-        0.0 => "0".into(),
-        a if (1e-3..99_999.5).contains(&a) => {
-            let decimals = 4 - a.log10().floor().max(-4.0) as i32 - i32::from(a < 1.0);
-            format!("{x:.*}", (decimals - i32::from(x < 0.0)).max(0) as usize)
-        }
-        _ => format!("{x:.1e}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_fit_their_column() {
-        let cases = [
-            (60.0, "60.000"),
-            (0.0012487, "0.001249"),
-            (0.25, "0.2500"),
-            (-0.0012487, "-0.00125"),
-            (1.0, "1.0000"),
-            (99_999.4, "99999"),
-            (99_999.6, "1.0e5"),
-            (0.000999, "1.0e-3"),
-            (-1e-300, "-1.0e-300"),
-            (f64::INFINITY, "infinite"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(five(x), text);
-        }
     }
 }

@@ -2,11 +2,37 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use gpu_smooth::gpu::AdapterSummary;
 use gpu_smooth::{GpuError, MeshFile, Metric};
 
+use serde_json::{Value, json};
+
 use crate::engine::INSTALL;
+
+/// Whether what goes to standard error is JSON, and when the process began.
+static JSON: AtomicBool = AtomicBool::new(false);
+static START: OnceLock<Instant> = OnceLock::new();
+
+/// From now on everything that goes to standard error is an object of JSON on a line of its own.
+pub(crate) fn log_json() {
+    START.get_or_init(Instant::now);
+    JSON.store(true, Ordering::Relaxed);
+}
+
+/// Whether what goes to standard error is JSON.
+pub(crate) fn is_json() -> bool {
+    JSON.load(Ordering::Relaxed)
+}
+
+/// Writes an event to standard error as a line of JSON, with the seconds since the process began.
+pub(crate) fn event(mut event: Value) {
+    event["seconds"] = START.get_or_init(Instant::now).elapsed().as_secs_f64().into();
+    eprintln!("{event}");
+}
 
 /// Prints what the user asked for. A reader that went away, as `head` does, is no error; a disk that
 /// is full ends the process.
@@ -27,20 +53,35 @@ pub(crate) fn aside(text: &str) {
 
 /// Prints a remark to standard error, unless the user wants none.
 pub(crate) fn note(quiet: bool, text: &str) {
-    if !quiet {
-        eprintln!("gpu-smooth: {text}");
+    match () {
+        () if quiet => {}
+        () if is_json() => event(json!({ "event": "note", "message": text })),
+        () => eprintln!("gpu-smooth: {text}"),
     }
 }
 
 /// Goes to a line of its own where a bar may stand on the last one.
 pub(crate) fn leave_bar() {
-    if std::io::stderr().is_terminal() {
+    if std::io::stderr().is_terminal() && !is_json() {
         eprintln!();
     }
 }
 
 pub(crate) fn error(text: &str) {
-    eprintln!("gpu-smooth: error: {text}");
+    match is_json() {
+        true => event(json!({ "event": "error", "message": text })),
+        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {text}"),
+        false => eprintln!("gpu-smooth: error: {text}"),
+    }
+}
+
+/// Whether standard error is to be colored: on a terminal that can, unless `NO_COLOR` (<https://no-color.org>) is set; anywhere
+/// if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is.
+fn is_colored() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let forced = set("CLICOLOR_FORCE");
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
 }
 
 /// Remarks on a mesh besides its size, one line each.

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Untangled, Untangling};
 
-use crate::cli::{OutputArgs, SmoothArgs};
+use crate::cli::OutputArgs;
 use crate::explain;
 use crate::interrupt;
+use crate::run_args::SmoothArgs;
 use crate::streams;
 
 /// A mesh that was untangled, and how.

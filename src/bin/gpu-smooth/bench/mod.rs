@@ -1,7 +1,10 @@
 //! `gpu-smooth bench`: how fast this machine smooths.
 
+mod args;
+mod baseline;
 mod kernels;
 mod lattice;
+mod machine;
 mod rates;
 mod report;
 mod sweeps;
@@ -11,11 +14,13 @@ use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
 use gpu_smooth::{Gpu, Mesh, Options, SmoothError};
 
-use crate::cli::{BenchArgs, EngineChoice};
-use crate::smooth::read;
+use crate::run_args::EngineChoice;
+use crate::streams::read;
 use crate::tell;
 use crate::{engine, explain};
-use report::{KernelRow, Row};
+pub(crate) use args::BenchArgs;
+use baseline::Baseline;
+use report::{Form, KernelRow, Row};
 
 /// An engine, and how many bytes a second it reads and writes when it copies.
 struct Place {
@@ -29,28 +34,38 @@ type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
     let file = args.mesh.as_deref().map(read).transpose()?;
+    let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
+    let form = Form::new(args);
     let mut rows = Vec::new();
     if !args.json {
-        tell::say(&report::head(args, &places));
+        tell::say(&form.head(args, &places));
     }
+    let mut measured = |mut row: Row| {
+        row.baseline_seconds_per_sweep =
+            baseline.as_ref().and_then(|baseline| baseline.seconds(&row));
+        if !args.json {
+            tell::say(&form.row(&row));
+        }
+        rows.push(row);
+    };
     if let Some(file) = &file {
         let explain = |error| match error {
             SmoothError::Mesh(error) => explain::mesh_error(file, &error),
             error => error.to_string(),
         };
-        measure_all(args, file.mesh(), &places, &explain, &mut rows)?;
+        measure_all(args, file.mesh(), &places, &explain, &mut measured)?;
     } else {
         for &vertices in &args.vertices {
             let mesh = lattice::lattice(vertices);
-            measure_all(args, &mesh, &places, &|error| error.to_string(), &mut rows)?;
+            measure_all(args, &mesh, &places, &|error| error.to_string(), &mut measured)?;
         }
     }
     if args.json {
         let text = serde_json::to_string_pretty(&rows).map_err(|error| error.to_string())?;
         tell::say(&text);
     } else {
-        tell::say(&report::kernels(&rows));
+        tell::say(&form.kernels(&rows));
     }
     Ok(())
 }
@@ -60,22 +75,21 @@ fn measure_all(
     mesh: &Mesh,
     places: &[Place],
     explain: &Explain<'_>,
-    rows: &mut Vec<Row>,
+    measured: &mut dyn FnMut(Row),
 ) -> Result<(), String> {
     let (_, problem) = prepare(mesh).map_err(|error| explain(error.into()))?;
     if problem.free_count() == 0 {
         return Err("the mesh has no free vertex: there is nothing to measure".into());
     }
+    let mut count = 0;
     for place in places {
         match measure(args, mesh, &problem, place) {
             Ok(row) => {
-                if !args.json {
-                    tell::say(&row.line());
-                }
-                rows.push(row);
+                count += 1;
+                measured(row);
             }
             // Where one adapter fails, the rest are measured all the same.
-            Err(SmoothError::Gpu(error)) if places.len() > 1 || !rows.is_empty() => {
+            Err(SmoothError::Gpu(error)) if places.len() > 1 || count > 0 => {
                 tell::note(false, &format!("{}: {error}", place.name));
             }
             Err(error) => return Err(explain(error)),
@@ -120,6 +134,8 @@ fn measure(
         KernelRow::new(&known, bytes, place.copy_rate)
     };
     Ok(Row {
+        version: machine::version(),
+        machine: machine::machine(),
         engine: place.name.clone(),
         software: place.gpu.as_ref().is_some_and(|gpu| gpu.adapter().is_software()),
         scheme: args.scheme.to_string(),
@@ -128,6 +144,7 @@ fn measure(
         free: problem.free_count(),
         colors: problem.colors().len(),
         seconds_per_sweep: seconds,
+        baseline_seconds_per_sweep: None,
         vertex_updates_per_second: problem.free_count() as f64 / seconds,
         bytes_per_second: (sweep + objective) as f64 / seconds,
         share_of_copy_rate: (sweep + objective) as f64 / seconds / place.copy_rate,

@@ -4,12 +4,16 @@ use serde::Serialize;
 
 use super::Place;
 use super::kernels::KernelTime;
-use crate::cli::BenchArgs;
+use super::machine;
+use crate::bench::BenchArgs;
+use crate::columns::right;
 use crate::tell;
 
 /// What was measured of one mesh on one engine.
 #[derive(Serialize)]
 pub(super) struct Row {
+    pub(super) version: String,
+    pub(super) machine: String,
     pub(super) engine: String,
     /// Whether it is an adapter whose driver computes on the CPU.
     pub(super) software: bool,
@@ -20,6 +24,9 @@ pub(super) struct Row {
     pub(super) colors: usize,
     /// The time of a sweep with the objective after it, from which the rates below follow.
     pub(super) seconds_per_sweep: f64,
+    /// That time in the measurements that are compared with, if they have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) baseline_seconds_per_sweep: Option<f64>,
     pub(super) vertex_updates_per_second: f64,
     /// The least bytes that have to be read and written, over the time.
     pub(super) bytes_per_second: f64,
@@ -52,76 +59,125 @@ impl KernelRow {
     }
 }
 
-/// The head of the table.
-pub(super) fn head(args: &BenchArgs, places: &[Place]) -> String {
-    let mut text = String::new();
-    for place in places {
-        let driver = place.gpu.as_ref().map(|gpu| {
-            let adapter = gpu.adapter();
-            format!(" {}", tell::adapter(adapter))
-        });
-        text += &format!(
-            "{}{}: copies {:.1} GB/s, read and written\n",
-            place.name,
-            driver.unwrap_or_default(),
-            place.copy_rate / 1e9
-        );
+/// The columns of the table, the engine last; with what is compared, where it is.
+const COLUMNS: [&str; 7] =
+    ["vertices", "ms/sweep", "baseline", "change", "M updates/s", "GB/s", "of copying"];
+const WIDTHS: [usize; 7] = [10, 10, 10, 9, 12, 8, 11];
+
+/// How the table is written.
+#[derive(Clone, Copy)]
+pub(super) struct Form {
+    markdown: bool,
+    compared: bool,
+}
+
+impl Form {
+    pub(super) fn new(args: &BenchArgs) -> Self {
+        Self { markdown: args.markdown, compared: args.baseline.is_some() }
     }
-    text += &format!(
-        "\nA sweep by {} with the objective after it; bytes are the least it can read and write\n\n",
-        args.scheme
-    );
-    text + &line(["vertices", "ms/sweep", "M updates/s", "GB/s", "of copying"], "engine")
-}
 
-fn line(columns: [&str; 5], engine: &str) -> String {
-    let [vertices, time, updates, bytes, share] = columns;
-    format!("{vertices:>10} {time:>10} {updates:>12} {bytes:>8} {share:>11}  {engine}")
-}
-
-impl Row {
-    /// The row as it is printed.
-    pub(super) fn line(&self) -> String {
-        let columns = [
-            self.vertices.to_string(),
-            format!("{:.3}", self.seconds_per_sweep * 1e3),
-            format!("{:.2}", self.vertex_updates_per_second / 1e6),
-            format!("{:.2}", self.bytes_per_second / 1e9),
-            percent(self.share_of_copy_rate),
-        ];
-        line(columns.each_ref().map(String::as_str), &self.engine)
-    }
-}
-
-/// The tables of kernels, one for each row that has them.
-pub(super) fn kernels(rows: &[Row]) -> String {
-    let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
-    let mut text = String::new();
-    for (row, kernels) in timed {
-        text += &format!(
-            "\n{} vertices in {} colors on {}, by its clock\n",
-            row.vertices, row.colors, row.engine
-        );
-        text += &format!(
-            "  {:<24} {:>6} {:>13} {:>8} {:>11}\n",
-            "kernel", "passes", "\u{b5}s/sweep", "GB/s", "of copying"
-        );
-        for kernel in kernels {
-            let rate = kernel.bytes_per_second.map(|rate| format!("{:.2}", rate / 1e9));
-            let share = kernel.share_of_copy_rate.map(percent);
+    /// The head of the table, and what holds for all of it.
+    pub(super) fn head(self, args: &BenchArgs, places: &[Place]) -> String {
+        let mark = if self.markdown { "- " } else { "" };
+        let mut text = format!("{mark}{}\n{mark}{}\n", machine::version(), machine::machine());
+        for place in places {
+            let driver = place.gpu.as_ref().map(|gpu| {
+                let adapter = gpu.adapter();
+                format!(" {}", tell::adapter(adapter))
+            });
             text += &format!(
-                "  {:<24} {:>6} {:>13.1} {:>8} {:>11}\n",
-                kernel.kernel,
-                kernel.passes,
-                kernel.seconds_per_sweep * 1e6,
-                rate.unwrap_or_default(),
-                share.unwrap_or_default()
+                "{mark}{}{}: copies {:.1} GB/s, read and written\n",
+                place.name,
+                driver.unwrap_or_default(),
+                place.copy_rate / 1e9
             );
         }
-        let whole = row.seconds_per_sweep * 1e6;
-        text += &format!("  {:<24} {:>6} {whole:>13.1}\n", "whole, without the clock", "");
+        text += &format!(
+            "\nA sweep by {} with the objective after it; bytes are the least it can read and write\n\n",
+            args.scheme
+        );
+        text += &self.line(COLUMNS.map(str::to_owned), "engine");
+        if self.markdown {
+            let columns = if self.compared { COLUMNS.len() } else { COLUMNS.len() - 2 };
+            text += &format!("\n|{}---|", "---:|".repeat(columns));
+        }
+        text
     }
-    text.trim_end().to_owned()
+
+    fn line(self, columns: [String; COLUMNS.len()], engine: &str) -> String {
+        let is_shown = |i: usize| self.compared || !(2..4).contains(&i);
+        let shown = columns.iter().zip(WIDTHS).enumerate().filter(|(i, _)| is_shown(*i));
+        match self.markdown {
+            true => {
+                let fields: Vec<&str> = shown.map(|(_, (field, _))| field.as_str()).collect();
+                format!("| {} | {engine} |", fields.join(" | "))
+            }
+            false => {
+                let fields: Vec<String> =
+                    shown.map(|(_, (field, width))| right(field, width)).collect();
+                format!("{}  {engine}", fields.join(" "))
+            }
+        }
+    }
+
+    /// A row as it is printed.
+    pub(super) fn row(self, row: &Row) -> String {
+        let seconds = row.seconds_per_sweep;
+        let milliseconds = |seconds: f64| format!("{:.3}", seconds * 1e3);
+        let change = |before: f64| format!("{:+.1} %", 100.0 * (seconds / before - 1.0));
+        let before = row.baseline_seconds_per_sweep;
+        let columns = [
+            row.vertices.to_string(),
+            milliseconds(seconds),
+            before.map_or("-".into(), milliseconds),
+            before.map_or("-".into(), change),
+            format!("{:.2}", row.vertex_updates_per_second / 1e6),
+            format!("{:.2}", row.bytes_per_second / 1e9),
+            percent(row.share_of_copy_rate),
+        ];
+        self.line(columns, &row.engine)
+    }
+
+    /// A line of the table of kernels.
+    fn kernel(self, fields: [&str; 5]) -> String {
+        let [name, passes, time, rate, share] = fields;
+        match self.markdown {
+            true => format!("| {name} | {passes} | {time} | {rate} | {share} |\n"),
+            false => format!("  {name:<24} {passes:>6} {time:>13} {rate:>8} {share:>11}\n"),
+        }
+    }
+
+    /// The tables of kernels, one for each row that has them.
+    pub(super) fn kernels(self, rows: &[Row]) -> String {
+        let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
+        let mut text = String::new();
+        for (row, kernels) in timed {
+            let (vertices, colors, engine) = (row.vertices, row.colors, &row.engine);
+            text +=
+                &format!("\n{vertices} vertices in {colors} colors on {engine}, by its clock\n");
+            let head = ["kernel", "passes", "\u{b5}s/sweep", "GB/s", "of copying"];
+            if self.markdown {
+                text += &format!("\n{}|---|---:|---:|---:|---:|\n", self.kernel(head));
+            } else {
+                text += &self.kernel(head);
+            }
+            for kernel in kernels {
+                let rate = kernel.bytes_per_second.map(|rate| format!("{:.2}", rate / 1e9));
+                let share = kernel.share_of_copy_rate.map(percent);
+                text += &self.kernel([
+                    &kernel.kernel,
+                    &kernel.passes.to_string(),
+                    &format!("{:.1}", kernel.seconds_per_sweep * 1e6),
+                    &rate.unwrap_or_default(),
+                    &share.unwrap_or_default(),
+                ]);
+            }
+            let whole = format!("{:.1}", row.seconds_per_sweep * 1e6);
+            text += self.kernel(["whole, without the clock", "", &whole, "", ""]).trim_end();
+            text.push('\n');
+        }
+        text.trim_end().to_owned()
+    }
 }
 
 fn percent(share: f64) -> String {

@@ -11,7 +11,7 @@ pub(crate) const BAD: Color = [230, 25, 75];
 
 /// Viridis (Smith & van der Walt, 2015) from bad to good: even steps for the eye, also for those who cannot tell red from
 /// green, and in gray.
-const VIRIDIS: [Color; 10] = [
+pub(crate) const VIRIDIS: [Color; 10] = [
     [68, 1, 84],
     [72, 40, 120],
     [62, 73, 137],
@@ -54,7 +54,7 @@ pub(crate) fn goodness(measure: Measure, value: f64) -> f32 {
 }
 
 /// The bad end of a scale that has one. Negative scaled Jacobians are those of inverted triangles.
-fn bad_end(measure: Measure) -> Option<f64> {
+pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
     let definition = measure.definition();
     let bad = match definition.better {
         Better::Higher => definition.range[0].max(0.0),

@@ -25,7 +25,7 @@ impl Extent {
     }
 
     /// Width and height, neither of which is nothing.
-    fn size(&self) -> [f64; 2] {
+    pub(crate) fn size(&self) -> [f64; 2] {
         let size = [0, 1].map(|axis| self.high[axis] - self.low[axis]);
         let least = 1e-3 * size[0].max(size[1]).max(f64::MIN_POSITIVE);
         size.map(|x| x.max(least))
@@ -46,7 +46,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// As large as fits into `corners`.
-    fn new(extent: Extent, [[left, top], [right, bottom]]: [[f64; 2]; 2]) -> Self {
+    pub(crate) fn new(extent: Extent, [[left, top], [right, bottom]]: [[f64; 2]; 2]) -> Self {
         let [width, height] = extent.size();
         let scale = ((right - left) / width).min((bottom - top) / height);
         let center = [(left + right) / 2.0, (top + bottom) / 2.0];

@@ -12,15 +12,19 @@ mod scene;
 mod svg;
 
 pub(crate) use args::PictureArgs;
+pub(crate) use color::{VIRIDIS, bad_end, goodness, ticks};
+pub(crate) use layout::Extent;
+pub(crate) use outlines::Outlines;
 
 use std::path::Path;
 
 use canvas::Canvas;
-use gpu_smooth::{Measured, MeshError, MeshFile, Topology, output};
-use outlines::Outlines;
+use gpu_smooth::{Measure, Measured, MeshError, MeshFile, Topology, output};
+use layout::Frame;
+use raster::Raster;
 use scene::{Panel, Scene};
 
-use crate::report::five;
+use crate::numbers::five;
 
 /// Among so many of the worst triangles, some are marked that are apart from each other.
 const CANDIDATES: usize = 1000;
@@ -89,6 +93,41 @@ pub(crate) fn write(
     output::replace(path, &bytes).map_err(|error| failed(error.to_string()))
 }
 
+/// The triangles alone as PNG, colored by a measure, with nothing behind them; `longest` pixels wide or high, whichever is
+/// more. The picture ends where the extent does.
+pub(crate) fn picture_of(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    measure: Measure,
+    extent: Extent,
+    longest: u32,
+) -> Result<Vec<u8>, String> {
+    let goodness = goodness_of(topology, state, measure).map_err(|error| error.to_string())?;
+    let [width, height] = extent.size();
+    let scale = f64::from(longest) / width.max(height);
+    let corner = [width, height].map(|size| (size * scale).ceil());
+    let frame = Frame::new(extent, [[0.0; 2], corner]);
+    let mut raster = Raster::new([[0.0; 2], corner.map(|x| x as f32)]);
+    for (triangle, goodness) in topology.triangles().iter().zip(goodness) {
+        raster.fill(triangle.map(|v| frame.place(state.points()[v as usize])), goodness);
+    }
+    png::encode(&raster)
+}
+
+/// How good each triangle is; below 0 if it is inverted or flat.
+fn goodness_of(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    measure: Measure,
+) -> Result<Vec<f32>, MeshError> {
+    let values = state.values(measure).into_iter();
+    let mut goodness: Vec<f32> = values.map(|value| color::goodness(measure, value)).collect();
+    for bad in topology.bad_triangles(state.points())? {
+        goodness[bad.triangle] = -1.0;
+    }
+    Ok(goodness)
+}
+
 fn panel<'a>(
     args: &PictureArgs,
     topology: &Topology<'_>,
@@ -96,12 +135,7 @@ fn panel<'a>(
 ) -> Result<Panel<'a>, MeshError> {
     let measure = args.picture_measure;
     let measured = Measured::new(shot.points, topology)?;
-    let mut goodness: Vec<f32> = Vec::with_capacity(measured.count());
-    goodness
-        .extend(measured.values(measure).into_iter().map(|value| color::goodness(measure, value)));
-    for bad in topology.bad_triangles(shot.points)? {
-        goodness[bad.triangle] = -1.0;
-    }
+    let goodness = goodness_of(topology, &measured, measure)?;
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);
     let numbers = statistics.first().map_or(String::new(), |s| {

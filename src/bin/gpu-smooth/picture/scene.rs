@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use gpu_smooth::Measure;
 
+use crate::numbers::five;
 use crate::picture::canvas::{Anchor, Canvas, Point};
 use crate::picture::color::{self, BAD, BLACK, WHITE};
 use crate::picture::layout::{Extent, Frame, Layout, Place};
 use crate::picture::outlines::{Outlines, inner_edges};
-use crate::report::five;
 
 /// A mesh at some positions, with what its colors are of.
 pub(crate) struct Panel<'a> {

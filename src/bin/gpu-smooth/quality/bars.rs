@@ -3,8 +3,9 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
+use crate::columns;
+use crate::numbers::five;
 use crate::quality::sheet::Histogram;
-use crate::report::five;
 
 /// How to draw.
 pub(crate) struct Style {
@@ -13,7 +14,7 @@ pub(crate) struct Style {
     /// Bars of block characters.
     blocks: bool,
     /// Columns.
-    width: usize,
+    pub(crate) width: usize,
 }
 
 impl Style {
@@ -21,8 +22,7 @@ impl Style {
     pub(crate) fn of_terminal(ascii: bool) -> Self {
         let is_terminal = std::io::stdout().is_terminal();
         let plain = ascii || is_terminal && !shows_unicode();
-        let size = if is_terminal { terminal_size::terminal_size() } else { None };
-        let width = size.map_or(80, |(width, _)| usize::from(width.0));
+        let width = columns::of_terminal().unwrap_or(80);
         Self { plain, blocks: is_terminal && !plain, width: width.clamp(40, 160) }
     }
 }
@@ -49,14 +49,14 @@ pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
         return text;
     };
     let digits = most.to_string().len().max(5);
-    let columns = style.width.saturating_sub(2 + 7 + 1 + 10 + 2 + digits + 2 + 6 + 2);
+    let room = style.width.saturating_sub(2 + 7 + 1 + 10 + 2 + digits + 2 + 6 + 2);
     for (i, &count) in counts.iter().enumerate().take(last + 1).skip(first) {
         let to = match edges[i + 1] {
             to if to.is_finite() => format!("to {:<7}", edge(to)),
             _ => format!("{:<10}", "and above"),
         };
         let share = percent(count as f64 / total as f64);
-        let bar = bar(count as f64 / most as f64 * columns as f64, style.blocks);
+        let bar = bar(count as f64 / most as f64 * room as f64, style.blocks);
         let from = edge(edges[i]);
         let line = format!("  {from:>7} {to}  {count:>digits$}  {share:>6}  {bar}");
         let _ = writeln!(text, "{}", line.trim_end());

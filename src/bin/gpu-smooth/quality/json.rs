@@ -5,7 +5,8 @@ use std::fmt::Write;
 use gpu_smooth::{Place, QUANTILES, Statistics};
 use serde_json::{Map, Value, json};
 
-use crate::quality::sheet::{Histogram, Sheet, Violation, Worst, location};
+use crate::columns::quoted;
+use crate::quality::sheet::{Histogram, Region, Sheet, Violation, Worst, location};
 
 /// An object for one mesh, a list of them for several.
 pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, String> {
@@ -33,6 +34,7 @@ fn object(sheet: &Sheet) -> Result<Value, serde_json::Error> {
     if !sheet.regions.is_empty() {
         let regions = sheet.regions.iter().map(|region| {
             let mut object = placed("first_triangle", &region.first);
+            object.insert("groups".into(), json!(spellings(region)));
             object.insert("triangles".into(), region.statistics[0].count.into());
             object.insert("measures".into(), measures(&region.statistics));
             Value::from(object)
@@ -93,15 +95,24 @@ fn violation(violation: &Violation) -> Value {
     json!({ "threshold": threshold.to_string(), "triangles": count, "worst": worst })
 }
 
+/// The groups of a region, as options name them.
+fn spellings(region: &Region) -> Vec<&str> {
+    region.groups.iter().map(|group| &*group.spelling).collect()
+}
+
 /// The statistics, a row for each measure of each file, and of each region where asked for.
 pub(crate) fn csv(sheets: &[Sheet]) -> String {
     let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
     for share in QUANTILES {
         let _ = write!(text, ",p{:.0}", 100.0 * share);
     }
+    let by_region = sheets.iter().any(|sheet| !sheet.regions.is_empty());
+    if by_region {
+        text.push_str(",groups");
+    }
     for sheet in sheets {
         let file = quoted(&sheet.path.display().to_string());
-        let mut rows = |region: &str, statistics: &[Statistics]| {
+        let mut rows = |region: &str, groups: &str, statistics: &[Statistics]| {
             for s in statistics {
                 let (measure, count) = (s.measure, s.count);
                 let _ = write!(text, "\n{file},{region},{measure},{count}");
@@ -111,20 +122,15 @@ pub(crate) fn csv(sheets: &[Sheet]) -> String {
                 s.quantiles.iter().for_each(|&quantile| {
                     let _ = write!(text, ",{}", quantile as f32);
                 });
+                if by_region {
+                    let _ = write!(text, ",{}", quoted(groups));
+                }
             }
         };
-        rows("", &sheet.statistics);
+        rows("", "", &sheet.statistics);
         for (number, region) in (1..).zip(&sheet.regions) {
-            rows(&format!("{number}"), &region.statistics);
+            rows(&format!("{number}"), &spellings(region).join(";"), &region.statistics);
         }
     }
     text
-}
-
-/// A field of CSV, in quotes if it needs them.
-fn quoted(field: &str) -> String {
-    match field.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field.to_owned(),
-    }
 }

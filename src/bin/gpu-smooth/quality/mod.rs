@@ -8,6 +8,7 @@ mod sheet;
 mod text;
 
 pub(crate) use args::QualityArgs;
+pub(crate) use sheet::{Histogram, histogram};
 
 use std::path::PathBuf;
 

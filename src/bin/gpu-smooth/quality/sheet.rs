@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use gpu_smooth::{
-    BadTriangle, Location, Measure, Measured, MeshFile, Place, Quality, Statistics, Topology,
+    BadTriangle, Group, Groups, Location, Measure, Measured, MeshFile, Place, Quality, Statistics,
+    Topology,
 };
 
 use crate::explain::{self, BadTriangleReport};
@@ -11,7 +12,7 @@ use crate::picture::{self, Shot};
 use crate::quality::args::{QualityArgs, Threshold};
 use crate::quality::bins;
 use crate::report::QualityReport;
-use crate::smooth::read;
+use crate::streams::read;
 use crate::tell;
 
 /// What is told of one mesh. The mesh itself is not kept, so that many can be told side by side.
@@ -44,8 +45,20 @@ pub(crate) struct Sheet {
 pub(crate) struct Region {
     /// Where the first of its triangles stands.
     pub(crate) first: Place,
+    /// The groups of the file that have its triangles; those that have a name first.
+    pub(crate) groups: Vec<Named>,
     /// Statistics of every measure.
     pub(crate) statistics: Vec<Statistics>,
+}
+
+/// A group of the file.
+pub(crate) struct Named {
+    /// As options name it.
+    pub(crate) spelling: String,
+    /// What it is, with its name or tag.
+    pub(crate) full: String,
+    /// Its name, or its tag with what it is.
+    pub(crate) short: String,
 }
 
 /// How many triangles have their value where.
@@ -99,7 +112,7 @@ impl Sheet {
             report: QualityReport::from(&quality),
             worst_place: file.triangle_place(quality.worst_triangle),
             statistics: measured.statistics(Measure::ALL),
-            regions: if args.by_region { regions(&file, &measured) } else { Vec::new() },
+            regions: if args.by_region { regions(&file, &measured)? } else { Vec::new() },
             histograms: args.measure.iter().map(|&m| histogram(&measured, m)).collect(),
             worst: worst(&file, &topology, &measured, args),
             violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
@@ -111,7 +124,7 @@ impl Sheet {
     }
 }
 
-fn regions(file: &MeshFile, measured: &Measured<'_>) -> Vec<Region> {
+fn regions(file: &MeshFile, measured: &Measured<'_>) -> Result<Vec<Region>, String> {
     let zeros;
     let regions = match file.regions() {
         Some(regions) => regions,
@@ -128,11 +141,37 @@ fn regions(file: &MeshFile, measured: &Measured<'_>) -> Vec<Region> {
     let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
     let places = file.triangle_places(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
-    let region = |(first, statistics)| Region { first: places[first].clone(), statistics };
-    first.iter().zip(statistics).map(region).collect()
+    let groups = file.groups().map_err(|error| error.to_string())?;
+    let region = |(first, statistics): (&usize, Vec<Statistics>)| {
+        let groups = groups_of(*first, &groups);
+        Region { first: places[first].clone(), groups, statistics }
+    };
+    Ok(first.iter().zip(statistics).map(region).collect())
 }
 
-fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
+/// The groups that have a triangle; those that have a name first. All triangles of a region are of the same groups.
+fn groups_of(triangle: usize, groups: &Groups) -> Vec<Named> {
+    let index = triangle as u32;
+    let mut found: Vec<(&Group, String)> = groups
+        .iter()
+        .zip(groups.spellings())
+        .filter(|(group, _)| group.triangles().binary_search(&index).is_ok())
+        .collect();
+    found.sort_by_key(|(group, _)| group.name.is_none());
+    let named = |(group, spelling): (&Group, String)| {
+        let tag = group.tag.map(|tag| tag.to_string());
+        let short = match group.name.clone().or(tag).unwrap_or_default() {
+            // Alone it would be taken for the number of a region.
+            number if number.parse::<f64>().is_ok() => format!("{} {number}", group.what),
+            name => name,
+        };
+        Named { spelling, full: group.to_string(), short }
+    };
+    found.into_iter().map(named).collect()
+}
+
+/// How many triangles have their value in each bin of a measure.
+pub(crate) fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
     let edges = bins::edges(measure);
     let counts = measured.histogram(measure, &edges);
     Histogram { measure, edges, counts }

@@ -4,13 +4,26 @@ use std::fmt::Write;
 
 use gpu_smooth::{Measure, Metric, Statistics};
 
+use crate::columns::{left, right, shortened};
 use crate::explain;
+use crate::numbers::{five, six};
 use crate::quality::bars::{self, Style};
-use crate::quality::sheet::{Sheet, Worst};
-use crate::report::{five, six};
+use crate::quality::sheet::{Region, Sheet, Worst};
 
 /// The width of a table's first column.
-const NAME: usize = 18;
+const NAME: usize = 17;
+
+/// The columns of numbers, in which seven fit the usual terminal.
+const COLUMNS: [&str; 7] = ["min", "5 %", "median", "mean", "95 %", "max", "sd"];
+const COLUMN: usize = 9;
+
+/// The columns that fit a terminal, which go without the others: the most important first.
+fn shown(style: &Style) -> [bool; COLUMNS.len()] {
+    let fit = style.width.saturating_sub(NAME) / COLUMN;
+    let mut shown = [false; COLUMNS.len()];
+    [0, 5, 3, 2, 6, 1, 4].into_iter().take(fit).for_each(|column| shown[column] = true);
+    shown
+}
 
 /// All that is told of some meshes.
 pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
@@ -34,15 +47,15 @@ pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
 
 /// The statistics of every measure: a row for each, or for each measure and file.
 fn table(sheets: &[Sheet], style: &Style) -> String {
-    let mut text = head();
+    let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
         match sheets {
-            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i])),
+            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
             several => {
                 let _ = writeln!(text, "{}", named(*measure, style));
                 for sheet in several {
                     let name = shortened(&sheet.path.display().to_string(), NAME - 2);
-                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i]));
+                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i], style));
                 }
             }
         }
@@ -50,19 +63,21 @@ fn table(sheets: &[Sheet], style: &Style) -> String {
     text
 }
 
-fn head() -> String {
-    let mut text = " ".repeat(NAME);
-    for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
-        let _ = write!(text, "{column:>9}");
-    }
-    text + "\n"
+fn head(style: &Style) -> String {
+    line("", COLUMNS.map(str::to_owned), style)
 }
 
-fn row(name: &str, statistics: &Statistics) -> String {
+fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
-    let mut text = format!("{name:<NAME$}");
-    for number in [min, low, median, mean, high, max, deviation] {
-        let _ = write!(text, "{:>9}", five(*number));
+    line(name, [min, low, median, mean, high, max, deviation].map(|number| five(*number)), style)
+}
+
+fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
+    let mut text = left(name, NAME);
+    for (field, is_shown) in fields.iter().zip(shown(style)) {
+        if is_shown {
+            text += &right(field, COLUMN);
+        }
     }
     text + "\n"
 }
@@ -73,15 +88,6 @@ fn named(measure: Measure, style: &Style) -> String {
         ("", _) => measure.name().to_owned(),
         ("°", true) => format!("{measure} (deg)"),
         (unit, _) => format!("{measure} {unit}"),
-    }
-}
-
-/// The end of a name that is too long.
-fn shortened(name: &str, most: usize) -> String {
-    let length = name.chars().count();
-    match length > most {
-        true => format!("..{}", name.chars().skip(length + 2 - most).collect::<String>()),
-        false => name.to_owned(),
     }
 }
 
@@ -130,16 +136,22 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
         let measure = histogram.measure;
         let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
         let _ = writeln!(text, "{} by region", named(measure, style));
-        text.push_str(&head());
+        text.push_str(&head(style));
         for (number, region) in (1..).zip(&sheet.regions) {
-            let statistics = &region.statistics[at];
-            text.push_str(&row(&format!("region {number}"), statistics));
+            let name = match region.groups.first() {
+                Some(group) => format!("{number} {}", group.short),
+                None => format!("region {number}"),
+            };
+            text.push_str(&row(&shortened(&name, NAME - 1), &region.statistics[at], style));
         }
         text.push('\n');
     }
     for (number, region) in (1..).zip(&sheet.regions) {
-        let (first, count) = (&region.first, region.statistics[0].count);
-        let _ = writeln!(text, "region {number}: {count} triangles, the first at {first}");
+        let Region { first, groups, statistics } = region;
+        let groups: Vec<&str> = groups.iter().map(|group| &*group.full).collect();
+        let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
+        let count = statistics[0].count;
+        let _ = writeln!(text, "region {number}: {named}{count} triangles, the first at {first}");
     }
     if !sheet.regions.is_empty() {
         text.push('\n');
@@ -163,16 +175,5 @@ pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
         ("°", true) => format!("{measure} {} deg", five(value)),
         (unit, _) => format!("{measure} {}{unit}", five(value)),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_names_lose_their_start() {
-        assert_eq!(shortened("a/long/name.msh", 9), "..ame.msh");
-        assert_eq!(shortened("name.msh", 9), "name.msh");
     }
 }

@@ -1,0 +1,41 @@
+//! Measurements of another time, to compare with.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::report::Row;
+
+/// What `bench --json` has printed.
+pub(super) struct Baseline {
+    rows: Vec<Known>,
+}
+
+#[derive(Deserialize)]
+struct Known {
+    engine: String,
+    scheme: String,
+    vertices: usize,
+    triangles: usize,
+    seconds_per_sweep: f64,
+}
+
+impl Baseline {
+    pub(super) fn read(path: &Path) -> Result<Self, String> {
+        let name = path.display();
+        let text = std::fs::read_to_string(path).map_err(|error| format!("{name}: {error}"))?;
+        let rows = serde_json::from_str(&text).map_err(|error| {
+            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` prints")
+        })?;
+        Ok(Self { rows })
+    }
+
+    /// The time of a sweep that was measured then: by the same engine and scheme, on a mesh of the same size.
+    pub(super) fn seconds(&self, row: &Row) -> Option<f64> {
+        let is_same = |known: &&Known| {
+            (&known.engine, &known.scheme) == (&row.engine, &row.scheme)
+                && (known.vertices, known.triangles) == (row.vertices, row.triangles)
+        };
+        self.rows.iter().find(is_same).map(|known| known.seconds_per_sweep)
+    }
+}

@@ -1,0 +1,74 @@
+//! Text in columns, of a terminal or of CSV.
+
+use std::io::IsTerminal;
+
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+/// The columns of the terminal that standard output is, if it is one.
+pub(crate) fn of_terminal() -> Option<usize> {
+    let size = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
+    size.map(|(width, _)| usize::from(width.0))
+}
+
+/// A text and spaces after it, together as many columns wide as `width` says.
+pub(crate) fn left(text: &str, width: usize) -> String {
+    format!("{text}{}", " ".repeat(width.saturating_sub(text.width())))
+}
+
+/// A text and spaces before it, together as many columns wide as `width` says.
+pub(crate) fn right(text: &str, width: usize) -> String {
+    format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
+}
+
+/// The end of a name that is wider than `most` columns.
+pub(crate) fn shortened(name: &str, most: usize) -> String {
+    if name.width() <= most {
+        return name.to_owned();
+    }
+    let mut room = most.saturating_sub(2);
+    let fits = |&(_, c): &(usize, char)| {
+        let width = c.width().unwrap_or(0);
+        let fits = width <= room;
+        room = room.saturating_sub(width);
+        fits
+    };
+    let start = name.char_indices().rev().take_while(fits).last().map_or(name.len(), |(at, _)| at);
+    format!("..{}", &name[start..])
+}
+
+/// A field of CSV, in quotes if it needs them.
+pub(crate) fn quoted(field: &str) -> String {
+    match field.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", field.replace('"', "\"\"")),
+        false => field.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_lose_their_start() {
+        assert_eq!(shortened("a/long/name.msh", 9), "..ame.msh");
+        assert_eq!(shortened("name.msh", 9), "name.msh");
+        assert_eq!(shortened("name.msh", 1), "..");
+    }
+
+    /// Characters of Chinese, Japanese and Korean take two columns each, combining ones none.
+    #[test]
+    fn wide_characters_count_twice() {
+        assert_eq!(left("網格", 6), "網格  ");
+        assert_eq!(right("網格.msh", 10), "  網格.msh");
+        assert_eq!(shortened("東京湾.msh", 8), "..湾.msh");
+        assert_eq!(shortened("東京湾.msh", 9), "..湾.msh");
+        assert_eq!(shortened("東京湾.msh", 10), "東京湾.msh");
+        assert_eq!(left("e\u{301}", 3), "e\u{301}  ");
+    }
+
+    #[test]
+    fn fields_are_quoted_where_they_must_be() {
+        assert_eq!(quoted("a b"), "a b");
+        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+    }
+}

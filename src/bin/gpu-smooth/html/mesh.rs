@@ -1,0 +1,253 @@
+//! The mesh as the script of the page draws it: all of it, or a picture of it with what is around the worst triangles.
+
+use std::collections::HashSet;
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use gpu_smooth::{Measure, Measured, MeshFile, Topology};
+use serde_json::{Value, json};
+
+use crate::html::worst::Spot;
+use crate::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
+
+/// The measures that the mesh can be colored by. The picture of a large one has the colors of the first.
+const SHOWN: [Measure; 4] =
+    [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
+
+/// Meshes of more triangles are shown as a picture and by parts. With fewer, the page has up to some 20 MB.
+pub(crate) const MOST: usize = 250_000;
+
+/// How many triangles around each of the worst ones are shown of a larger mesh.
+const AROUND: usize = 1500;
+
+/// The most edges of the boundary, and of lines between regions, that are shown of a larger mesh.
+const MOST_EDGES: usize = 200_000;
+
+/// The width or height of the picture of a larger mesh, in pixels, whichever is longer.
+const PIXELS: u32 = 2000;
+
+/// How a mesh of so many triangles is shown, in a sentence or two.
+pub(crate) fn caption(triangles: usize) -> String {
+    match triangles > MOST {
+        false => format!("All {triangles} triangles."),
+        true => format!(
+            "{triangles} triangles, too many for a page: the whole is a picture by shape, where the worst of the triangles that \
+             share a pixel shows. The {AROUND} triangles around each of the worst ones listed below can be enlarged."
+        ),
+    }
+}
+
+/// All that the script needs. A mesh of more than `most` triangles is not shown whole.
+pub(crate) fn data(
+    file: &MeshFile,
+    states: [&Measured<'_>; 2],
+    spots: &[Spot],
+    most: usize,
+) -> Result<Value, String> {
+    let topology = states[0].topology();
+    let is_whole = topology.triangles().len() <= most;
+    let outlines = Outlines::of(topology, &file.mesh().fixed, file.regions());
+    let shown = match is_whole {
+        true => (0..topology.triangles().len()).collect(),
+        false => around(topology, spots),
+    };
+    let extent = Extent::of(topology.triangles(), &states.map(|state| state.points()));
+    let mut part = Part::new(file.mesh().points.len());
+    let corners = shown.iter().flat_map(|&t| topology.triangles()[t]);
+    let triangles: Vec<u32> = corners.map(|v| part.number(v)).collect();
+    let most_edges = if is_whole { usize::MAX } else { MOST_EDGES };
+    let edges = |edges: &[[u32; 2]], part: &mut Part| -> Vec<u32> {
+        edges.iter().take(most_edges).flatten().map(|&v| part.number(v)).collect()
+    };
+    let boundary = edges(&outlines.boundary, &mut part);
+    let between = edges(&outlines.between_regions, &mut part);
+    let held: Vec<u32> = match is_whole {
+        true => outlines.held.iter().map(|&v| part.number(v)).collect(),
+        false => Vec::new(),
+    };
+    let measures = SHOWN.map(|measure| {
+        let definition = measure.definition();
+        json!({
+            "name": measure.name(), "unit": definition.unit, "ideal": definition.ideal,
+            // None where the scale is by the logarithm.
+            "bad": bad_end(measure),
+            "ticks": ticks(measure).into_iter()
+                .map(|(value, name)| json!([goodness(measure, value), name])).collect::<Vec<_>>(),
+        })
+    });
+    let mut both = Vec::new();
+    for state in states {
+        let picture = match is_whole {
+            true => None,
+            false => Some(picture(topology, state, extent)?),
+        };
+        both.push(json!({
+            "points": part.points(state.points()),
+            "codes": codes(topology, state, &shown)?,
+            "picture": picture,
+        }));
+    }
+    let corners: Vec<Value> = spots
+        .iter()
+        .map(|spot| {
+            let at = shown.iter().position(|&t| t == spot.triangle);
+            json!({ "triangle": at, "state": spot.state, "at": spot.at, "size": spot.size })
+        })
+        .collect();
+    Ok(json!({
+        "colors": VIRIDIS,
+        "measures": measures,
+        "extent": [extent.low, extent.high],
+        "triangles": indices(&triangles),
+        "boundary": indices(&boundary),
+        "between": indices(&between),
+        "held": indices(&held),
+        "states": both,
+        "spots": corners,
+    }))
+}
+
+/// Numbers, given as bytes with the lowest first, in Base64.
+fn encoded<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> String {
+    BASE64_STANDARD.encode(numbers.flatten().collect::<Vec<u8>>())
+}
+
+fn indices(numbers: &[u32]) -> String {
+    encoded(numbers.iter().map(|number| number.to_le_bytes()))
+}
+
+/// Of each measure, of each triangle: 0 if it is inverted or flat, else from 1 to 65534 by how good it is.
+fn codes(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    shown: &[usize],
+) -> Result<Vec<String>, String> {
+    let bad = topology.bad_triangles(state.points()).map_err(|error| error.to_string())?;
+    let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
+    let of = |measure| {
+        let code = |&t: &usize| -> u16 {
+            match bad.contains(&t) {
+                true => 0,
+                false => 1 + (65533.0 * goodness(measure, state.value(measure, t))).round() as u16,
+            }
+        };
+        encoded(shown.iter().map(|t| code(t).to_le_bytes()))
+    };
+    Ok(SHOWN.map(of).to_vec())
+}
+
+/// The whole mesh as pixels, by the first measure.
+fn picture(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    extent: Extent,
+) -> Result<String, String> {
+    let bytes = picture_of(topology, state, SHOWN[0], extent, PIXELS)?;
+    Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
+}
+
+/// The triangles around each of some, nearest first, ascending and each once.
+fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
+    let mut all = HashSet::new();
+    for spot in spots {
+        let (mut met, mut queue) = (HashSet::from([spot.triangle]), vec![spot.triangle]);
+        let mut next = 0;
+        while next < queue.len() && queue.len() < AROUND {
+            for &v in &topology.triangles()[queue[next]] {
+                let star = topology.star(v).iter().map(|&t| t as usize);
+                queue.extend(star.filter(|&t| met.insert(t)));
+            }
+            next += 1;
+        }
+        all.extend(queue);
+    }
+    let mut all: Vec<usize> = all.into_iter().collect();
+    all.sort_unstable();
+    all
+}
+
+/// The vertices that are shown, in new numbers.
+struct Part {
+    /// The new number of each vertex; the largest number if it has none.
+    number: Vec<u32>,
+    /// The old number of each vertex that is shown.
+    vertices: Vec<u32>,
+}
+
+impl Part {
+    fn new(vertices: usize) -> Self {
+        Self { number: vec![u32::MAX; vertices], vertices: Vec::new() }
+    }
+
+    /// The new number of a vertex, which it gets if it has none.
+    fn number(&mut self, vertex: u32) -> u32 {
+        let number = &mut self.number[vertex as usize];
+        if *number == u32::MAX {
+            *number = self.vertices.len() as u32;
+            self.vertices.push(vertex);
+        }
+        *number
+    }
+
+    /// The coordinates of the vertices that are shown.
+    fn points(&self, points: &[[f64; 2]]) -> String {
+        let coordinates = self.vertices.iter().flat_map(|&v| points[v as usize]);
+        encoded(coordinates.map(f64::to_le_bytes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::html::worst;
+    use std::path::Path;
+
+    /// A mesh of 80 by 80 squares that are cut in two, with one vertex far from its place.
+    fn file() -> MeshFile {
+        let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6561\n".to_owned();
+        for i in 0..6561 {
+            let (x, y) = (f64::from(i % 81), f64::from(i / 81));
+            let x = if i == 3000 { x + 0.9 } else { x };
+            text += &format!("{} {x} {y} 0\n", i + 1);
+        }
+        text += "$EndNodes\n$Elements\n12800\n";
+        for i in 0..6400 {
+            let a = i / 80 * 81 + i % 80 + 1;
+            text += &format!("{} 2 2 1 1 {a} {} {}\n", 2 * i + 1, a + 1, a + 82);
+            text += &format!("{} 2 2 1 1 {a} {} {}\n", 2 * i + 2, a + 82, a + 81);
+        }
+        MeshFile::from_bytes(Path::new("m.msh"), (text + "$EndElements\n").into_bytes()).unwrap()
+    }
+
+    #[test]
+    fn a_large_mesh_is_a_picture_with_what_is_around_the_worst() {
+        let file = file();
+        let topology = Topology::new(file.mesh()).unwrap();
+        let state = Measured::new(&file.mesh().points, &topology).unwrap();
+        let spots = worst::spots(&file, [&state; 2]);
+        let of = |most| data(&file, [&state; 2], &spots, most).unwrap();
+        let count = |data: &Value, key: &str| {
+            BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4
+        };
+        let (whole, parts) = (of(12_800), of(12_799));
+        assert!(whole["states"][0]["picture"].is_null());
+        assert_eq!(count(&whole, "triangles"), 3 * 12_800);
+        let shown = count(&parts, "triangles") / 3;
+        assert!((AROUND..12_800).contains(&shown), "{shown}");
+        assert_eq!(count(&parts, "boundary"), 2 * 320);
+        for state in 0..2 {
+            let picture = parts["states"][state]["picture"].as_str().unwrap();
+            let png = picture.strip_prefix("data:image/png;base64,").unwrap();
+            let png = BASE64_STANDARD.decode(png).unwrap();
+            // Width and height stand there.
+            assert_eq!(png[16..24], [0, 0, 7, 208, 0, 0, 7, 208]);
+        }
+        // The worst are at the vertex that is out of place, and shown in both.
+        for data in [&whole, &parts] {
+            let first = &data["spots"][0];
+            assert!(first["triangle"].is_u64(), "{first}");
+            let [x, y] = [0, 1].map(|axis| first["at"][axis].as_f64().unwrap());
+            assert!((x - 3.0).hypot(y - 37.0) < 2.0, "{x} {y}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The frame of a page.
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("viewer.js");
+const VIEWER: &str = include_str!("viewer.html");
+
+/// A page in the making.
+pub(crate) struct Page {
+    title: String,
+    body: String,
+    data: String,
+}
+
+impl Page {
+    pub(crate) fn new(title: &str) -> Self {
+        let title = escape(title);
+        let body = format!("<header><h1>{title}</h1>\n</header>\n<main>\n");
+        Self { title, body, data: String::new() }
+    }
+
+    /// A sentence at the top.
+    pub(crate) fn lead(&mut self, text: &str) {
+        self.body += &format!("<p class=\"lead\">{}</p>\n", escape(text));
+    }
+
+    /// A part of the page; `content` is HTML.
+    pub(crate) fn section(&mut self, title: &str, content: &str) {
+        self.body += &format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title));
+    }
+
+    /// The part that shows the mesh; `data` is what the script draws.
+    pub(crate) fn mesh(&mut self, caption: &str, data: &serde_json::Value) {
+        let content = VIEWER.replace("{caption}", &escape(caption));
+        self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");
+        // Nothing in a text of JSON can end the script element.
+        self.data = data.to_string().replace('<', "\\u003c");
+    }
+
+    pub(crate) fn finish(self) -> String {
+        let Self { title, body, data } = self;
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n\
+             <title>{title} - gpu-smooth</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</main>\n\
+             <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n"
+        )
+    }
+}
+
+/// Text as it stands in HTML, also in attributes.
+pub(crate) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,355 @@
+"use strict";
+// Draws the mesh before and after a run on two canvases that look at the same place.
+// Triangles are filled pixel by pixel: that leaves no seams, and many small ones take no longer than few large ones.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+function decoded(Type, text) {
+  return new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+}
+
+const triangles = decoded(Uint32Array, data.triangles);
+const boundary = decoded(Uint32Array, data.boundary);
+const between = decoded(Uint32Array, data.between);
+const held = decoded(Uint32Array, data.held);
+const states = data.states.map((state) => {
+  const image = state.picture ? new Image() : null;
+  if (image) {
+    image.onload = redraw;
+    image.src = state.picture;
+  }
+  return { points: decoded(Float64Array, state.points), codes: state.codes.map((codes) => decoded(Uint16Array, codes)), image };
+});
+const canvases = [...document.querySelectorAll("#views canvas")];
+const [low, high] = data.extent;
+
+// The middle of what is seen, in units of the mesh, and CSS pixels per unit. `spot` is the triangle that was asked for.
+const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
+let measure = 0;
+
+// Colors by code: 0 is inverted or flat, 1 to 65534 goes from bad to good, 65535 is nothing.
+const NOTHING = 65535;
+const palette = new Uint32Array(65536);
+for (let code = 1; code < NOTHING; code++) {
+  const place = ((code - 1) / 65533) * (data.colors.length - 1);
+  const first = Math.min(Math.floor(place), data.colors.length - 2);
+  const [r, g, b] = data.colors[first].map((from, i) => Math.round(from + (data.colors[first + 1][i] - from) * (place - first)));
+  palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
+}
+palette[0] = (255 << 24) | (75 << 16) | (25 << 8) | 230;
+
+/** Fills the pixels whose middles are in a triangle, or the one of its middle; where several meet, the worst is kept. */
+function fill(best, width, height, x0, y0, x1, y1, x2, y2, code) {
+  const top = Math.max(0, Math.ceil(Math.min(y0, y1, y2) - 0.5));
+  const bottom = Math.min(height - 1, Math.floor(Math.max(y0, y1, y2) - 0.5));
+  let met = false;
+  for (let row = top; row <= bottom; row++) {
+    const y = row + 0.5;
+    let from = Infinity, to = -Infinity;
+    if ((y0 <= y) !== (y1 <= y)) { const x = x0 + (x1 - x0) * ((y - y0) / (y1 - y0)); from = Math.min(from, x); to = Math.max(to, x); }
+    if ((y1 <= y) !== (y2 <= y)) { const x = x1 + (x2 - x1) * ((y - y1) / (y2 - y1)); from = Math.min(from, x); to = Math.max(to, x); }
+    if ((y2 <= y) !== (y0 <= y)) { const x = x2 + (x0 - x2) * ((y - y2) / (y0 - y2)); from = Math.min(from, x); to = Math.max(to, x); }
+    const end = Math.min(width - 1, Math.floor(to - 0.5));
+    for (let column = Math.max(0, Math.ceil(from - 0.5)); column <= end; column++) {
+      const i = row * width + column;
+      if (code < best[i]) best[i] = code;
+      met = true;
+    }
+  }
+  if (!met) {
+    const column = Math.floor((x0 + x1 + x2) / 3), row = Math.floor((y0 + y1 + y2) / 3);
+    if (column >= 0 && row >= 0 && column < width && row < height) {
+      const i = row * width + column;
+      if (code < best[i]) best[i] = code;
+    }
+  }
+}
+
+/** Where the vertices are on a canvas, in its pixels. */
+function placed(points, canvas, ratio) {
+  const scale = view.scale * ratio, at = new Float64Array(points.length);
+  for (let i = 0; i < points.length; i += 2) {
+    at[i] = canvas.width / 2 + (points[i] - view.x) * scale;
+    at[i + 1] = canvas.height / 2 - (points[i + 1] - view.y) * scale;
+  }
+  return at;
+}
+
+/** A path of edges, without those that are not seen. */
+function edges(context, list, at) {
+  const { width, height } = context.canvas;
+  context.beginPath();
+  for (let i = 0; i < list.length; i += 2) {
+    const a = 2 * list[i], b = 2 * list[i + 1];
+    if (Math.max(at[a], at[b]) < 0 || Math.min(at[a], at[b]) > width) continue;
+    if (Math.max(at[a + 1], at[b + 1]) < 0 || Math.min(at[a + 1], at[b + 1]) > height) continue;
+    context.moveTo(at[a], at[a + 1]);
+    context.lineTo(at[b], at[b + 1]);
+  }
+  context.stroke();
+}
+
+function draw(canvas, state) {
+  const ratio = window.devicePixelRatio || 1;
+  const { width, height } = canvas, context = canvas.getContext("2d");
+  const style = getComputedStyle(document.documentElement);
+  const [ink, paper] = ["--ink", "--paper"].map((name) => style.getPropertyValue(name));
+  context.clearRect(0, 0, width, height);
+  const at = placed(state.points, canvas, ratio), codes = state.codes[measure];
+  const hasPicture = state.image && measure === 0 && state.image.complete;
+  if (hasPicture) {
+    const scale = view.scale * ratio;
+    const left = width / 2 + (low[0] - view.x) * scale, top = height / 2 - (high[1] - view.y) * scale;
+    const longest = Math.max(high[0] - low[0], high[1] - low[1]) / Math.max(state.image.width, state.image.height);
+    context.imageSmoothingEnabled = false;
+    context.drawImage(state.image, left, top, state.image.width * longest * scale, state.image.height * longest * scale);
+  }
+
+  const best = new Uint16Array(width * height).fill(NOTHING);
+  const inner = [];
+  for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
+    const a = 2 * triangles[i], b = 2 * triangles[i + 1], c = 2 * triangles[i + 2];
+    const x0 = at[a], y0 = at[a + 1], x1 = at[b], y1 = at[b + 1], x2 = at[c], y2 = at[c + 1];
+    if (Math.max(x0, x1, x2) < 0 || Math.min(x0, x1, x2) > width || Math.max(y0, y1, y2) < 0 || Math.min(y0, y1, y2) > height) continue;
+    const longest = Math.max((x1 - x0) ** 2 + (y1 - y0) ** 2, (x2 - x1) ** 2 + (y2 - y1) ** 2, (x0 - x2) ** 2 + (y0 - y2) ** 2);
+    // Small ones are seen better in the picture of the whole.
+    if (hasPicture && longest < (4 * ratio) ** 2) continue;
+    fill(best, width, height, x0, y0, x1, y1, x2, y2, codes[t]);
+    const area = Math.abs((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0));
+    // Edges only where a triangle is some pixels high.
+    if (area > 4 * ratio * Math.sqrt(longest)) {
+      if (a < b) inner.push(a / 2, b / 2);
+      if (b < c) inner.push(b / 2, c / 2);
+      if (c < a) inner.push(c / 2, a / 2);
+    }
+  }
+  const pixels = new ImageData(width, height), words = new Uint32Array(pixels.data.buffer);
+  for (let i = 0; i < words.length; i++) if (best[i] !== NOTHING) words[i] = palette[best[i]];
+  const layer = new OffscreenCanvas(width, height);
+  layer.getContext("2d").putImageData(pixels, 0, 0);
+  context.drawImage(layer, 0, 0);
+
+  context.lineCap = "round";
+  if (inner.length < 200000) {
+    context.strokeStyle = "rgb(0 0 0 / 0.4)";
+    context.lineWidth = 0.7 * ratio;
+    edges(context, inner, at);
+  }
+  context.strokeStyle = ink;
+  context.lineWidth = 4 * ratio;
+  edges(context, between, at);
+  context.strokeStyle = paper;
+  context.lineWidth = 1.6 * ratio;
+  edges(context, between, at);
+  context.strokeStyle = ink;
+  context.lineWidth = 1.8 * ratio;
+  edges(context, boundary, at);
+  for (const v of held) dot(context, at[2 * v], at[2 * v + 1], ratio);
+  marks(context, state, at, ratio);
+}
+
+/** A vertex inside the mesh that must not move. */
+function dot(context, x, y, ratio) {
+  if (x < 0 || y < 0 || x > context.canvas.width || y > context.canvas.height) return;
+  context.beginPath();
+  context.arc(x, y, 2.6 * ratio, 0, 7);
+  context.fillStyle = "#fff";
+  context.fill();
+  context.strokeStyle = "#000";
+  context.lineWidth = 1.4 * ratio;
+  context.stroke();
+}
+
+/** Rings around the worst triangles, and the outline of the one that was asked for. */
+function marks(context, state, at, ratio) {
+  const width = canvasWidth(context.canvas);
+  data.spots.forEach((spot, i) => {
+    if (states[spot.state] !== state && i !== view.spot) return;
+    const corners = [0, 1, 2].map((k) => 2 * triangles[3 * spot.triangle + k]);
+    const x = corners.reduce((sum, c) => sum + at[c], 0) / 3, y = corners.reduce((sum, c) => sum + at[c + 1], 0) / 3;
+    context.beginPath();
+    if (spot.size * view.scale > width / 12) {
+      if (i !== view.spot) return;
+      corners.forEach((c, k) => (k ? context.lineTo(at[c], at[c + 1]) : context.moveTo(at[c], at[c + 1])));
+      context.closePath();
+    } else {
+      context.arc(x, y, (i === view.spot ? 11 : 8) * ratio, 0, 7);
+    }
+    for (const [color, line] of [["#fff", 3.4], ["#000", i === view.spot ? 1.8 : 1.2]]) {
+      context.strokeStyle = color;
+      context.lineWidth = line * ratio;
+      context.stroke();
+    }
+  });
+}
+
+function canvasWidth(canvas) {
+  return canvas.getBoundingClientRect().width;
+}
+
+let isDue = false;
+function redraw() {
+  if (isDue) return;
+  isDue = true;
+  requestAnimationFrame(() => {
+    isDue = false;
+    canvases.forEach((canvas, i) => draw(canvas, states[i]));
+  });
+}
+
+/** Gives the canvases their size: side by side unless the mesh is wide or the window narrow. */
+function resize() {
+  const size = [0, 1].map((axis) => high[axis] - low[axis]);
+  const aspect = Math.min(1.2, Math.max(0.35, size[1] / (size[0] || 1)));
+  const isNarrow = window.innerWidth < 700, isStacked = isNarrow || aspect < 0.45;
+  document.getElementById("views").classList.toggle("stacked", isStacked);
+  const ratio = window.devicePixelRatio || 1;
+  for (const canvas of canvases) {
+    const width = canvas.clientWidth, height = Math.min(aspect * width, (isNarrow ? 0.36 : 0.75) * window.innerHeight, 800);
+    canvas.style.height = `${Math.round(height)}px`;
+    canvas.width = Math.max(1, Math.round(width * ratio));
+    canvas.height = Math.max(1, Math.round(height * ratio));
+  }
+  if (view.isWhole) whole();
+  else redraw();
+}
+
+function whole() {
+  const canvas = canvases[0];
+  const [across, along] = [0, 1].map((axis) => Math.max(high[axis] - low[axis], 1e-300));
+  view.x = (low[0] + high[0]) / 2;
+  view.y = (low[1] + high[1]) / 2;
+  view.scale = 0.94 * Math.min(canvas.clientWidth / across, canvas.clientHeight / along);
+  view.isWhole = true;
+  view.spot = null;
+  redraw();
+}
+
+/** Enlarges by a factor around a place on a canvas, in CSS pixels from its middle. */
+function zoom(factor, x = 0, y = 0) {
+  const least = 1 / Math.max(high[0] - low[0], high[1] - low[1]);
+  const scale = Math.min(Math.max(view.scale * factor, 20 * least), 1e16 * least);
+  view.x += x / view.scale - x / scale;
+  view.y -= y / view.scale - y / scale;
+  view.scale = scale;
+  view.isWhole = false;
+  redraw();
+}
+
+function pan(x, y) {
+  view.x -= x / view.scale;
+  view.y += y / view.scale;
+  view.isWhole = false;
+  redraw();
+}
+
+/** Shows one of the worst triangles, as the link asks for that names it. */
+function show(i) {
+  const spot = data.spots[i], canvas = canvases[0];
+  if (!spot) return;
+  [view.x, view.y] = spot.at;
+  view.scale = Math.min(canvas.clientWidth, canvas.clientHeight) / (6 * spot.size);
+  view.isWhole = false;
+  view.spot = i;
+  redraw();
+  document.getElementById("views").scrollIntoView({ block: "center" });
+}
+
+function fromMiddle(canvas, event) {
+  const box = canvas.getBoundingClientRect();
+  return [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2];
+}
+
+/** Tells what is under the pointer. */
+function tell(canvas, event) {
+  const [dx, dy] = fromMiddle(canvas, event), { points, codes } = states[canvases.indexOf(canvas)];
+  const x = view.x + dx / view.scale, y = view.y - dy / view.scale;
+  const side = (a, b) => (points[2 * b] - points[2 * a]) * (y - points[2 * a + 1]) - (points[2 * b + 1] - points[2 * a + 1]) * (x - points[2 * a]);
+  let text = `${x.toPrecision(7)}  ${y.toPrecision(7)}`;
+  for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
+    const [a, b, c] = [triangles[i], triangles[i + 1], triangles[i + 2]];
+    const sides = [side(a, b), side(b, c), side(c, a)];
+    if (sides.every((s) => s >= 0) || sides.every((s) => s <= 0)) {
+      text += data.measures.map((measure, k) => `   ${measure.name} ${value(measure, codes[k][t])}`).join("");
+      break;
+    }
+  }
+  document.getElementById("told").textContent = text;
+}
+
+/** The value of a measure that a code stands for. */
+function value({ bad, ideal, unit }, code) {
+  if (code === 0) return "inverted or flat";
+  const goodness = (code - 1) / 65533;
+  if (bad !== null) return `${(bad + goodness * (ideal - bad)).toPrecision(4)}${unit}`;
+  return goodness === 0 ? `${ideal + 9} or more` : (ideal + 10 ** (1 - goodness) - 1).toPrecision(4);
+}
+
+function legend() {
+  const scale = document.getElementById("scale"), colors = data.colors.map((color) => `rgb(${color})`);
+  const ticks = data.measures[measure].ticks.map(([place, name]) => `<b style="left:${100 * place}%">${name}</b>`);
+  scale.innerHTML = `<i style="background:linear-gradient(to right, ${colors})"></i>${ticks.join("")}`;
+}
+
+const select = document.getElementById("measure");
+data.measures.forEach(({ name }) => select.add(new Option(name)));
+select.onchange = () => {
+  measure = select.selectedIndex;
+  legend();
+  redraw();
+};
+document.getElementById("in").onclick = () => zoom(2);
+document.getElementById("out").onclick = () => zoom(0.5);
+document.getElementById("all").onclick = whole;
+
+for (const canvas of canvases) {
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), ...fromMiddle(canvas, event));
+  }, { passive: false });
+  canvas.addEventListener("pointerdown", (event) => event.pointerType !== "touch" && canvas.setPointerCapture(event.pointerId));
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.pointerType !== "touch" && event.buttons) pan(event.movementX, event.movementY);
+    else tell(canvas, event);
+  });
+  canvas.addEventListener("click", (event) => tell(canvas, event));
+  canvas.addEventListener("dblclick", (event) => zoom(2, ...fromMiddle(canvas, event)));
+  canvas.addEventListener("keydown", (event) => {
+    const step = 60, moves = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+    if (moves[event.key]) pan(...moves[event.key]);
+    else if (event.key === "+") zoom(2);
+    else if (event.key === "-") zoom(0.5);
+    else return;
+    event.preventDefault();
+  });
+  // One finger scrolls the page, two move the mesh.
+  let last = null;
+  const two = ([p, q]) => ({ clientX: (p.clientX + q.clientX) / 2, clientY: (p.clientY + q.clientY) / 2, apart: Math.hypot(p.clientX - q.clientX, p.clientY - q.clientY) });
+  canvas.addEventListener("touchmove", (event) => {
+    if (event.touches.length !== 2) return;
+    event.preventDefault();
+    const now = two(event.touches);
+    if (last) {
+      pan(now.clientX - last.clientX, now.clientY - last.clientY);
+      zoom(now.apart / last.apart, ...fromMiddle(canvas, now));
+    }
+    last = now;
+  }, { passive: false });
+  canvas.addEventListener("touchend", () => (last = null));
+}
+
+function follow() {
+  const found = /^#spot-(\d+)$/.exec(location.hash);
+  if (found) show(Number(found[1]));
+}
+document.addEventListener("click", (event) => {
+  // Also if the same link is followed again.
+  const link = event.target.closest('a[href^="#spot-"]');
+  if (link && link.hash === location.hash) follow();
+});
+window.addEventListener("hashchange", follow);
+window.addEventListener("resize", resize);
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+resize();
+legend();
+follow();

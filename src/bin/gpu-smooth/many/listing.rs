@@ -1,0 +1,218 @@
+//! Which meshes are to be smoothed, and into which files.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use gpu_smooth::output;
+
+use crate::streams::is_standard;
+
+/// A mesh that is to be smoothed.
+pub(crate) struct Listed {
+    /// As it was given first, if it was given several times.
+    pub(crate) input: PathBuf,
+    pub(crate) out: PathBuf,
+    /// The files that are the mesh, as far as they are there.
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The files that it will be written to.
+    pub(crate) outputs: Vec<PathBuf>,
+}
+
+impl Listed {
+    fn new(input: &Path, directory: &Path) -> Result<Self, String> {
+        let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
+        let name = name.ok_or_else(|| {
+            format!("{}: not the name of a file, which --out-dir needs", input.display())
+        })?;
+        let out = directory.join(name);
+        let inputs = parts(input);
+        let outputs = match stem(input) {
+            Some(_) => inputs.iter().filter_map(|part| Some(directory.join(part.file_name()?))),
+            None => {
+                return Ok(Self { inputs, outputs: vec![out.clone()], input: input.into(), out });
+            }
+        };
+        let outputs = outputs.collect();
+        Ok(Self { input: input.to_owned(), out, inputs, outputs })
+    }
+
+    /// The size of its files, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let sizes = self.inputs.iter().filter_map(|part| Some(fs::metadata(part).ok()?.len()));
+        sizes.sum()
+    }
+
+    /// Whether all files that it is written to are there, and newer than all that it is read from. Files take their places
+    /// whole, so that one that is there is complete.
+    pub(crate) fn is_done(&self) -> bool {
+        let time = |path: &PathBuf| fs::metadata(path).and_then(|found| found.modified()).ok();
+        let times = |paths: &[PathBuf]| paths.iter().map(time).collect::<Option<Vec<SystemTime>>>();
+        match (times(&self.inputs), times(&self.outputs)) {
+            (Some(read), Some(written)) => match (read.iter().max(), written.iter().min()) {
+                (Some(newest), Some(oldest)) => newest < oldest,
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+}
+
+/// What the files of a Triangle mesh have in common, if the path names one of them.
+fn stem(path: &Path) -> Option<PathBuf> {
+    let ending = path.extension()?.to_str()?.to_lowercase();
+    matches!(&*ending, "node" | "ele" | "poly").then(|| path.with_extension(""))
+}
+
+/// The files of the mesh that a path names, as far as they are there: two or three of Triangle, else one.
+fn parts(path: &Path) -> Vec<PathBuf> {
+    let with = |ending: &str| {
+        let mut name = path.with_extension("").into_os_string();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let (Some(_), Some(own)) = (stem(path), path.extension()) else { return vec![path.to_owned()] };
+    let is_upper = own.to_string_lossy().starts_with(char::is_uppercase);
+    let endings = match is_upper {
+        true => [".NODE", ".ELE", ".POLY"],
+        false => [".node", ".ele", ".poly"],
+    };
+    endings.into_iter().map(with).filter(|part| part.is_file()).collect()
+}
+
+/// The meshes that some paths name, each once, with the files in `directory` that they are to be written to.
+///
+/// An error if two would be written to the same file, or one in its own place.
+pub(crate) fn list<'p>(
+    paths: impl Iterator<Item = &'p PathBuf>,
+    directory: &Path,
+) -> Result<Vec<Listed>, String> {
+    let mut listed: Vec<Listed> = Vec::new();
+    let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
+    for path in paths {
+        // A mesh of Triangle may be named without an ending.
+        let mesh = match is_stem(path) {
+            true => Listed::new(&appended(path, ".node"), directory)?,
+            false => Listed::new(path, directory)?,
+        };
+        if let Some(own) = mesh.outputs.iter().find(|out| is_any(out, &mesh.inputs)) {
+            return Err(format!(
+                "{}: the mesh itself would be replaced. Give another directory to --out-dir",
+                own.display()
+            ));
+        }
+        let key = stem(&mesh.out).unwrap_or_else(|| mesh.out.clone());
+        match by_out.get(&key).map(|&i| &mut listed[i]) {
+            Some(known) if is_same(known, &mesh) => {
+                // Its outline is not the mesh.
+                if known.input.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly")) {
+                    *known = mesh;
+                }
+            }
+            Some(known) => {
+                return Err(format!(
+                    "{} and {} would both be written to {}. Rename one, or smooth them into different directories",
+                    known.input.display(),
+                    mesh.input.display(),
+                    mesh.out.display()
+                ));
+            }
+            None => {
+                by_out.insert(key, listed.len());
+                listed.push(mesh);
+            }
+        }
+    }
+    Ok(listed)
+}
+
+/// Whether a path is what the names of a Triangle mesh's files have in common.
+fn is_stem(path: &Path) -> bool {
+    !path.exists() && appended(path, ".node").is_file()
+}
+
+fn appended(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+fn is_any(path: &Path, others: &[PathBuf]) -> bool {
+    others.iter().any(|other| output::same_file(other, path))
+}
+
+/// Whether two meshes are of the same files.
+fn is_same(a: &Listed, b: &Listed) -> bool {
+    a.input == b.input || a.inputs.iter().any(|part| is_any(part, &b.inputs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(names: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for name in names {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "x").unwrap();
+        }
+        folder
+    }
+
+    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, String> {
+        let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
+        list(paths.iter(), &folder.path().join("out"))
+    }
+
+    #[test]
+    fn a_mesh_of_several_files_is_listed_once() {
+        let names = ["a.1.ele", "a.1.node", "a.1.poly", "b.msh", "c.node", "c.ele"];
+        let folder = folder(&names);
+        let listed = of(&folder, &names).unwrap();
+        let inputs: Vec<_> =
+            listed.iter().map(|mesh| mesh.input.file_name().unwrap().to_owned()).collect();
+        assert_eq!(inputs, ["a.1.ele", "b.msh", "c.node"]);
+        let outputs = listed.iter().map(|mesh| mesh.outputs.len()).collect::<Vec<_>>();
+        assert_eq!(outputs, [3, 1, 2]);
+        assert_eq!(
+            of(&folder, &["a.1.poly", "a.1.ele"]).unwrap()[0].input.extension().unwrap(),
+            "ele"
+        );
+        // By the name without an ending, and twice.
+        assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn two_meshes_of_one_name_are_refused() {
+        let folder = folder(&["a/m.msh", "b/m.msh", "a/t.node", "a/t.ele", "b/t.ele", "b/t.node"]);
+        for names in [["a/m.msh", "b/m.msh"], ["a/t.node", "b/t.ele"]] {
+            let error = of(&folder, &names).err().unwrap();
+            assert!(error.contains("would both be written to"), "{error}");
+        }
+        let own = list([folder.path().join("a/m.msh")].iter(), &folder.path().join("b/../a"));
+        assert!(own.err().unwrap().contains("the mesh itself would be replaced"));
+    }
+
+    #[test]
+    fn a_mesh_is_done_if_all_its_files_are_newer() {
+        let folder = folder(&["t.node", "t.ele", "out/t.ele"]);
+        let at = |name: &str, seconds| {
+            let file = fs::File::options().append(true).open(folder.path().join(name)).unwrap();
+            let time = SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(seconds);
+            file.set_modified(time).unwrap();
+        };
+        let is_done = || of(&folder, &["t.node"]).unwrap()[0].is_done();
+        at("t.node", 100);
+        at("t.ele", 200);
+        at("out/t.ele", 300);
+        assert!(!is_done(), "a part is missing");
+        fs::write(folder.path().join("out/t.node"), "x").unwrap();
+        assert!(is_done());
+        at("out/t.node", 200);
+        assert!(!is_done(), "as old as the mesh");
+        at("out/t.node", 201);
+        assert!(is_done());
+    }
+}

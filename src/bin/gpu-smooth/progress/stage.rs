@@ -1,0 +1,37 @@
+//! The stages of a run.
+
+/// What a run does at a time, as a user is told of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stage {
+    /// A file of so many bytes is read; 0 if that is not known.
+    Reading { bytes: u64 },
+    /// A mesh of so many vertices is made ready.
+    Preparing { vertices: usize },
+    /// Sweeps are done.
+    Smoothing,
+    /// A file of about so many bytes is written.
+    Writing { bytes: u64 },
+}
+
+impl Stage {
+    /// In one word.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Reading { .. } => "reading",
+            Self::Preparing { .. } => "preparing",
+            Self::Smoothing => "smoothing",
+            Self::Writing { .. } => "writing",
+        }
+    }
+
+    /// With what it is done to.
+    pub(crate) fn text(self) -> String {
+        match self {
+            Self::Reading { bytes } | Self::Writing { bytes } if bytes >= 1 << 20 => {
+                format!("{} {} MB", self.name(), bytes >> 20)
+            }
+            Self::Preparing { vertices } => format!("preparing {vertices} vertices"),
+            _ => self.name().to_owned(),
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The options of `gpu-smooth IN OUT`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
+
+use crate::moving::MoveArgs;
+use crate::numbers::number;
+use crate::picture::PictureArgs;
+
+#[derive(Args)]
+pub(crate) struct SmoothArgs {
+    /// The mesh to read; its format is told by its content. It may be compressed by gzip, or - for the standard input
+    #[arg(required = true, value_name = "IN")]
+    pub(crate) input: Option<PathBuf>,
+    /// Where to write the smoothed mesh, in the format of IN; may be IN itself, or - for the standard output.
+    /// A name that ends in .gz gets a compressed file
+    #[arg(required_unless_present = "out_dir", value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    /// Further meshes, with --out-dir
+    #[arg(hide = true, value_name = "MESH")]
+    pub(crate) more: Vec<PathBuf>,
+
+    /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
+    /// convergence. Metrics: edge, area, rms, imr, ar, shape-size (see `gpu-smooth metrics`)
+    #[arg(
+        long,
+        default_value = "imr",
+        value_name = "A[+B...]",
+        help_heading = "Metric and engine"
+    )]
+    pub(crate) scheme: Scheme,
+
+    /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
+    /// done first, but no software adapter
+    #[arg(long, value_enum, default_value = "auto", help_heading = "Metric and engine")]
+    pub(crate) engine: EngineChoice,
+    /// Take the first GPU adapter with NAME in its name (see `gpu-smooth adapters`)
+    #[arg(long, value_name = "NAME", help_heading = "Metric and engine")]
+    pub(crate) adapter: Option<String>,
+
+    /// Exit with 1 if the run neither converges nor reaches its goal. The mesh is written all the same
+    #[arg(long, help_heading = "Stopping")]
+    pub(crate) strict: bool,
+    /// Stop after N sweeps at the latest
+    #[arg(
+        long,
+        default_value_t = 1000,
+        value_name = "N",
+        help_heading = "Stopping",
+        allow_negative_numbers = true
+    )]
+    pub(crate) max_sweeps: u32,
+    /// Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep
+    #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = tolerance, allow_negative_numbers = true, conflicts_with_all = ["fraction", "desired"])]
+    pub(crate) tolerance: f64,
+    /// Stop at this share of the way from the first f to the desired one, instead of at the
+    /// tolerance; 0.95 is the paper's [default with --desired: 0.95]
+    #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction, allow_negative_numbers = true)]
+    pub(crate) fraction: Option<f64>,
+    /// The desired f by the first metric; auto finds the optimum before the run,
+    /// in up to 5000 sweeps a try [default with
+    /// --fraction: auto]
+    #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
+    pub(crate) desired: Option<Desired>,
+
+    /// Sweeps corrected from coarser levels of the mesh (imr, ar, rms and shape-size), over-relaxed sweeps, or the
+    /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
+    #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
+    pub(crate) method: MethodChoice,
+    /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
+    /// metrics alternate]
+    #[arg(long, value_name = "W", help_heading = "Method", value_parser = omega, allow_negative_numbers = true)]
+    pub(crate) omega: Option<f64>,
+    /// Newton steps per visit of a vertex
+    #[arg(long, default_value_t = 1, value_name = "N", help_heading = "Method", value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
+    pub(crate) inner: u32,
+    /// How metrics are differentiated; finite differences only serve to test the paper's cost model
+    #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
+    pub(crate) derivatives: DerivativesChoice,
+    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 to 512,
+    /// which ends lower after more sweeps
+    #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
+    pub(crate) edge_norm: EdgeNorm,
+
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
+
+    /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
+    #[arg(long, help_heading = "Untangling")]
+    pub(crate) untangle: bool,
+    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1
+    #[arg(long, requires = "untangle", help_heading = "Untangling")]
+    pub(crate) keep_going: bool,
+
+    /// Write a report with the history of every sweep, as JSON; if inverted or flat triangles keep the mesh from
+    /// being smoothed, a list of them
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) report: Option<PathBuf>,
+    /// What f the report's history holds: the first metric's, or every metric's
+    #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
+    pub(crate) history: History,
+    /// Write a page for a browser, in one file that needs nothing else: the mesh before and after to be enlarged, histograms,
+    /// f by sweep and time, statistics, the worst triangles
+    #[arg(long, value_name = "FILE", help_heading = "Output", conflicts_with = "out_dir")]
+    pub(crate) html: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+
+    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it is not there. Small ones
+    /// are smoothed side by side; one that fails does not stop the rest
+    #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
+    pub(crate) out_dir: Option<PathBuf>,
+    /// Skip meshes whose smoothed files are all in DIR and newer than the mesh
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "keep_going")]
+    pub(crate) resume: bool,
+    /// Print the table of the meshes as CSV
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "json")]
+    pub(crate) csv: bool,
+    /// Print the table of the meshes as JSON
+    #[arg(long, requires = "out_dir", help_heading = "Many meshes")]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EngineChoice {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodChoice {
+    Auto,
+    Multilevel,
+    Relaxed,
+    Paper,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DerivativesChoice {
+    Analytic,
+    FiniteDifference,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EdgeNorm {
+    Fixed,
+    Continued,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum History {
+    Base,
+    All,
+}
+
+impl SmoothArgs {
+    /// The meshes for --out-dir.
+    pub(crate) fn meshes(&self) -> impl Iterator<Item = &PathBuf> {
+        self.input.iter().chain(&self.output).chain(&self.more)
+    }
+
+    /// The share of f within which the run ends, if it has no other goal.
+    pub(crate) fn estimated_end(&self) -> Option<f64> {
+        let has_goal = self.fraction.is_some() || self.desired.is_some();
+        (!has_goal).then_some(self.tolerance)
+    }
+
+    /// An option given along with another that settles the same.
+    pub(crate) fn contradiction(&self) -> Option<(&str, &str)> {
+        if self.method == MethodChoice::Paper && self.omega.is_some() {
+            Some(("--method paper", "--omega"))
+        } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
+            Some(("--method multilevel", "--omega"))
+        } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
+            Some(("--engine cpu", "--adapter"))
+        } else {
+            None
+        }
+    }
+
+    /// The options of a run on a mesh that is stored with so many digits.
+    pub(crate) fn options(&self, stored: Precision) -> Options {
+        let has_goal = self.fraction.is_some() || self.desired.is_some();
+        Options {
+            scheme: self.scheme.clone(),
+            max_sweeps: self.max_sweeps,
+            tolerance: self.tolerance,
+            stored,
+            goal: has_goal.then(|| Goal {
+                fraction: self.fraction.unwrap_or(0.95),
+                desired: self.desired.unwrap_or(Desired::Auto),
+            }),
+            method: match self.method {
+                MethodChoice::Auto => Method::Auto,
+                MethodChoice::Multilevel => Method::Multilevel,
+                MethodChoice::Relaxed | MethodChoice::Paper => Method::Sweeps,
+            },
+            omega: match self.method {
+                MethodChoice::Paper => Some(1.0),
+                _ => self.omega,
+            },
+            inner: self.inner,
+            derivatives: match self.derivatives {
+                DerivativesChoice::Analytic => Derivatives::Analytic,
+                DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
+            },
+            sharpness: match self.edge_norm {
+                EdgeNorm::Fixed => Sharpness::FIXED,
+                EdgeNorm::Continued => Sharpness::CONTINUED,
+            },
+            track_all: self.history == History::All,
+            ..Options::default()
+        }
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, |t| t >= 0.0 && t.is_finite(), "0 or above")
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+}
+
+fn omega(text: &str) -> Result<f64, String> {
+    number(text, |w| w > 0.0 && w < 2.0, "above 0 and below 2")
+}
+
+fn desired(text: &str) -> Result<Desired, String> {
+    match text {
+        "auto" => Ok(Desired::Auto),
+        _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
+    }
+}

@@ -1,0 +1,56 @@
+//! What a run writes, checked before the work is done.
+
+use std::path::{Path, PathBuf};
+
+use gpu_smooth::{MeshFile, output};
+
+use crate::html;
+use crate::picture;
+use crate::run_args::SmoothArgs;
+use crate::streams::is_standard;
+
+/// The files that the smoothed mesh is written to; none if it goes to the standard output. An error if they cannot be
+/// written.
+pub(crate) fn of_mesh(file: &MeshFile, out: &Path) -> Result<Vec<PathBuf>, String> {
+    if !is_standard(out) {
+        file.check_destination(out).map_err(|error| error.to_string())?;
+        return file.destinations(out).map_err(|error| error.to_string());
+    }
+    match file.paths().count() {
+        1 => Ok(Vec::new()),
+        _ => Err("a Triangle mesh is of several files: name OUT".into()),
+    }
+}
+
+/// Refuses destinations of a run that cannot be written, or would replace each other or the mesh.
+pub(crate) fn check(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
+    let written = of_mesh(file, out)?;
+    let of_meshes = || file.paths().chain(written.iter().map(PathBuf::as_path));
+    let report = args.report.as_deref();
+    picture::check(&args.picture, of_meshes().chain(report))?;
+    let others = of_meshes().chain(report).chain(args.picture.picture.as_deref());
+    html::check(args.html.as_deref(), others)?;
+    check_report(args, of_meshes())
+}
+
+/// Refuses a report that cannot be written, or is named as a mesh or as one of these files.
+pub(crate) fn check_report<'p>(
+    args: &SmoothArgs,
+    mut meshes: impl Iterator<Item = &'p Path>,
+) -> Result<(), String> {
+    let Some(report) = &args.report else { return Ok(()) };
+    let is_mesh = ["node", "ele", "poly", "msh"]
+        .iter()
+        .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
+    if is_mesh || meshes.any(|path| output::same_file(path, report)) {
+        let name = report.display();
+        return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
+    }
+    can_write_report(args)
+}
+
+/// Checks whether the report can be written, which may have changed during a long run.
+pub(crate) fn can_write_report(args: &SmoothArgs) -> Result<(), String> {
+    let Some(report) = &args.report else { return Ok(()) };
+    output::check(report).map_err(|error| format!("the report cannot be written: {error}"))
+}

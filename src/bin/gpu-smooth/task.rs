@@ -1,0 +1,284 @@
+//! A mesh from file to file, for a run by itself and for one of many.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use gpu_smooth::{
+    Backend, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
+    SmoothError, Smoother, Stop,
+};
+
+use crate::cli::OutputArgs;
+use crate::engine::{self, Taken};
+use crate::explain::{self, BadTriangleReport};
+use crate::interrupt;
+use crate::moving::Choice;
+use crate::progress::Stage;
+use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds, UntangleReport};
+use crate::run_args::{History, SmoothArgs};
+use crate::streams;
+use crate::tell;
+use crate::untangle;
+
+/// A mesh that is to be smoothed.
+pub(crate) struct Task<'a> {
+    pub(crate) args: &'a SmoothArgs,
+    pub(crate) show: &'a OutputArgs,
+    pub(crate) input: &'a Path,
+    pub(crate) out: &'a Path,
+}
+
+/// Who follows a mesh through its run.
+pub(crate) trait Follow {
+    /// A stage of the run begins.
+    fn stage(&mut self, stage: Stage);
+    /// The mesh has been read. An error ends the run before any work is done.
+    fn has_read(&mut self, file: &MeshFile) -> Result<(), String>;
+    /// Something about the mesh is worth telling.
+    fn remark(&mut self, text: &str);
+    /// Some sweeps were done.
+    fn sweep(&mut self, progress: &Progress);
+    /// The sweeps are over. An error leaves the mesh as it was.
+    fn has_smoothed(&mut self) -> Result<(), String>;
+}
+
+/// A mesh that was smoothed and written.
+pub(crate) struct Done<'a> {
+    pub(crate) file: &'a MeshFile,
+    pub(crate) smoother: &'a Smoother<'a>,
+    pub(crate) outcome: &'a Outcome,
+    /// Sweeps, and after how many seconds of the run they were done, where that is known.
+    pub(crate) times: Vec<(u32, f64)>,
+    pub(crate) report: Report,
+}
+
+/// Why a mesh was not smoothed.
+pub(crate) struct Failure {
+    pub(crate) message: String,
+    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for.
+    pub(crate) triangles: Vec<BadTriangleReport>,
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self { message, triangles: Vec::new() }
+    }
+}
+
+fn told(error: impl std::error::Error) -> String {
+    error.to_string()
+}
+
+/// Reads a mesh, smooths it on the engine that `engine` gives for its size, and writes it. `finish` is called after that.
+pub(crate) fn carry_out<T>(
+    task: &Task<'_>,
+    engine: impl FnOnce(MeshSize) -> Result<Taken, String> + Send,
+    follow: &mut dyn Follow,
+    finish: impl FnOnce(Done<'_>) -> Result<T, String>,
+) -> Result<T, Failure> {
+    let Task { args, show, input, out } = *task;
+    let start = Instant::now();
+    let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
+    follow.stage(Stage::Reading { bytes });
+    let mut file = streams::read(input)?;
+    let choice = args.moving.apply(&mut file)?;
+    let file = file;
+    let read_done = Instant::now();
+    follow.has_read(&file)?;
+    for remark in tell::remarks(&file).iter().chain(&choice.notes) {
+        follow.remark(remark);
+    }
+    let mesh = file.mesh();
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    follow.stage(Stage::Preparing { vertices: size.vertices });
+    // The driver may start while the mesh is prepared.
+    let (prepared, taken) = std::thread::scope(|scope| {
+        let opening = scope.spawn(move || engine(size));
+        let prepared = match Smoother::new(mesh) {
+            Err(error) if args.untangle && untangle::can_mend(&error) => {
+                untangle::mend(args, show, &file, out).map(Prepared::Mended).map_err(Failure::from)
+            }
+            Err(error) => Err(refusal(args, &choice, &file, &error)),
+            Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
+        };
+        let taken = opening.join().map_err(|_| "the graphics driver crashed on start".to_owned());
+        (prepared, taken)
+    });
+    let mended;
+    let (smoother, mending) = match prepared? {
+        Prepared::Ready(smoother) => (*smoother, None),
+        Prepared::Mended(it) => {
+            mended = it;
+            let smoother = Smoother::new(&mended.mesh);
+            let smoother = smoother.map_err(|error| explain::mesh_error(&file, &error))?;
+            (smoother, Some(&mended))
+        }
+    };
+    let taken = taken??;
+    let before = smoother.quality(&mesh.points).map_err(told)?;
+    let prepared = Instant::now();
+
+    let options = options(args, &choice, file.precision());
+    follow.stage(Stage::Smoothing);
+    let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
+    follow.has_smoothed()?;
+    let after = smoother.quality(&outcome.points).map_err(told)?;
+    let smoothed = Instant::now();
+
+    follow.stage(Stage::Writing { bytes });
+    streams::write(&file, out, &outcome.points)?;
+    let written = Instant::now();
+
+    let seconds = Seconds {
+        read: (read_done - start).as_secs_f64(),
+        prepare: (prepared - read_done).as_secs_f64(),
+        smooth: (smoothed - prepared).as_secs_f64(),
+        write: (written - smoothed).as_secs_f64(),
+        total: (written - start).as_secs_f64(),
+    };
+    let report = Report {
+        engine: engine_report(&taken),
+        mesh: mesh_report(&file, &smoother),
+        untangled: mending.map(|mended| UntangleReport {
+            bad_before: mended.bad_before,
+            sweeps: mended.sweeps,
+            moved: mended.moved,
+        }),
+        scheme: args.scheme.to_string(),
+        sweeps: outcome.sweeps,
+        corrections: outcome.corrections,
+        opening_sweeps: outcome.opening_sweeps,
+        levels_left_out: outcome.levels_left_out,
+        best_sweep: outcome.best_sweep,
+        remaining: outcome.remaining,
+        stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
+        nothing_to_do: choice.nothing_to_do,
+        choices: choice.notes,
+        held_back: outcome.held_back,
+        lost: outcome.lost,
+        goal: goal_report(&outcome),
+        returned: outcome.returned,
+        before: (&before).into(),
+        after: (&after).into(),
+        history: report::history(&outcome, &args.scheme, args.history == History::All),
+        seconds,
+    };
+    let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };
+    Ok(finish(done)?)
+}
+
+/// A mesh that can be smoothed, or that was made so.
+enum Prepared<'a> {
+    Ready(Box<Smoother<'a>>),
+    Mended(untangle::Mended),
+}
+
+/// The options of the run; of one without sweeps if there is nothing to do.
+fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
+    let options = args.options(stored);
+    match choice.nothing_to_do {
+        Some(_) => Options { max_sweeps: 0, goal: None, ..options },
+        None => options,
+    }
+}
+
+/// A run, the engine that did it, and after how many seconds how many sweeps were done.
+struct Ran {
+    outcome: Outcome,
+    taken: Taken,
+    times: Vec<(u32, f64)>,
+}
+
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
+fn smooth(
+    args: &SmoothArgs,
+    options: &Options,
+    smoother: &Smoother<'_>,
+    file: &MeshFile,
+    mut taken: Taken,
+    follow: &mut dyn Follow,
+) -> Result<Ran, String> {
+    let start = Instant::now();
+    let mut times = Vec::new();
+    let mut observe = |progress: &Progress| {
+        if progress.phase == Phase::Smoothing {
+            times.push((progress.sweep, start.elapsed().as_secs_f64()));
+        }
+        follow.sweep(progress);
+        match interrupt::is_requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let turn = taken.turn();
+    let mut outcome = smoother.run(options, &taken.backend, &mut observe);
+    drop(turn);
+    if let Err(error) = &outcome
+        && engine::is_open(args)
+        && engine::is_too_large(error)
+    {
+        taken = Taken::new(Backend::Cpu, Some(error.to_string()));
+        outcome = smoother.run(options, &taken.backend, &mut observe);
+    }
+    if let Ok(outcome) = &outcome {
+        times.retain(|time| time.0 < outcome.sweeps);
+        times.push((outcome.sweeps, start.elapsed().as_secs_f64()));
+    }
+    let ran = outcome.map(|outcome| Ran { outcome, taken, times });
+    ran.map_err(|error: SmoothError| match &error {
+        SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        error if engine::is_too_large(error) => {
+            format!("{error}. Smooth on the CPU: --engine cpu")
+        }
+        error => error.to_string(),
+    })
+}
+
+/// Why a mesh is not smoothed.
+fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshError) -> Failure {
+    if let Some(message) = choice.nothing_free(file, error) {
+        return message.into();
+    }
+    let message = explain::mesh_error(file, error);
+    let triangles = match error {
+        MeshError::Infeasible { triangles } if args.report.is_some() => {
+            explain::bad_triangles(file, triangles)
+        }
+        _ => Vec::new(),
+    };
+    Failure { message, triangles }
+}
+
+fn engine_report(taken: &Taken) -> EngineReport {
+    let adapter = match &*taken.backend {
+        Backend::Cpu => None,
+        Backend::Gpu(gpu) => Some(gpu.adapter()),
+    };
+    EngineReport {
+        kind: if adapter.is_some() { "gpu" } else { "cpu" },
+        adapter: adapter.map(|adapter| adapter.name.clone()),
+        driver: adapter.map(|adapter| adapter.driver.clone()),
+        reason: taken.reason.clone(),
+    }
+}
+
+fn mesh_report(file: &MeshFile, smoother: &Smoother<'_>) -> MeshReport {
+    MeshReport {
+        format: file.format().to_string(),
+        vertices: file.mesh().points.len(),
+        triangles: file.mesh().triangles.len(),
+        free: smoother.topology().free_count(),
+        colors: smoother.colors(),
+    }
+}
+
+fn goal_report(outcome: &Outcome) -> Option<GoalReport> {
+    outcome.goal.as_ref().map(|goal| GoalReport {
+        fraction: goal.fraction,
+        desired: goal.desired,
+        origin: goal.origin.clone(),
+        reached: outcome.stop == Stop::Reached,
+        best_fraction: goal.best_fraction,
+    })
+}

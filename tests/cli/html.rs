@@ -1,0 +1,179 @@
+//! The page of a run: what it holds, and that it needs nothing else. How it looks is for eyes: see CONTRIBUTING.md.
+
+use super::{Folder, assert_holds, plate_path, small};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use gpu_smooth::{Measure, Measured, Mesh, Topology};
+use serde_json::Value;
+use std::fs;
+
+/// The page and the data that its script draws.
+fn page(folder: &Folder, args: &str) -> (String, Value) {
+    let run = folder.line(&format!("{args} --html page.html --engine cpu"));
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let page = folder.text("page.html");
+    let data = page.split("<script type=\"application/json\" id=\"data\">").nth(1).unwrap();
+    let data = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    (page, data)
+}
+
+fn bytes(value: &Value) -> Vec<u8> {
+    BASE64_STANDARD.decode(value.as_str().unwrap()).unwrap()
+}
+
+fn indices(value: &Value) -> Vec<usize> {
+    let word = |four: &[u8]| u32::from_le_bytes(four.try_into().unwrap()) as usize;
+    bytes(value).chunks(4).map(word).collect()
+}
+
+fn points(value: &Value) -> Vec<[f64; 2]> {
+    let number = |eight: &[u8]| f64::from_le_bytes(eight.try_into().unwrap());
+    bytes(value).chunks(16).map(|two| [number(&two[..8]), number(&two[8..])]).collect()
+}
+
+/// The corners of all triangles that are drawn.
+fn corners(data: &Value, state: usize) -> Vec<[[f64; 2]; 3]> {
+    let points = points(&data["states"][state]["points"]);
+    let triangles = indices(&data["triangles"]);
+    triangles.chunks(3).map(|t| [points[t[0]], points[t[1]], points[t[2]]]).collect()
+}
+
+/// The corners of all triangles of a mesh, turned counter-clockwise.
+fn of_mesh(mesh: &Mesh, topology: &Topology<'_>) -> Vec<[[f64; 2]; 3]> {
+    topology.triangles().iter().map(|t| t.map(|v| mesh.points[v as usize])).collect()
+}
+
+#[test]
+fn the_mesh_of_a_page_is_that_of_the_files() {
+    let folder = small();
+    let (_, data) = page(&folder, "in out");
+    let before = folder.mesh("in");
+    let topology = Topology::new(&before).unwrap();
+    for (state, name) in ["in", "out"].into_iter().enumerate() {
+        let mesh = folder.mesh(name);
+        assert_eq!(corners(&data, state), of_mesh(&mesh, &topology), "{name}");
+        let measured = Measured::new(&mesh.points, &topology).unwrap();
+        for (k, measure) in data["measures"].as_array().unwrap().iter().enumerate() {
+            let codes = bytes(&data["states"][state]["codes"][k]);
+            let codes: Vec<u16> =
+                codes.chunks(2).map(|two| u16::from_le_bytes(two.try_into().unwrap())).collect();
+            assert_eq!(codes.len(), 160);
+            let name: Measure = measure["name"].as_str().unwrap().parse().unwrap();
+            let (ideal, bad) = (measure["ideal"].as_f64().unwrap(), measure["bad"].as_f64());
+            for (code, value) in codes.iter().zip(measured.values(name)) {
+                let goodness = f64::from(code - 1) / 65533.0;
+                // As the script turns codes into values.
+                let told = match bad {
+                    Some(bad) => bad + goodness * (ideal - bad),
+                    None => ideal + 10f64.powf(1.0 - goodness) - 1.0,
+                };
+                let most = if bad.is_some() { f64::INFINITY } else { ideal + 9.0 };
+                assert!(
+                    (told - value.min(most)).abs() < 1e-3 * (ideal + 1.0),
+                    "{name}: {told}, {value}"
+                );
+            }
+        }
+    }
+    // Each edge of the outline once.
+    assert_eq!(indices(&data["boundary"]).len(), 2 * 36);
+    assert!(data["states"][0]["picture"].is_null());
+}
+
+#[test]
+fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
+    let folder = small();
+    fs::rename(folder.path("in.node"), folder.path("<i>&.node")).unwrap();
+    fs::rename(folder.path("in.ele"), folder.path("<i>&.ele")).unwrap();
+    let (page, data) = page(&folder, "<i>&.node out --scheme edge+imr --fix-box 0,0,3,3");
+    for part in ["http:", "https:", "src=", "@import", "url(", "fetch(", "<i>"] {
+        assert!(!page.contains(part), "{part}");
+    }
+    assert_holds(
+        &page,
+        &["<!doctype html>", "<h1>&lt;i&gt;&amp;.node</h1>", "prefers-color-scheme: dark"],
+    );
+    assert_holds(&page, &["width=device-width", "--fix-box 0,0,3,3", "gpu-smooth 0."]);
+    let command = page.split("<pre>").nth(1).unwrap().split("</pre>").next().unwrap();
+    assert_holds(command, &["gpu-smooth &#39;&lt;i&gt;&amp;.node&#39; out --scheme edge+imr "]);
+    assert_holds(
+        &page,
+        &["0 of 160 triangles are inverted or flat", "vertices that must stay have"],
+    );
+    for title in ["Mesh", "Worst triangles", "Distribution", "Convergence", "Statistics", "The run"]
+    {
+        assert_eq!(page.matches(&format!("<h2>{title}</h2>")).count(), 1, "{title}");
+    }
+    for measure in Measure::ALL {
+        assert_holds(&page, &[&format!(">{measure}")]);
+    }
+    // Each link has the triangle that it shows.
+    let links = page.matches("<a href=\"#spot-").count();
+    let spots = data["spots"].as_array().unwrap();
+    assert!(links == spots.len() && links >= 16, "{links}");
+    for (i, spot) in spots.iter().enumerate() {
+        let state = spot["state"].as_u64().unwrap() as usize;
+        let corners = corners(&data, state)[spot["triangle"].as_u64().unwrap() as usize];
+        let middle =
+            [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum::<f64>());
+        for axis in 0..2 {
+            assert!((spot["at"][axis].as_f64().unwrap() - middle[axis]).abs() < 1e-12);
+        }
+        assert_holds(&page, &[&format!("href=\"#spot-{i}\"")]);
+    }
+}
+
+#[test]
+fn histograms_and_curves_are_of_the_run() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    let (page, _) = page(&folder, &format!("{plate} out --report r.json --scheme edge+imr"));
+    // In each histogram, the bars of a state have all triangles.
+    let titles: Vec<&str> =
+        page.split("<title>").skip(1).map(|t| t.split('<').next().unwrap()).collect();
+    for state in ["before", "after"] {
+        let ending = format!(" triangles {state}");
+        let counts = titles.iter().filter_map(|title| title.strip_suffix(&ending));
+        let counts = counts.map(|text| text.rsplit(' ').next().unwrap().parse::<usize>().unwrap());
+        assert_eq!(counts.sum::<usize>(), 2 * 3735);
+    }
+    let sweeps = folder.json("r.json")["history"].as_array().unwrap().len();
+    let curve = page.split("aria-label=\"f against sweep\"").nth(1).unwrap();
+    let points = curve.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
+    assert_eq!(points.split_whitespace().count(), sweeps);
+    let heights: Vec<f64> =
+        points.split_whitespace().map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    // Down is up in SVG: f falls from the top of the plot to its bottom.
+    assert!(heights[0] < 30.0 && heights.iter().any(|y| *y > 210.0), "{heights:?}");
+}
+
+#[test]
+fn a_mesh_that_was_tangled_is_shown_as_it_was() {
+    let [node, ele] = super::output::INVERTED;
+    let folder = Folder::new(&[("in.node", node), ("in.ele", ele)]);
+    let (_, data) = page(&folder, "in out --untangle");
+    let codes = |state: usize| {
+        let codes = bytes(&data["states"][state]["codes"][0]);
+        codes.chunks(2).map(|two| u16::from_le_bytes(two.try_into().unwrap())).collect::<Vec<_>>()
+    };
+    assert_eq!(codes(0).iter().filter(|code| **code == 0).count(), 1);
+    assert_eq!(codes(1).iter().filter(|code| **code == 0).count(), 0);
+}
+
+#[test]
+fn pages_that_would_replace_something_are_refused() {
+    let folder = small();
+    fs::write(folder.path("other.html"), "old\n").unwrap();
+    for (options, part) in [
+        ("--html page.txt", "page.txt: a page is HTML. End its name in .html"),
+        ("--html page", "End its name in .html"),
+        ("--html none/page.html", "the page cannot be written"),
+        ("--html r.html --report r.html", "r.html: the page would replace this file"),
+    ] {
+        folder.line(&format!("in out {options}")).refused(&[part]);
+        assert!(!folder.path("out.node").exists());
+    }
+    let run = folder.line("in.node other --out-dir d --html page.html");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["--html"]);
+}

@@ -1,0 +1,91 @@
+//! What a run tells while it is under way, on a terminal and in a log.
+
+use super::{Folder, assert_holds, small};
+use serde_json::Value;
+
+/// The events on standard error, each a line of JSON.
+fn events(text: &str) -> Vec<Value> {
+    let event =
+        |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error} in {line}"));
+    text.lines().map(event).collect()
+}
+
+#[test]
+fn a_log_of_json_has_an_object_on_every_line() {
+    let folder = small();
+    let run = folder.line("in out --log json --engine cpu --report r.json --fix-box 0,0,1,1");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let events = events(&run.err);
+    let stages: Vec<_> = events.iter().filter_map(|event| event["stage"].as_str()).collect();
+    assert_eq!(stages, ["reading", "preparing", "smoothing", "writing"]);
+    let note = events.iter().find(|event| event["event"] == "note").unwrap();
+    assert_holds(note["message"].as_str().unwrap(), &["--fix-box 0,0,1,1: "]);
+    let seconds: Vec<f64> = events.iter().map(|event| event["seconds"].as_f64().unwrap()).collect();
+    assert!(seconds.is_sorted(), "{seconds:?}");
+    let (end, report) = (&events[events.len() - 1], folder.json("r.json"));
+    assert_eq!((&end["event"], &end["mesh"]), (&"end".into(), &"in".into()));
+    assert_eq!((&end["stop"], &end["sweeps"]), (&report["stop"], &report["sweeps"]));
+    assert_eq!(end["f_after"], report["after"]["f"]["imr"]);
+    // What is asked for is printed as ever.
+    assert_holds(&run.out, &["\nconverged after "]);
+
+    let run = folder.line("none out --log json");
+    let error = &self::events(&run.err)[1];
+    assert_eq!((run.code, &error["event"]), (Some(1), &"error".into()));
+    assert_holds(error["message"].as_str().unwrap(), &["none: "]);
+    let run = folder.line("in out --log json --engine cpu -q").clean();
+    assert_eq!(run.out, "");
+}
+
+#[test]
+fn many_meshes_are_logged_one_by_one() {
+    let folder = small();
+    let run = folder.line("in none.msh --out-dir d --engine cpu --log json");
+    let events = events(&run.err);
+    let meshes: Vec<_> = events.iter().filter(|event| event["event"] == "mesh").collect();
+    assert_eq!(meshes.len(), 2);
+    assert_eq!((&meshes[1]["done"], &meshes[1]["meshes"]), (&2.into(), &2.into()));
+    let failed = meshes.iter().find(|mesh| mesh["mesh"] == "none.msh").unwrap();
+    assert_holds(failed["problem"].as_str().unwrap(), &["none.msh: "]);
+    assert_eq!(events[2]["event"], "error");
+}
+
+/// Every stage tells that it is under way, also one that does not tell how far it is.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stage_that_lasts_is_told_on_a_terminal_and_in_a_log() {
+    use std::fs;
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+
+    let program = env!("CARGO_BIN_EXE_gpu-smooth");
+    for on_terminal in [true, false] {
+        let folder = Folder::new(&[]);
+        let pipe = folder.path("in.msh");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let mut command = Command::new("script");
+        command.args([
+            "-qec",
+            &format!("stty rows 24 cols 40 <&1; {program} in.msh out.msh"),
+            "/dev/null",
+        ]);
+        if !on_terminal {
+            command = Command::new(program);
+            command.args(["in.msh", "out.msh", "-v"]);
+        }
+        command.current_dir(&folder.0).stdin(Stdio::null()).env("TERM", "xterm");
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let writer = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+        std::thread::sleep(Duration::from_millis(1300));
+        drop(writer);
+        let output = child.wait_with_output().unwrap();
+        let told = if on_terminal { output.stdout } else { output.stderr };
+        let text = String::from_utf8(told).unwrap();
+        assert_eq!(text.contains("\u{1b}["), on_terminal, "{text}");
+        assert_holds(&text, &["reading  1 s"]);
+        assert_holds(&text, &["in.msh: the file is empty"]);
+        for line in text.split(['\r', '\n']).filter(|line| line.contains("reading")) {
+            assert!(!on_terminal || line.chars().count() < 50, "{line:?}");
+        }
+    }
+}
