@@ -6,6 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
@@ -24,6 +25,7 @@ impl Walk for Adcirc {
         let elements = cursor.integer("the number of elements")?;
         let count = cursor.vertex_count()?;
         sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+        let mut depths = Heights::new(sink);
         each_row(
             cursor,
             count,
@@ -33,15 +35,16 @@ impl Walk for Adcirc {
                 let tag = cursor.integer("the number of a node")?;
                 let owner = format_args!("node {tag}");
                 let point = cursor.point(owner)?;
-                cursor.coordinate('z', owner)?;
-                Ok((tag, point))
+                Ok((tag, point, cursor.height(owner)?))
             },
-            |cursor, sink, _, (tag, (x_at, at))| {
+            |cursor, sink, _, (tag, (x_at, at), depth)| {
                 sink.node(cursor, tag, 2, x_at, at);
+                depths.see(depth);
                 Ok(())
             },
         )?;
         sink.end_nodes(cursor)?;
+        depths.send("depth", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
         each_row(
             cursor,
@@ -59,7 +62,6 @@ impl Walk for Adcirc {
             },
             |cursor, sink, _, element| sink.element(cursor, &element),
         )?;
-        sink.note("depths stay with their nodes: where those move, they no longer fit");
         Ok(Layout::in_place(Format::Adcirc, Numbers::TEXT))
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
-use crate::file::gather::PointArray;
 use crate::file::group_table::GroupTable;
 use crate::file::parsed::Parsed;
+use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
@@ -23,7 +23,7 @@ pub(crate) struct Reader {
     pub(crate) triangle_places: Places,
     pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
     pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
-    pub(crate) point_array: fn(&Source, &str) -> Result<PointArray, ReadError>,
+    pub(crate) point_data: fn(&Source, Wanted<'_>) -> Result<PointData, ReadError>,
 }
 
 const fn reader<W: Walk>() -> Option<Reader> {
@@ -33,7 +33,7 @@ const fn reader<W: Walk>() -> Option<Reader> {
         triangle_places: assemble::triangle_places::<W>,
         groups: gather::groups::<W>,
         labels: gather::labels::<W>,
-        point_array: gather::point_array::<W>,
+        point_data: point_data::point_data::<W>,
     })
 }
 

@@ -6,6 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
@@ -17,7 +18,7 @@ pub(crate) struct Obj;
 
 /// A row that is used.
 enum Row<'a> {
-    Vertex(usize, [f64; 2]),
+    Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
     Face(Vec<i64>),
     /// The vertices of a line, or those that are points.
@@ -34,15 +35,18 @@ impl Walk for Obj {
         let rows = Cursor::new(source).rows();
         let cursor = &mut Cursor::new(source);
         let mut count = 0;
+        let mut heights = Heights::new(sink);
         each_row(cursor, rows, "rows", sink, vertex, |cursor, sink, _, row| {
-            if let Row::Vertex(x_at, at) = row {
+            if let Row::Vertex(x_at, at, z) = row {
                 count += 1;
                 sink.node(cursor, count, 2, x_at, at);
+                heights.see(z);
             }
             Ok(())
         })?;
         cursor.check_vertex_count(count)?;
         sink.end_nodes(cursor)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
         let cursor = &mut Cursor::new(source);
         let (mut before, mut faces) = (0, 0);
         let mut names = Numbering::default();
@@ -165,8 +169,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
         return Ok(Row::Other);
     }
     let (x_at, at) = cursor.point("a vertex")?;
-    cursor.coordinate('z', "a vertex")?;
-    Ok(Row::Vertex(x_at, at))
+    Ok(Row::Vertex(x_at, at, cursor.height("a vertex")?))
 }
 
 /// Reads a row if it is not a vertex's.
@@ -174,7 +177,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
 fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let mut row = cursor.clone();
     match cursor.token() {
-        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2])),
+        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2], (0, 0.0))),
         Some(kind @ (b"f" | b"l" | b"p")) => {
             let mut corners = Vec::with_capacity(3);
             while let Some(token) = cursor.token() {

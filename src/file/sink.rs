@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::file::format::Format;
 use crate::file::label::Label;
-use crate::file::numbers::{Encoded, Numbers};
+use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::parallel_rows::take_rows;
 use crate::file::source::Source;
 use crate::file::text::Cursor;
@@ -134,12 +134,51 @@ pub(crate) trait Sink {
     /// Takes the name of the groups of a tag, of one dimension or of all.
     fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
-    /// Takes the name of an array of point data, and how many numbers it has a point. Whether its numbers are wanted.
-    fn point_array(&mut self, _name: &[u8], _components: u64) -> bool {
+    /// Whether it asks for data of points that a reading may leave out: third coordinates that are all the same, and
+    /// lists after the elements.
+    fn asks_for_data(&self) -> bool {
+        false
+    }
+    /// Takes the name of an array of point data, how many numbers it has a point, and whether these are real numbers, not
+    /// whole ones. Third coordinates are such an array too. Whether its numbers are wanted.
+    fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
     /// Takes the numbers of the array that was announced last and is wanted.
-    fn point_numbers(&mut self, _numbers: Vec<f64>) {}
+    fn point_numbers(&mut self, _numbers: PointNumbers) {}
+}
+
+/// The numbers of an array of point data.
+pub(crate) struct PointNumbers {
+    /// Those of one point after those of another, in the order of the file.
+    pub(crate) numbers: Vec<f64>,
+    /// The tag of the node that each tuple belongs to, if they are not those of all nodes in their order.
+    pub(crate) nodes: Option<Vec<u64>>,
+    /// Where they stand; none if they cannot be replaced.
+    pub(crate) stored: Option<Stored>,
+}
+
+/// Where the numbers of an array stand.
+pub(crate) struct Stored {
+    pub(crate) places: Places,
+    pub(crate) form: Form,
+    pub(crate) home: Home,
+}
+
+impl Stored {
+    /// Numbers that stand in the file itself.
+    pub(crate) fn in_place(places: Places, form: Form) -> Option<Stored> {
+        Some(Stored { places, form, home: Home::File })
+    }
+}
+
+/// What bytes the places of numbers are those of.
+pub(crate) enum Home {
+    File,
+    /// Those of the encoded points.
+    Points,
+    /// Those of an array that is encoded itself.
+    Encoded(Box<dyn Encoded>),
 }
 
 /// How a file has its numbers, known once it was read.

@@ -5,6 +5,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
@@ -15,7 +16,7 @@ pub(crate) struct Sms;
 
 /// A row that is used.
 enum Row {
-    Node(u64, usize, [f64; 2]),
+    Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
     String(Vec<u64>, End),
     /// The name of a material.
@@ -37,13 +38,16 @@ impl Walk for Sms {
     fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
         let rows = Cursor::new(source).rows();
         let nodes_first = &mut Cursor::new(source);
+        let mut heights = Heights::new(sink);
         each_row(nodes_first, rows, "rows", sink, node, |cursor, sink, _, row| {
-            if let Row::Node(tag, x_at, at) = row {
+            if let Row::Node(tag, x_at, at, z) = row {
                 sink.node(cursor, tag, 2, x_at, at);
+                heights.see(z);
             }
             Ok(())
         })?;
         sink.end_nodes(nodes_first)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
@@ -78,7 +82,6 @@ impl Walk for Sms {
             strings.dedup();
             sink.note(&format!("{} nodes of node strings stay fixed", strings.len()));
         }
-        sink.note("elevations stay with their nodes: where those move, they no longer fit");
         Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
     }
 }
@@ -92,8 +95,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let tag = cursor.integer("the number of a node")?;
     let owner = format_args!("node {tag}");
     let (x_at, at) = cursor.point(owner)?;
-    cursor.coordinate('z', owner)?;
-    Ok(Row::Node(tag, x_at, at))
+    Ok(Row::Node(tag, x_at, at, cursor.height(owner)?))
 }
 
 /// Reads a row if it is that of an element or a node string.

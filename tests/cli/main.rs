@@ -11,6 +11,7 @@ mod compare;
 mod files;
 mod formats;
 mod groups;
+mod interpolate;
 mod interrupt;
 mod moving;
 mod options;

@@ -2,6 +2,7 @@
 
 mod binary;
 mod damage;
+mod data;
 mod errors;
 mod groups;
 mod long;

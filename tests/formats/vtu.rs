@@ -12,7 +12,7 @@ use std::fs;
 use std::io::Write;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+pub(crate) enum Place {
     Text,
     Base64,
     AppendedBase64,
@@ -20,18 +20,18 @@ enum Place {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Style {
-    place: Place,
+pub(crate) struct Style {
+    pub(crate) place: Place,
     /// None, or the attribute of the compressor.
-    compressor: Option<&'static str>,
+    pub(crate) compressor: Option<&'static str>,
     wide_header: bool,
     big: bool,
-    precision: Precision,
+    pub(crate) precision: Precision,
     /// The type of whole numbers.
     wide_integers: bool,
 }
 
-fn styles() -> Vec<Style> {
+pub(crate) fn styles() -> Vec<Style> {
     let mut styles = Vec::new();
     for place in [Place::Text, Place::Base64, Place::AppendedBase64, Place::AppendedRaw] {
         for compressor in [None, Some("vtkZLibDataCompressor"), Some("vtkLZ4DataCompressor")] {
@@ -91,6 +91,23 @@ impl Style {
         if raw { [header, content].concat() } else { [text(&header), text(&content)].concat() }
     }
 
+    /// Vectors of two numbers each, in the other precision than points have.
+    fn vectors(self, name: &str, count: usize) -> Array {
+        let single = self.precision == Precision::Double;
+        let precision = if single { Precision::Single } else { Precision::Double };
+        let kind = if single { "Float32" } else { "Float64" };
+        let mut bytes = Binary::empty(self.big);
+        let numbers: Vec<f64> = (0..2 * count).map(|i| i as f64 * -0.25).collect();
+        bytes.reals(precision, &numbers);
+        let text: Vec<_> = numbers.iter().map(f64::to_string).collect();
+        let attributes = format!("type=\"{kind}\" Name=\"flow\" NumberOfComponents=\"2\"");
+        Array {
+            attributes: attributes.replace("flow", name),
+            text: text.join(" "),
+            bytes: bytes.bytes,
+        }
+    }
+
     fn integers(self, name: &str, numbers: &[u32]) -> Array {
         let mut bytes = Binary::empty(self.big);
         let kind = if self.wide_integers { "Int64" } else { "UInt32" };
@@ -107,7 +124,7 @@ impl Style {
 }
 
 /// A file of the mesh, with an edge and a quadrilateral among its triangles, and regions.
-fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
+pub(crate) fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
     let mut points = Binary::empty(style.big);
     let mut words = Vec::new();
     for (i, &[x, y]) in mesh.points.iter().enumerate() {
@@ -136,7 +153,14 @@ fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
         .collect();
     let numbers: Vec<u32> = (0..mesh.points.len() as u32).collect();
     let sections = [
-        ("PointData", vec![style.integers("number", &numbers)]),
+        (
+            "PointData",
+            vec![
+                style.vectors("flow", mesh.points.len()),
+                style.integers("number", &numbers),
+                style.vectors("wind", mesh.points.len()),
+            ],
+        ),
         (
             "CellData",
             vec![style.integers("offset", &offsets), style.integers("Region", &column(|c| c.2))],
@@ -171,11 +195,8 @@ fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
         for Array { attributes, text, bytes } in arrays {
             match style.place {
                 Place::Text => {
-                    writeln!(
-                        out,
-                        "<DataArray {attributes} format=\"ascii\">\n{text}\n</DataArray>"
-                    )
-                    .unwrap();
+                    writeln!(out, "<DataArray {attributes} format=\"ascii\">\n{text}</DataArray>")
+                        .unwrap();
                 }
                 Place::Base64 => {
                     let text = String::from_utf8(style.encoded(&bytes)).unwrap();
@@ -210,7 +231,7 @@ fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
     out
 }
 
-fn folder(bytes: &[u8]) -> Folder {
+pub(crate) fn folder(bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
     fs::write(folder.path("in.vtu"), bytes).unwrap();
     folder

@@ -11,6 +11,7 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme,
 
 use crate::picture::PictureArgs;
 use crate::quality::QualityArgs;
+use crate::riding::RidingArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -84,6 +85,8 @@ pub(crate) struct CompareArgs {
     /// What may have moved: the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+    #[command(flatten)]
+    pub(crate) riding: RidingArgs,
 }
 
 #[derive(Args)]
@@ -135,6 +138,9 @@ pub(crate) struct SmoothArgs {
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+
+    #[command(flatten)]
+    pub(crate) riding: RidingArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long)]

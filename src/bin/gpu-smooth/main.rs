@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod quality;
 mod report;
+mod riding;
 mod smooth;
 mod streams;
 mod tell;

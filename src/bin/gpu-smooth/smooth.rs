@@ -37,11 +37,13 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let mut file = read(input)?;
         let choice = args.moving.apply(&mut file)?;
+        let mut riding = args.riding.choose(&file)?;
         let file = file;
         let read_done = Instant::now();
         check_destinations(args, &file, out)?;
-        for remark in tell::remarks(&file).iter().chain(&choice.notes) {
-            tell::note(show.quiet, remark);
+        let remarks = tell::remarks(&file).into_iter().chain(riding.left_behind(&file));
+        for remark in remarks.chain(choice.notes.iter().cloned()) {
+            tell::note(show.quiet, &remark);
         }
         let mesh = file.mesh();
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -51,6 +53,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let (smoother, mending) = match Smoother::new(mesh) {
             Ok(smoother) => (smoother, None),
             Err(error) if args.untangle && untangle::can_mend(&error) => {
+                riding.check_untangled()?;
                 mended = untangle::mend(args, show, &file, out)?;
                 let smoother = Smoother::new(&mended.mesh);
                 let smoother = smoother.map_err(|error| explain::mesh_error(&file, &error))?;
@@ -67,11 +70,15 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let (outcome, taken) = smooth(args, &options, show, &smoother, &file, taken)?;
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
+        let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
+        if let Some(note) = &interpolated {
+            tell::note(show.quiet, note);
+        }
         let smoothed = Instant::now();
 
         // The destination may have changed during a long run.
         check_report(args)?;
-        streams::write(&file, out, &outcome.points)?;
+        streams::write(&file, out, &outcome.points, riding.fields())?;
         let written = Instant::now();
 
         let seconds = Seconds {
@@ -99,6 +106,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
             nothing_to_do: choice.nothing_to_do,
             choices: choice.notes,
+            interpolated,
             held_back: outcome.held_back,
             lost: outcome.lost,
             goal: goal_report(&outcome),

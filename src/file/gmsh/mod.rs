@@ -7,6 +7,7 @@
 
 mod binary2;
 mod binary4;
+mod data;
 mod kind;
 mod model;
 mod text2;
@@ -17,7 +18,8 @@ mod words;
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::numbers::Numbers;
+use crate::file::heights::Heights;
+use crate::file::numbers::{Form, Numbers};
 use crate::file::parallel_rows::take_rows;
 use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
@@ -92,16 +94,21 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 if parametric {
                     sink.note(PARAMETRIC);
                 }
+                let mut seen = Heights::new(sink);
+                let heights = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, sink)?,
-                    (Version::V40, _) => text40::nodes(cursor, sink)?,
-                    (Version::V4, None) => text4::nodes(cursor, sink)?,
-                    (Version::V2, Some(order)) => binary2::nodes(cursor, order, parametric, sink)?,
-                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, sink)?,
+                    (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
+                    (Version::V40, _) => text40::nodes(cursor, heights, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
+                    (Version::V2, Some(order)) => {
+                        binary2::nodes(cursor, (order, parametric), heights, sink)?
+                    }
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
                 };
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
                 sink.end_nodes(cursor)?;
+                seen.send("z", form(order), sink);
             }
             b"Elements" => {
                 once(cursor, &mut elements, "Elements")?;
@@ -130,6 +137,11 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, "entities")?;
             }
+            b"NodeData" => {
+                let order = known(cursor, encoding)?.order;
+                data::node_data(cursor, order, sink);
+                skip_section(cursor, name, opened)?;
+            }
             name if name.starts_with(b"End") => {
                 let problem = format!("${} ends a section that never began", quoted(name));
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
@@ -144,6 +156,14 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
             format!("it has no {missing} section"),
             "The file is cut off or was saved without its mesh: save it again",
         )),
+    }
+}
+
+/// How a number stands in the file.
+fn form(order: Option<Order>) -> Form {
+    match order {
+        None => Form::Text(Precision::Double),
+        Some(order) => Form::Binary(order, Precision::Double),
     }
 }
 

@@ -3,10 +3,13 @@
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::heights::TextNumbers;
 use crate::file::label::Label;
-use crate::file::sink::{Column, Sink};
+use crate::file::numbers::{Form, Places};
+use crate::file::sink::{Column, PointNumbers, Sink, Stored};
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::file::vtk::take;
+use crate::mesh::Precision;
 
 /// Names of arrays by which programs tell the regions of cells, in lower case: gmsh and meshio, VTK's own readers, and
 /// what solvers call materials.
@@ -157,7 +160,9 @@ impl<S: Sink> Data<'_, S> {
     ) -> Option<()> {
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
-        if !self.of_cells && of_all && self.sink.point_array(name, components) {
+        let precision = precision_of(kind);
+        if !self.of_cells && of_all && self.sink.point_array(name, components, precision.is_some())
+        {
             let numbers = self.numbers(cursor, kind, count)?;
             self.sink.point_numbers(numbers);
             return Some(());
@@ -186,18 +191,34 @@ impl<S: Sink> Data<'_, S> {
     }
 
     /// Reads numbers of any type.
-    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<Vec<f64>> {
+    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<PointNumbers> {
+        let precision = precision_of(kind);
         if self.binary {
             let (size, value) = (size_of(kind)?, value_of(kind));
             let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
-            return Some(bytes.map(|number| value(Order::Big.signed(number))).collect());
+            let numbers = bytes.map(|number| value(Order::Big.signed(number))).collect();
+            let places = Places::Regular { start: cursor.taken(), stride: size };
+            let stored = precision.and_then(|precision| {
+                Stored::in_place(places, Form::Binary(Order::Big, precision))
+            });
+            return Some(PointNumbers { numbers, nodes: None, stored });
         }
-        let mut numbers = Vec::with_capacity(cursor.capacity(count, "0 ".len()));
+        let mut numbers = TextNumbers::default();
         for _ in 0..count {
             cursor.next_word().then_some(())?;
-            numbers.push(cursor.coordinate('v', "a point").ok()?);
+            numbers.read(cursor).ok()?;
         }
-        Some(numbers)
+        let numbers = numbers.finish(precision.unwrap_or_default(), None);
+        Some(PointNumbers { stored: numbers.stored.filter(|_| precision.is_some()), ..numbers })
+    }
+}
+
+/// How many digits numbers of this type have, if they are real.
+fn precision_of(kind: &[u8]) -> Option<Precision> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => Some(Precision::Single),
+        b"double" => Some(Precision::Double),
+        _ => None,
     }
 }
 

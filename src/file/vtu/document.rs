@@ -2,6 +2,7 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
+use crate::file::numbers::Offset;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, quoted};
 use crate::file::vtu::blocks::Compressor;
@@ -113,6 +114,16 @@ impl Document {
             return Err(source.error("it has no VTKFile element", "Save the mesh again"));
         }
         Ok(document)
+    }
+
+    /// What the file says of the places of appended arrays.
+    pub(super) fn offsets(&self) -> Vec<Offset> {
+        let Some(appended) = self.appended else { return Vec::new() };
+        let offset = |array: &Array| {
+            let (value, place) = array.offset.clone()?;
+            Some(Offset { value, array_at: appended.start.saturating_add(value), place })
+        };
+        self.arrays.iter().filter_map(offset).collect()
     }
 
     fn header_of(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {

@@ -9,8 +9,9 @@ mod document;
 
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
-use crate::file::numbers::{Encoded, Numbers, Splice};
-use crate::file::sink::{Column, Layout, Sink, Walk};
+use crate::file::heights::{Heights, TextNumbers};
+use crate::file::numbers::{Encoded, Form, Numbers, Offset, Places};
+use crate::file::sink::{Column, Home, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
 use crate::file::vtk;
@@ -18,44 +19,34 @@ use crate::mesh::Precision;
 use blocks::{Unwrapped, Wrapping};
 use document::{Array, Coding, Document};
 use std::ops::Range;
+use std::sync::Arc;
 
 pub(crate) struct Vtu;
 
-/// The array of points where it is encoded.
-struct Points {
+/// An array of points or of their data where it is encoded.
+struct Encoding {
     wrapping: Wrapping,
     old: Unwrapped,
     /// Where it stands in the file.
     range: Range<usize>,
-    /// The offsets of the appended arrays that stand after it, and where the file has them.
-    later: Vec<(usize, Range<usize>)>,
+    offsets: Arc<[Offset]>,
 }
 
-impl Encoded for Points {
+impl Encoded for Encoding {
     fn bytes(&self) -> &[u8] {
         &self.old.bytes
     }
 
-    fn ranges(&self) -> Vec<Range<usize>> {
-        let mut ranges: Vec<_> = self.later.iter().map(|(_, range)| range.clone()).collect();
-        ranges.push(self.range.clone());
-        ranges.sort_by_key(|range| range.start);
-        ranges
+    fn range(&self) -> Range<usize> {
+        self.range.clone()
     }
 
-    fn splices(&self, new: &[u8]) -> Vec<Splice> {
-        let wrapped = self.wrapping.wrap(&self.old, new);
-        let offset = |(offset, range): &(usize, Range<usize>)| {
-            let moved = offset - self.range.len() + wrapped.len();
-            Splice { range: range.clone(), bytes: moved.to_string().into_bytes() }
-        };
-        let mut splices: Vec<Splice> = match wrapped.len() == self.range.len() {
-            true => Vec::new(),
-            false => self.later.iter().map(offset).collect(),
-        };
-        splices.push(Splice { range: self.range.clone(), bytes: wrapped });
-        splices.sort_by_key(|splice| splice.range.start);
-        splices
+    fn wrapped(&self, new: &[u8]) -> Vec<u8> {
+        self.wrapping.wrap(&self.old, new)
+    }
+
+    fn offsets(&self) -> &[Offset] {
+        &self.offsets
     }
 }
 
@@ -63,7 +54,9 @@ impl Walk for Vtu {
     const VERTICES: &'static str = "Points";
 
     fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
-        let file = File { source, document: Document::read(source)? };
+        let document = Document::read(source)?;
+        let offsets = document.offsets().into();
+        let file = File { source, document, offsets };
         let count = file.document.points;
         let points = file.array("Points", None)?;
         let cursor = &mut Cursor::standing_at(source, points.at);
@@ -80,9 +73,10 @@ impl Walk for Vtu {
                 return Err(cursor.error(problem, "Float32 and Float64 are read"));
             }
         };
+        let mut heights = Heights::new(sink);
         let (numbers, encoded) = match points.format {
             Coding::Ascii => {
-                text_points(source, points, count, sink)?;
+                text_points(source, points, count, &mut heights, sink)?;
                 (Numbers::Text { precision }, None)
             }
             _ => {
@@ -107,20 +101,21 @@ impl Walk for Vtu {
                         let problem = format!("point {index} is not finite");
                         return Err(cursor.error(problem, "Write the mesh again"));
                     }
-                    sink.node(cursor, index as u64, 2, start + index * 3 * wide, at);
+                    let x_at = start + index * 3 * wide;
+                    sink.node(cursor, index as u64, 2, x_at, at);
+                    heights.see((x_at + 2 * wide, number(2)));
                 }
                 let numbers = Numbers::adjacent(wrapping.order, precision);
-                let later = file.later_than(points);
-                let encoded = Points { wrapping, old, range, later };
+                let offsets = Arc::clone(&file.offsets);
+                let encoded = Encoding { wrapping, old, range, offsets };
                 (numbers, (!plain).then(|| Box::new(encoded) as Box<dyn Encoded>))
             }
         };
         sink.end_nodes(cursor)?;
+        let home = if encoded.is_some() { Home::Points } else { Home::File };
+        heights.send_from("z", numbers.into(), home, sink);
         file.cells(sink)?;
-        file.point_arrays(sink)?;
-        if file.document.arrays.iter().any(|array| array.section == "PointData") {
-            sink.note("point data stay with their points: where those move, they no longer fit");
-        }
+        file.point_arrays(sink);
         Ok(Layout { format: Format::Vtu, numbers, encoded })
     }
 }
@@ -130,24 +125,24 @@ fn text_points(
     source: &Source,
     points: &Array,
     count: u64,
+    heights: &mut Heights,
     sink: &mut impl Sink,
 ) -> Result<(), ReadError> {
     let cursor = &mut Cursor::within(source, points.content.clone());
     sink.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
     for index in 0..count {
         let mut point = [0.0; 3];
-        let mut x_at = 0;
+        let mut places = [0; 3];
         for (axis, x) in point.iter_mut().enumerate() {
             if !cursor.next_word() {
                 let problem = format!("the array ends after {index} of {count} points");
                 return Err(cursor.error(problem, CORRECT));
             }
-            if axis == 0 {
-                x_at = cursor.at();
-            }
+            places[axis] = cursor.at();
             *x = cursor.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
         }
-        sink.node(cursor, index, 2, x_at, [point[0], point[1]]);
+        sink.node(cursor, index, 2, places[0], [point[0], point[1]]);
+        heights.see((places[2], point[2]));
     }
     Ok(())
 }
@@ -155,6 +150,7 @@ fn text_points(
 struct File<'a> {
     source: &'a Source,
     document: Document,
+    offsets: Arc<[Offset]>,
 }
 
 impl File<'_> {
@@ -223,24 +219,42 @@ impl File<'_> {
     }
 
     /// The numbers of an array of any type.
-    fn numbers(&self, array: &Array) -> Result<Vec<f64>, ReadError> {
+    fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
+        let precision = precision_of(array);
         if array.format == Coding::Ascii {
-            return self.words(array, |cursor| cursor.coordinate('v', "a point"));
-        }
-        let precision = match array.number.as_str() {
-            "Float32" => Precision::Single,
-            "Float64" => Precision::Double,
-            number if number.starts_with('U') => {
-                return Ok(self.integers(array)?.into_iter().map(|number| number as f64).collect());
+            let cursor = &mut Cursor::within(self.source, array.content.clone());
+            let mut numbers = TextNumbers::default();
+            while cursor.next_word() {
+                numbers.read(cursor)?;
             }
-            _ => {
-                let numbers = self.signed_integers(array)?;
-                return Ok(numbers.into_iter().map(|number| number as f64).collect());
+            let numbers = numbers.finish(precision.unwrap_or_default(), None);
+            let stored = numbers.stored.filter(|_| precision.is_some());
+            return Ok(PointNumbers { stored, ..numbers });
+        }
+        let Some(precision) = precision else {
+            let numbers: Vec<f64> = match array.number.starts_with('U') {
+                true => self.integers(array)?.into_iter().map(|number| number as f64).collect(),
+                false => {
+                    self.signed_integers(array)?.into_iter().map(|number| number as f64).collect()
+                }
+            };
+            return Ok(PointNumbers { numbers, nodes: None, stored: None });
+        };
+        let (wrapping, old, range) = self.unwrap(array)?;
+        let stride = precision.bytes();
+        let numbers = old.bytes.chunks_exact(stride);
+        let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
+        let form = Form::Binary(wrapping.order, precision);
+        // Raw bytes are replaced in place, all others encoded again.
+        let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
+            true => (range.end - old.bytes.len(), Home::File),
+            false => {
+                let offsets = Arc::clone(&self.offsets);
+                (0, Home::Encoded(Box::new(Encoding { wrapping, old, range, offsets })))
             }
         };
-        let (wrapping, found, _) = self.unwrap(array)?;
-        let numbers = found.bytes.chunks_exact(precision.bytes());
-        Ok(numbers.map(|number| wrapping.order.real(precision, number)).collect())
+        let stored = Some(Stored { places: Places::Regular { start, stride }, form, home });
+        Ok(PointNumbers { numbers, nodes: None, stored })
     }
 
     /// The words of an array written as text.
@@ -272,24 +286,19 @@ impl File<'_> {
         }
     }
 
-    /// Hands the arrays of point data to the sink that it wants.
-    fn point_arrays(&self, sink: &mut impl Sink) -> Result<(), ReadError> {
+    /// Hands the arrays of point data to the sink that it wants. Those that are damaged are passed over: the mesh does not
+    /// depend on them.
+    fn point_arrays(&self, sink: &mut impl Sink) {
         for array in &self.document.arrays {
             let of_points = array.section == "PointData";
-            if of_points && sink.point_array(array.name.as_bytes(), array.components) {
-                sink.point_numbers(self.numbers(array)?);
+            let is_real = precision_of(array).is_some();
+            if of_points
+                && sink.point_array(array.name.as_bytes(), array.components, is_real)
+                && let Ok(numbers) = self.numbers(array)
+            {
+                sink.point_numbers(numbers);
             }
         }
-        Ok(())
-    }
-
-    /// The appended arrays that stand after this one.
-    fn later_than(&self, points: &Array) -> Vec<(usize, Range<usize>)> {
-        let Some((before, _)) = points.offset else {
-            return Vec::new();
-        };
-        let offsets = self.document.arrays.iter().filter_map(|array| array.offset.clone());
-        offsets.filter(|(offset, _)| *offset > before).collect()
     }
 
     /// Hands the cells to the sink.
@@ -331,5 +340,14 @@ impl File<'_> {
             vtk::Cell { tag, cell_type, points, region }.send(cursor, sink)?;
         }
         Ok(())
+    }
+}
+
+/// How many digits the numbers of an array have, if they are real.
+fn precision_of(array: &Array) -> Option<Precision> {
+    match array.number.as_str() {
+        "Float32" => Some(Precision::Single),
+        "Float64" => Some(Precision::Double),
+        _ => None,
     }
 }
