@@ -120,7 +120,8 @@ pub use error::{
     BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
 };
 pub use file::{
-    AbandonedWrites, Difference, Format, Group, Groups, MeshFile, Place, PointField, abandon_writes,
+    AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
+    abandon_writes,
 };
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,

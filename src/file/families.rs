@@ -8,8 +8,8 @@ use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms,
-    su2, vtk, vtu,
+    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply,
+    selafin, sms, su2, vtk, vtu,
 };
 use std::path::Path;
 
@@ -23,6 +23,7 @@ pub(crate) struct Reader {
     pub(crate) triangle_places: Places,
     pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
     pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
+    pub(crate) content: fn(&Source) -> Result<convert::Content, ReadError>,
     pub(crate) point_data: fn(&Source, Wanted<'_>) -> Result<PointData, ReadError>,
 }
 
@@ -33,6 +34,7 @@ const fn reader<W: Walk>() -> Option<Reader> {
         triangle_places: assemble::triangle_places::<W>,
         groups: gather::groups::<W>,
         labels: gather::labels::<W>,
+        content: convert::content::<W>,
         point_data: point_data::point_data::<W>,
     })
 }

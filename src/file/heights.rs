@@ -41,7 +41,7 @@ impl Heights {
     pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut impl Sink) {
         let is_told = self.differ || (self.collected.is_some() && self.first.is_some());
         if is_told
-            && sink.point_array(name.as_bytes(), 1, true)
+            && sink.height_array(name.as_bytes())
             && let Some((places, mut numbers)) = self.collected
         {
             let precision = form.precision();

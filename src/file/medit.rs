@@ -67,6 +67,9 @@ impl Walk for Medit {
                         let count = value(cursor, "the number of elements")?;
                         lists.push(List { cursor: cursor.clone(), count, kind, keyword });
                     }
+                    if sink.asks_for_data() && kind_of(keyword).is_none() {
+                        sink.leaves_out(&format!("the list {}", quoted(keyword)));
+                    }
                     // What a list holds is numbers: the next keyword starts with a letter.
                     skip_numbers(cursor);
                 }

@@ -107,6 +107,9 @@ impl Walk for MeditBinary {
                         15 => Some((Kind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
+                    if of.is_none() && sink.asks_for_data() {
+                        sink.leaves_out(&format!("the list of keyword {keyword}"));
+                    }
                     if let Some((kind, referred, name)) = of {
                         let count = integer(cursor, widths, widths.integer, "a count")?;
                         let size = (kind.nodes() + usize::from(referred)) * widths.integer;

@@ -5,6 +5,7 @@ mod assemble;
 mod binary;
 mod column;
 mod compare;
+mod convert;
 mod detect;
 mod families;
 mod field;
@@ -47,6 +48,7 @@ mod vtk;
 mod vtu;
 
 pub use compare::Difference;
+pub use convert::Conversion;
 pub use field::PointField;
 pub use format::Format;
 pub use group::{Group, Groups};

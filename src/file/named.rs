@@ -21,6 +21,7 @@ impl MeshFile {
     /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
     /// | FreeFem | `label` of vertices, triangles and edges |
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
+    /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them |
     /// | OBJ | `material`, `object` and `group` |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
     /// | VTK | values of the cell data that tell [regions](Self#regions), called as these arrays are |

@@ -23,6 +23,9 @@ impl Walk for Off {
             let problem = format!("the header is `{}`, not OFF", quoted(header));
             return Err(cursor.error(problem, "Save as OFF with vertices of three coordinates"));
         }
+        if header != b"OFF" {
+            sink.leaves_out("normals, colors or texture coordinates");
+        }
         if cursor.is_at(b'B') {
             return Err(cursor.error("binary OFF is not read", "Save as text"));
         }

@@ -69,7 +69,10 @@ impl Walk for Ply {
                     let problem = "strips of triangles are not read";
                     return Err(cursor.error(problem, "Save them as faces"));
                 }
-                _ => items.each(cursor, list, |_, _, _| Ok(()))?,
+                _ => {
+                    sink.leaves_out("elements that are neither vertices, faces nor edges");
+                    items.each(cursor, list, |_, _, _| Ok(()))?;
+                }
             }
         }
         layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
@@ -339,6 +342,9 @@ impl Items {
     ) -> Result<(), ReadError> {
         let mut tag = 0;
         let properties = &list.properties;
+        if properties.iter().any(|property| !names.contains(&property.name)) {
+            sink.leaves_out("properties of faces or edges");
+        }
         self.each(cursor, list, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
@@ -357,9 +363,8 @@ impl Items {
                     sink.element(place, &Element { tag, kind, region, nodes })?;
                 }
                 None => {
-                    for nodes in corners.iter().map(|corner| [node(corner), 0, 0, 0]) {
-                        sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
-                    }
+                    let corners: Vec<u64> = corners.iter().map(node).collect();
+                    sink.polygon(place, (tag, region), &corners)?;
                 }
             }
             tag += 1;

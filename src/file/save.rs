@@ -203,7 +203,10 @@ impl MeshFile {
         {
             let problem =
                 format!("its ending is that of {owner}, but the mesh is {}", self.format());
-            return refused(problem, format!("Formats are not converted: end the name in {usual}"));
+            return refused(
+                problem,
+                format!("A run keeps the format: end the name in {usual}, and convert the result"),
+            );
         }
         Ok(match self.format() {
             Format::Triangle if packed::has_ending(path) => {

@@ -91,6 +91,7 @@ impl Walk for Selafin {
             sink.element(place, &Element { tag, kind, region: [0; 2], nodes })?;
         }
         if sink.asks_for_data() {
+            sink.leaves_out("the title, the date, boundary numbers and times of a SELAFIN");
             steps(after_mesh, order, precision, &names, numbers, sink);
         } else {
             names.iter().for_each(|name| _ = sink.point_array(name, 1, true));

@@ -118,6 +118,30 @@ pub(crate) trait Sink {
     fn expect_elements(&mut self, _count: usize) {}
     /// Takes an element that was just read.
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
+    /// Takes a polygon of more than four corners, which stay fixed.
+    fn polygon(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        corners: &[u64],
+    ) -> Result<(), ReadError> {
+        corners.iter().try_for_each(|&corner| {
+            let nodes = [corner, 0, 0, 0];
+            self.element(cursor, &Element { tag, kind: Kind::Corner, region, nodes })
+        })
+    }
+    /// Takes a line through any number of nodes, which stay fixed.
+    fn polyline(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        nodes.iter().try_for_each(|&node| {
+            let nodes = [node, 0, 0, 0];
+            self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
+        })
+    }
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
 
@@ -144,6 +168,20 @@ pub(crate) trait Sink {
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
+    /// Announces third coordinates or depths as an array of point data.
+    fn height_array(&mut self, name: &[u8]) -> bool {
+        self.point_array(name, 1, true)
+    }
+    /// Takes the name of an array of cell data, as [`point_array`](Self::point_array) does those of points. Only a sink that
+    /// asks for data is to be told.
+    fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
+        false
+    }
+    /// Takes the numbers of the array of cell data that was announced last and is wanted. `tags` are those of the elements
+    /// that have them.
+    fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
+    /// Takes what the file holds that is handed on nowhere, a few words. Only a sink that asks for data is to be told.
+    fn leaves_out(&mut self, _what: &str) {}
     /// Takes the numbers of the array that was announced last and is wanted.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}
 }

@@ -51,18 +51,19 @@ impl Walk for Sms {
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
-        sink.columns(vec![Column::tags("material", 1)]);
+        let materials = || vec![Column::tags("material", 1)];
+        sink.columns(materials());
         each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
                 Row::String(nodes, end) => {
+                    // A row that goes on has the label of the one before it.
                     let label = Label::Tag(string);
                     sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
-                    for &node in &nodes {
-                        let nodes = [node, 0, 0, 0];
-                        let point = Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes };
-                        sink.element(cursor, &point)?;
-                    }
+                    // Node strings are of no material.
+                    sink.columns(Vec::new());
+                    sink.polyline(cursor, (0, [0; 2]), &nodes)?;
+                    sink.columns(materials());
                     sink.within(&[]);
                     strings.extend(nodes);
                     if let End::Last(name) = end {

@@ -33,7 +33,7 @@ fn error(folder: &Folder, name: &str) -> f64 {
 fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     let folder = Folder::new(&[("in.gr3", &gr3(&disturbed()))]);
     let kept = folder.line("in.gr3 kept.gr3 --engine cpu");
-    let note = "gpu-smooth: depth stays as it is and no longer fits where vertices move \
+    let note = "gpu-smooth: depth stays as it is and no longer fits where vertices have moved \
                 (--interpolate depth takes it to the new places)\n";
     assert_eq!((kept.code, kept.err.as_str()), (Some(0), note));
     assert!(error(&folder, "kept.gr3") > 0.1);

@@ -8,6 +8,7 @@ mod adapters;
 mod arguments;
 mod bench;
 mod compare;
+mod convert;
 mod files;
 mod formats;
 mod groups;

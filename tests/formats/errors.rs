@@ -183,7 +183,7 @@ fn destinations_that_cannot_work_are_refused_and_left_alone() {
             assert!(write.contains(part), "no {part:?} in {write:?}");
         }
     };
-    let converted = "Formats are not converted: end the name in .node";
+    let converted = "A run keeps the format: end the name in .node, and convert the result";
     refused("la.1", "out.msh", &["out.msh: ", "that of gmsh", "mesh is Triangle", converted]);
     refused("la.1", "out.vtk", &["that of legacy VTK", converted]);
     refused("la.1", "old.node", &["old.ele: is a directory", "Give the name of a file"]);

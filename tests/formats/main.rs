@@ -1,6 +1,7 @@
 //! Reading and writing mesh files: what comes back byte for byte, and what each error says.
 
 mod binary;
+mod convert;
 mod damage;
 mod data;
 mod errors;

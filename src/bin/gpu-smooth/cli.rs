@@ -7,7 +7,9 @@ use crate::moving::MoveArgs;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
+use gpu_smooth::{
+    Conversion, Derivatives, Desired, Format, Goal, Method, Options, Precision, Scheme, Sharpness,
+};
 
 use crate::picture::PictureArgs;
 use crate::quality::QualityArgs;
@@ -59,6 +61,8 @@ pub(crate) enum Command {
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     Compare(CompareArgs),
+    /// Writes a mesh in another format, and says before what that does not hold
+    Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters,
     /// Tells what each metric measures and what it is good for
@@ -87,6 +91,27 @@ pub(crate) struct CompareArgs {
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct ConvertArgs {
+    /// The mesh, in any format that is read; - for the standard input
+    pub(crate) input: PathBuf,
+    /// Where to write it; its ending tells the format. - for the standard output, with --to
+    pub(crate) output: PathBuf,
+    /// The format to write, where the ending does not tell it: .msh is gmsh 4.1 without it
+    #[arg(long, value_name = "FORMAT", value_parser = target)]
+    pub(crate) to: Option<Format>,
+    /// Write the mesh even if the format does not hold all of it
+    #[arg(long)]
+    pub(crate) lossy: bool,
+}
+
+/// The format of this short name.
+fn target(text: &str) -> Result<Format, String> {
+    let found = Conversion::targets().find(|(name, _)| *name == text);
+    let names = || Conversion::targets().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
+    found.map(|(_, format)| format).ok_or_else(|| format!("it is one of {}", names()))
 }
 
 #[derive(Args)]

@@ -3,6 +3,7 @@
 mod bench;
 mod cli;
 mod compare;
+mod convert;
 mod engine;
 mod explain;
 mod groups;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
+        Some(Command::Convert(args)) => convert::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),

@@ -82,7 +82,7 @@ impl Riding {
         let names = listed(left.iter().map(|name| name.as_str()));
         let option = if option.contains(' ') { format!("'{option}'") } else { option.to_owned() };
         Some(format!(
-            "{names} {verb} where vertices move (--interpolate {option} takes {them} to the new places)"
+            "{names} {verb} where vertices have moved (--interpolate {option} takes {them} to the new places)"
         ))
     }
 

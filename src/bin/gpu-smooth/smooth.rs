@@ -41,9 +41,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         let file = file;
         let read_done = Instant::now();
         check_destinations(args, &file, out)?;
-        let remarks = tell::remarks(&file).into_iter().chain(riding.left_behind(&file));
-        for remark in remarks.chain(choice.notes.iter().cloned()) {
-            tell::note(show.quiet, &remark);
+        for remark in tell::remarks(&file).iter().chain(&choice.notes) {
+            tell::note(show.quiet, remark);
         }
         let mesh = file.mesh();
         let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -71,7 +70,9 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
-        if let Some(note) = &interpolated {
+        let has_moved = outcome.points != mesh.points;
+        let left_behind = has_moved.then(|| riding.left_behind(&file)).flatten();
+        for note in interpolated.iter().chain(&left_behind) {
             tell::note(show.quiet, note);
         }
         let smoothed = Instant::now();

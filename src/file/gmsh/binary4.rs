@@ -30,7 +30,7 @@ pub(super) fn nodes(
         words.int(); // The entity's own tag.
         let parametric = words.int() != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;

@@ -1,4 +1,4 @@
-//! Data of nodes: `$NodeData`.
+//! Data of nodes and elements: `$NodeData` and `$ElementData`.
 
 use super::form;
 use crate::file::binary::Order;
@@ -10,16 +10,28 @@ use crate::mesh::Precision;
 
 /// Announces the data of a section after its first line, and reads them if the sink wants them. It leaves the cursor where it
 /// is. Data that are damaged are passed over: the mesh does not depend on them.
-pub(super) fn node_data(cursor: &Cursor<'_>, order: Option<Order>, sink: &mut impl Sink) {
+pub(super) fn read(
+    cursor: &Cursor<'_>,
+    of_nodes: bool,
+    order: Option<Order>,
+    sink: &mut impl Sink,
+) {
     let cursor = &mut cursor.clone();
     let Some((name, components, count)) = head(cursor) else { return };
-    if sink.point_array(name, components, true)
+    let is_wanted = match of_nodes {
+        true => sink.point_array(name, components, true),
+        false => sink.asks_for_data() && sink.cell_array(name, components, true),
+    };
+    if is_wanted
         && let Some(numbers) = match order {
             None => text(cursor, components, count),
             Some(order) => binary(cursor, order, components, count),
         }
     {
-        sink.point_numbers(numbers);
+        match of_nodes {
+            true => sink.point_numbers(numbers),
+            false => sink.cell_numbers(numbers.numbers, numbers.nodes),
+        }
     }
 }
 
@@ -47,7 +59,8 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
         }
     }
     let [_, components, nodes] = integers;
-    (components > 0).then_some((name?, components, nodes))
+    // Numbers, vectors and tensors, padded or not.
+    (1..=9).contains(&components).then_some((name?, components, nodes))
 }
 
 fn count(cursor: &mut Cursor<'_>) -> Option<u64> {

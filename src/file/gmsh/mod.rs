@@ -92,7 +92,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
-                    sink.note(PARAMETRIC);
+                    note_parameters(sink);
                 }
                 let mut seen = Heights::new(sink);
                 let heights = &mut seen;
@@ -137,16 +137,22 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, "entities")?;
             }
-            b"NodeData" => {
+            b"NodeData" | b"ElementData" => {
                 let order = known(cursor, encoding)?.order;
-                data::node_data(cursor, order, sink);
+                data::read(cursor, name == b"NodeData", order, sink);
                 skip_section(cursor, name, opened)?;
             }
             name if name.starts_with(b"End") => {
                 let problem = format!("${} ends a section that never began", quoted(name));
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
-            name => skip_section(cursor, name, opened)?,
+            name => {
+                let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
+                if sink.asks_for_data() && !is_told {
+                    sink.leaves_out(&format!("the section ${}", quoted(name)));
+                }
+                skip_section(cursor, name, opened)?;
+            }
         }
     }
     let missing = if !nodes { "$Nodes" } else { "$Elements" };
@@ -200,6 +206,12 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
             Err(cursor.error(problem, "Save the mesh again with gmsh"))
         }
     }
+}
+
+/// Remarks that nodes have parameters.
+fn note_parameters(sink: &mut impl Sink) {
+    sink.note(PARAMETRIC);
+    sink.leaves_out("parameters of nodes on surfaces");
 }
 
 fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {

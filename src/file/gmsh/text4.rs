@@ -27,7 +27,7 @@ pub(super) fn nodes(
         cursor.token(); // The entity's own tag, which may be negative.
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;

@@ -23,7 +23,7 @@ pub(super) fn nodes(
         let dimension = cursor.integer("the dimension of a node block")?;
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;

@@ -10,6 +10,7 @@ use crate::file::sink::{Column, PointNumbers, Sink, Stored};
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::file::vtk::take;
 use crate::mesh::Precision;
+use std::borrow::Cow;
 
 /// Names of arrays by which programs tell the regions of cells, in lower case: gmsh and meshio, VTK's own readers, and
 /// what solvers call materials.
@@ -38,6 +39,9 @@ const REGIONS: [&[u8]; 18] = [
 pub(in crate::file) fn names_regions(name: &[u8]) -> bool {
     REGIONS.contains(&name.to_ascii_lowercase().as_slice())
 }
+
+/// How many arrays tell regions at most.
+const MOST: usize = 2;
 
 /// An array of cell data that tells regions.
 pub(super) struct Regions {
@@ -74,7 +78,6 @@ pub(super) fn regions(
             break;
         }
     }
-    data.found.truncate(2);
     data.found
 }
 
@@ -158,6 +161,7 @@ impl<S: Sink> Data<'_, S> {
         components: u64,
         tuples: u64,
     ) -> Option<()> {
+        let name = &decoded(name)[..];
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
         let precision = precision_of(kind);
@@ -167,7 +171,18 @@ impl<S: Sink> Data<'_, S> {
             self.sink.point_numbers(numbers);
             return Some(());
         }
-        if !(self.of_cells && components == 1 && of_all && names_regions(name)) {
+        let is_region = components == 1 && names_regions(name) && self.found.len() < MOST;
+        if self.of_cells
+            && of_all
+            && !is_region
+            && self.sink.asks_for_data()
+            && self.sink.cell_array(name, components, precision.is_some())
+        {
+            let numbers = self.numbers(cursor, kind, count)?.numbers;
+            self.sink.cell_numbers(numbers, None);
+            return Some(());
+        }
+        if !(self.of_cells && of_all && is_region) {
             return pass(cursor, self.binary, kind, count).ok();
         }
         let name = String::from_utf8_lossy(name).into_owned();
@@ -220,6 +235,30 @@ fn precision_of(kind: &[u8]) -> Option<Precision> {
         b"double" => Some(Precision::Double),
         _ => None,
     }
+}
+
+/// A name with the bytes that VTK writes as a percent sign and two digits.
+fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
+    if !name.contains(&b'%') {
+        return Cow::Borrowed(name);
+    }
+    let mut decoded = Vec::with_capacity(name.len());
+    let mut left = name;
+    while let Some((&first, rest)) = left.split_first() {
+        let digits = rest.get(..2).and_then(|digits| str::from_utf8(digits).ok());
+        let byte = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match byte.filter(|_| first == b'%') {
+            Some(byte) => {
+                decoded.push(byte);
+                left = &rest[2..];
+            }
+            None => {
+                decoded.push(first);
+                left = rest;
+            }
+        }
+    }
+    Cow::Owned(decoded)
 }
 
 fn number_of_bits(bits: i64) -> Option<Label> {

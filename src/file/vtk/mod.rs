@@ -46,7 +46,8 @@ enum List {
     Cells,
     Polygons,
     Strips,
-    /// Points and lines.
+    Lines,
+    /// Points.
     Others,
 }
 
@@ -89,6 +90,7 @@ impl Walk for Vtk {
                         b"CELLS" => List::Cells,
                         b"POLYGONS" => List::Polygons,
                         b"TRIANGLE_STRIPS" => List::Strips,
+                        b"LINES" => List::Lines,
                         _ => List::Others,
                     };
                     lists.push(cells(cursor, binary, kind)?);
@@ -107,7 +109,10 @@ impl Walk for Vtk {
                     }
                 }
                 b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
-                b"FIELD" => data::pass_field(cursor, binary)?,
+                b"FIELD" => {
+                    sink.leaves_out("field data");
+                    data::pass_field(cursor, binary)?;
+                }
                 // Data of points and cells, to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
                     regions = data::regions(cursor, binary, &keyword, sink);
@@ -373,7 +378,9 @@ fn elements<S: Sink>(
             (Some(types), _) => types[index],
             (None, List::Polygons) => 7,
             (None, List::Strips) => 6,
-            (None, _) => 4,
+            // A list of lines, or one of points.
+            (None, List::Lines) => 4,
+            (None, _) => 2,
         };
         let mut region = [0; 2];
         for (number, regions) in region.iter_mut().zip(regions) {

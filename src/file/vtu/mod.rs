@@ -301,6 +301,27 @@ impl File<'_> {
         }
     }
 
+    /// Hands the arrays of cell data to the sink that it wants, but for those that tell regions.
+    fn cell_arrays(&self, regions: &[&Array], sink: &mut impl Sink) {
+        for array in &self.document.arrays {
+            let tells_regions = regions.iter().any(|region| std::ptr::eq(*region, array));
+            let is_real = precision_of(array).is_some();
+            match array.section.as_str() {
+                "FieldData" => sink.leaves_out("field data"),
+                "CellData"
+                    if !tells_regions
+                        && sink.cell_array(array.name.as_bytes(), array.components, is_real) =>
+                {
+                    match self.numbers(array) {
+                        Ok(numbers) => sink.cell_numbers(numbers.numbers, None),
+                        Err(_) => sink.leaves_out("cell data that are damaged"),
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
     /// Hands the cells to the sink.
     fn cells(&self, sink: &mut impl Sink) -> Result<(), ReadError> {
         let list = self.array("Cells", Some("connectivity"))?;
@@ -328,6 +349,9 @@ impl File<'_> {
         let read = |array| Some((array, self.signed_integers(array).ok()?));
         let (arrays, regions): (Vec<&Array>, Vec<_>) = arrays.filter_map(read).take(2).unzip();
         sink.columns(arrays.iter().map(|array| Column::tags(&array.name, 0)).collect());
+        if sink.asks_for_data() {
+            self.cell_arrays(&arrays, sink);
+        }
         sink.expect_elements(offsets.len());
         let mut start = 0;
         for (tag, (&end, &cell_type)) in offsets.iter().zip(&types).enumerate() {
