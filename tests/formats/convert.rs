@@ -238,7 +238,7 @@ fn damaged_files_are_converted_or_refused() {
     let mut samples: Vec<(&str, Vec<u8>)> = vtus.collect();
     samples.extend([("in.msh", GMSH.into()), ("in.14", GRID.into())]);
     let mut read = 0;
-    for round in 0..1000 {
+    for round in 0..200 {
         let (name, bytes) = &samples[round % samples.len()];
         let folder = Folder::new(&[]);
         fs::write(folder.path(name), damage::damaged(bytes, &mut random)).unwrap();
@@ -250,5 +250,5 @@ fn damaged_files_are_converted_or_refused() {
             }
         }
     }
-    assert!(read > 1000, "{read} conversions");
+    assert!(read > 300, "{read} conversions");
 }

@@ -209,7 +209,7 @@ fn damaged_data_never_panic() {
     let mut samples: Vec<(&str, Vec<u8>)> = vec![("in.msh", GMSH.into())];
     samples.extend(raw.map(|style| ("in.vtu", vtu::write(&base(), style))));
     let mut read = 0;
-    for round in 0..1500 {
+    for round in 0..400 {
         let (name, bytes) = &samples[round % samples.len()];
         let folder = Folder::new(&[]);
         fs::write(folder.path(name), damage::damaged(bytes, &mut random)).unwrap();
@@ -223,5 +223,5 @@ fn damaged_data_never_panic() {
         file.write_to_with("out".as_ref(), &mut out, &file.mesh().points, &fields).unwrap();
         read += 1;
     }
-    assert!(read > 100, "{read} of 1500 files were read");
+    assert!(read > 40, "{read} of 400 files were read");
 }
