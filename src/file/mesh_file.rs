@@ -97,7 +97,7 @@ impl MeshFile {
     /// Reads a mesh, in the format its content shows.
     ///
     /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
-    /// compressed by gzip.
+    /// compressed by gzip or zstd.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
@@ -150,7 +150,7 @@ impl MeshFile {
         if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
             let problem =
                 "files of Triangle are not read compressed, as there are several to a mesh";
-            return Err(packed.error(problem, "Decompress all of them (gunzip)"));
+            return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
         }
         let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
         let sources = [node, ele].into_iter().chain(poly).collect();

@@ -8,7 +8,7 @@ use crate::file::field::PointField;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
 use crate::file::numbers::{Encoded, Offset, Splice};
-use crate::file::packed;
+use crate::file::packed::Packing;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
 use crate::file::sink::{Home, Stored};
@@ -24,7 +24,7 @@ impl MeshFile {
     /// written under the name that `path` gives with or without ending. `path` may be the file
     /// that was read. It is replaced only once all is written; symbolic links are followed.
     ///
-    /// The file is compressed by gzip if `path` ends in `.gz`; if nothing has moved, a file that was compressed keeps its
+    /// The file is compressed if `path` ends in `.gz` (gzip) or `.zst` (zstd); if nothing has moved, a file that was compressed keeps its
     /// bytes.
     ///
     /// # Errors
@@ -89,19 +89,23 @@ impl MeshFile {
             let remedy = "Name a file to write to".to_owned();
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
-        let packs = self.sources()[0].packed.is_some();
+        let packs = self.sources()[0].packed.as_ref().map(|packed| packed.packing);
         self.put(0, (points, fields), packs, out).and_then(|()| out.flush()).map_err(|source| {
             let remedy = "Write to a file instead".to_owned();
             WriteError::Io { path: name.to_owned(), source, remedy }
         })
     }
 
-    /// Whether what is written to this path is to be compressed: its ending tells. Where a file was compressed without that
+    /// How what is written to this path is to be compressed: its ending tells. Where a file was compressed without such an
     /// ending, any other name gets a compressed file too.
-    fn packs(&self, path: &Path) -> bool {
+    fn packs(&self, path: &Path) -> Option<Packing> {
         let source = &self.sources()[0];
-        let told_by_ending = packed::has_ending(path) || packed::has_ending(&source.path);
-        if told_by_ending { packed::has_ending(path) } else { source.packed.is_some() }
+        match Packing::of(path) {
+            None if Packing::of(&source.path).is_none() => {
+                source.packed.as_ref().map(|packed| packed.packing)
+            }
+            by_ending => by_ending,
+        }
     }
 
     /// Writes one of the files.
@@ -109,19 +113,17 @@ impl MeshFile {
         &self,
         part: usize,
         (points, fields): (&[[f64; 2]], &[PointField]),
-        packs: bool,
+        packs: Option<Packing>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
         // Only the first file holds vertices.
         let content = if part == 0 { Some((points, fields)) } else { None };
-        if !packs {
-            return self.put_plain(part, content, out);
-        }
+        let Some(packing) = packs else { return self.put_plain(part, content, out) };
         let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
         match &self.sources()[part].packed {
             // Another program may pack the same content into other bytes.
-            Some(packed) if is_same() => out.write_all(packed),
-            _ => packed::pack(out, |out| self.put_plain(part, content, out)),
+            Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
+            _ => packing.pack(out, |out| self.put_plain(part, content, out)),
         }
     }
 
@@ -209,7 +211,7 @@ impl MeshFile {
             );
         }
         Ok(match self.format() {
-            Format::Triangle if packed::has_ending(path) => {
+            Format::Triangle if Packing::of(path).is_some() => {
                 let problem =
                     "a Triangle mesh is of several files, which are not written compressed";
                 return refused(problem.into(), "End the name in .node".into());

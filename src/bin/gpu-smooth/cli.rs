@@ -148,11 +148,11 @@ pub(crate) struct BenchArgs {
 
 #[derive(Args)]
 pub(crate) struct SmoothArgs {
-    /// The mesh to read; its format is told by its content. It may be compressed by gzip, or - for the standard input
+    /// The mesh to read; its format is told by its content. It may be compressed by gzip or zstd, or - for the standard input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
     /// Where to write the smoothed mesh, in the format of IN; may be IN itself, or - for the standard output.
-    /// A name that ends in .gz gets a compressed file
+    /// A name that ends in .gz or .zst gets a compressed file
     #[arg(required = true, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 

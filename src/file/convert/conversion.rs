@@ -8,7 +8,7 @@ use crate::error::{ReadError, WriteError};
 use crate::file::families::Family;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
-use crate::file::packed;
+use crate::file::packed::Packing;
 use crate::file::replace::{self, Job as Replacement};
 use crate::file::triangle::Names;
 use std::io;
@@ -84,19 +84,19 @@ impl Conversion {
         }
     }
 
-    /// Writes the mesh, compressed by gzip if the name of its file ends in `.gz`. Files are replaced once all is written.
+    /// Writes the mesh, compressed if the name of its file ends in `.gz` or `.zst`. Files are replaced once all is written.
     ///
     /// # Errors
     /// [`WriteError`] if the system refuses, or if several files are to be written under a compressed name.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
         let texts = self.texts();
-        let packs = packed::has_ending(path);
+        let packs = Packing::of(path);
         let refused = |problem: String, remedy: &str| {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
             Err(WriteError::Format { path, problem, remedy })
         };
-        if packs && destinations.len() > 1 {
+        if packs.is_some() && destinations.len() > 1 {
             let problem = "a Triangle mesh is of several files, which are not written compressed";
             return refused(problem.into(), "End the name in .node");
         }
@@ -133,9 +133,9 @@ impl Conversion {
     }
 }
 
-fn put(bytes: &[u8], packs: bool, out: &mut (dyn io::Write + Send)) -> io::Result<()> {
+fn put(bytes: &[u8], packs: Option<Packing>, out: &mut (dyn io::Write + Send)) -> io::Result<()> {
     match packs {
-        true => packed::pack(out, |out| out.write_all(bytes)),
-        false => out.write_all(bytes),
+        Some(packing) => packing.pack(out, |out| out.write_all(bytes)),
+        None => out.write_all(bytes),
     }
 }
