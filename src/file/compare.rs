@@ -123,18 +123,18 @@ impl MeshFile {
         let bytes = &self.sources()[0].bytes;
         let mut ranges = match self.encoded() {
             None => self.coordinates(),
-            Some(points) => vec![points.range()],
+            Some(points) => points.ranges(),
         };
         let homes = || fields.iter().filter_map(|field| Some(&field.stored()?.home));
         let arrays = homes().filter_map(|home| match home {
             Home::Encoded(array) => Some(&**array),
             _ => None,
         });
-        ranges.extend(arrays.clone().map(Encoded::range));
+        ranges.extend(arrays.clone().flat_map(Encoded::ranges));
         // The offsets of arrays that stand after one that may have another length.
-        let mut encoded = self.encoded().into_iter().chain(arrays);
-        if let Some(array) = encoded.next() {
-            let first = encoded.map(Encoded::range).fold(array.range().end, |a, b| a.min(b.end));
+        let encoded = || self.encoded().into_iter().chain(arrays.clone());
+        let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
+        if let (Some(first), Some(array)) = (first, encoded().next()) {
             let later = array.offsets().iter().filter(|offset| offset.array_at >= first);
             ranges.extend(later.map(|offset| offset.place.clone()));
         }

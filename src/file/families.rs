@@ -64,6 +64,7 @@ impl Family {
             | Format::Gmsh41Binary => &GMSH,
             Format::Vtk | Format::VtkBinary => &VTK,
             Format::Vtu => &VTK_XML,
+            Format::Vtp => &VTK_XML_POLYGONS,
             Format::Su2 => &SU2,
             Format::Medit => &MEDIT,
             Format::MeditBinary => &MEDIT_BINARY,
@@ -136,12 +137,10 @@ static SELAFIN: Family = family(
     &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
     reader::<selafin::Selafin>(),
 );
-static VTK_XML: Family = family(
-    "VTK XML",
-    &[".vtu", ".vtp", ".pvtu", ".pvd"],
-    &[b"<VTKFile", b"<?xml"],
-    reader::<vtu::Vtu>(),
-);
+static VTK_XML: Family =
+    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
+static VTK_XML_POLYGONS: Family =
+    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
 static STL: Family = family("STL", &[".stl"], &[b"solid "], None);
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
 static ABAQUS: Family =
@@ -151,7 +150,7 @@ static HDF: Family =
 static GMSH_1: Family = family("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], None);
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 18] = [
+pub(crate) static FAMILIES: [&Family; 19] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -165,6 +164,7 @@ pub(crate) static FAMILIES: [&Family; 18] = [
     &FREEFEM,
     &SELAFIN,
     &VTK_XML,
+    &VTK_XML_POLYGONS,
     &STL,
     &PLY,
     &ABAQUS,

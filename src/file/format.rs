@@ -25,6 +25,8 @@ pub enum Format {
     VtkBinary,
     /// VTK's XML format of unstructured grids, `.vtu`.
     Vtu,
+    /// VTK's XML format of polygonal data, `.vtp`.
+    Vtp,
     /// SU2's `.su2`.
     Su2,
     /// Medit's `.mesh`.
@@ -51,7 +53,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 20] = [
+    pub const ALL: [Format; 21] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -61,6 +63,7 @@ impl Format {
         Format::Vtk,
         Format::VtkBinary,
         Format::Vtu,
+        Format::Vtp,
         Format::Su2,
         Format::Medit,
         Format::MeditBinary,
@@ -86,6 +89,7 @@ impl Format {
             Format::Vtk => "legacy VTK ASCII",
             Format::VtkBinary => "legacy VTK binary",
             Format::Vtu => "VTK XML",
+            Format::Vtp => "VTK XML polygons",
             Format::Su2 => "SU2",
             Format::Medit => "Medit ASCII",
             Format::MeditBinary => "Medit binary",

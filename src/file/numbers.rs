@@ -80,14 +80,14 @@ pub(crate) struct Offset {
     pub(crate) place: Range<usize>,
 }
 
-/// An array of numbers that a file has in another form than as numbers in place: in base64, or compressed.
+/// Arrays of numbers that a file has in another form than as numbers in place: in base64, or compressed.
 pub(crate) trait Encoded: Send + Sync {
     /// The numbers in binary, as they were read.
     fn bytes(&self) -> &[u8];
-    /// Where the array stands in the file.
-    fn range(&self) -> Range<usize>;
-    /// What stands there if these become the numbers.
-    fn wrapped(&self, new: &[u8]) -> Vec<u8>;
+    /// Where they stand in the file.
+    fn ranges(&self) -> Vec<Range<usize>>;
+    /// What of that is replaced if these become the numbers.
+    fn splices(&self, new: &[u8]) -> Vec<Splice>;
     /// What the file says of places in the data at its end: the same for all of its arrays.
     fn offsets(&self) -> &[Offset];
 }

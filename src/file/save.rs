@@ -146,14 +146,14 @@ impl MeshFile {
             match home {
                 Home::File => in_file.push(column),
                 Home::Points => in_points.push(column),
-                Home::Encoded(array) => splices.extend(splice(&**array, &[column])?),
+                Home::Encoded(array) => splices.extend(encoded_again(&**array, &[column])?),
             }
         }
         match self.encoded() {
             None => in_file.extend(points()),
             Some(array) => {
                 in_points.extend(points());
-                splices.extend(splice(array, &in_points)?);
+                splices.extend(encoded_again(array, &in_points)?);
             }
         }
         let homes = fields.iter().filter_map(|field| field.stored().map(|stored| &stored.home));
@@ -256,12 +256,12 @@ impl MeshFile {
     }
 }
 
-/// What replaces an encoded array, if its numbers change.
-fn splice(array: &dyn Encoded, columns: &[Column<'_>]) -> io::Result<Option<Splice>> {
+/// What replaces encoded arrays whose numbers change.
+fn encoded_again(array: &dyn Encoded, columns: &[Column<'_>]) -> io::Result<Vec<Splice>> {
     let old = array.bytes();
     let mut new = Vec::with_capacity(old.len());
     Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
-    Ok((new != old).then(|| Splice { range: array.range(), bytes: array.wrapped(&new) }))
+    Ok(array.splices(&new))
 }
 
 /// The offsets that are others once arrays before them have other lengths.

@@ -23,7 +23,7 @@ use crate::riding::RidingArgs;
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
-                  Triangle .node/.ele, gmsh .msh, VTK .vtk and .vtu, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
+                  Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
                   fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \

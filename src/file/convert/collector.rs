@@ -299,6 +299,17 @@ impl Sink for Collector {
                 values
             }
         };
+        // The parts of a mesh may have data each.
+        let same = |data: &&mut Data| data.name == name && data.components == components;
+        if let Some(data) = self.content.point_data.iter_mut().find(same)
+            && data.values.len() == values.len()
+            && data.values.iter().zip(&values).all(|(a, b)| a.is_nan() || b.is_nan())
+        {
+            for (own, value) in data.values.iter_mut().zip(&values) {
+                *own = if own.is_nan() { *value } else { *own };
+            }
+            return;
+        }
         // Time steps of a result have one name.
         let others = self.content.point_data.iter();
         let name = match others.filter(|data| data.name == name).count() {
@@ -318,6 +329,16 @@ impl Sink for Collector {
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
         if let Some(Announced { name, components, is_real, .. }) = self.announced.take() {
+            // The parts of a mesh may have data each.
+            let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
+            if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
+                && data.components == components
+                && known.last() < tags.first()
+            {
+                data.values.extend(values);
+                known.extend(tags);
+                return;
+            }
             self.by_tag.push((Data { name, components, is_real, values }, tags));
         }
     }
