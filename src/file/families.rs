@@ -60,6 +60,7 @@ impl Family {
             Format::Gmsh22
             | Format::Gmsh22Binary
             | Format::Gmsh40
+            | Format::Gmsh40Binary
             | Format::Gmsh41
             | Format::Gmsh41Binary => &GMSH,
             Format::Vtk | Format::VtkBinary => &VTK,

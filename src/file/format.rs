@@ -15,6 +15,8 @@ pub enum Format {
     Gmsh22Binary,
     /// gmsh's `.msh`, version 4.0, as text.
     Gmsh40,
+    /// gmsh's `.msh`, version 4.0, in binary.
+    Gmsh40Binary,
     /// gmsh's `.msh`, version 4.1, as text.
     Gmsh41,
     /// gmsh's `.msh`, version 4.1, in binary.
@@ -53,11 +55,12 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 21] = [
+    pub const ALL: [Format; 22] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
         Format::Gmsh40,
+        Format::Gmsh40Binary,
         Format::Gmsh41,
         Format::Gmsh41Binary,
         Format::Vtk,
@@ -84,6 +87,7 @@ impl Format {
             Format::Gmsh22 => "gmsh 2.2 ASCII",
             Format::Gmsh22Binary => "gmsh 2.2 binary",
             Format::Gmsh40 => "gmsh 4.0 ASCII",
+            Format::Gmsh40Binary => "gmsh 4.0 binary",
             Format::Gmsh41 => "gmsh 4.1 ASCII",
             Format::Gmsh41Binary => "gmsh 4.1 binary",
             Format::Vtk => "legacy VTK ASCII",

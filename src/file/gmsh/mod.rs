@@ -1,4 +1,4 @@
-//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary (not 4.0).
+//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh only `$MeshFormat`, `$Nodes`
 //! and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical groups of each
@@ -7,6 +7,7 @@
 
 mod binary2;
 mod binary4;
+mod binary40;
 mod data;
 mod kind;
 mod model;
@@ -58,7 +59,8 @@ impl Walk for Gmsh {
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
-            (Version::V40, _) => Format::Gmsh40,
+            (Version::V40, None) => Format::Gmsh40,
+            (Version::V40, Some(_)) => Format::Gmsh40Binary,
             (Version::V4, None) => Format::Gmsh41,
             (Version::V4, Some(_)) => Format::Gmsh41Binary,
         };
@@ -98,7 +100,8 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let heights = &mut seen;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
-                    (Version::V40, _) => text40::nodes(cursor, heights, sink)?,
+                    (Version::V40, None) => text40::nodes(cursor, heights, sink)?,
+                    (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
                     (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
                     (Version::V2, Some(order)) => {
                         binary2::nodes(cursor, (order, parametric), heights, sink)?
@@ -119,11 +122,12 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
-                    (Version::V40, _) | (Version::V4, None) => {
+                    (Version::V40 | Version::V4, None) => {
                         text4::elements(cursor, version, &model, sink)?
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
                     (Version::V4, Some(order)) => binary4::elements(cursor, order, &model, sink)?,
+                    (Version::V40, Some(order)) => binary40::elements(cursor, order, &model, sink)?,
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
             }
@@ -188,11 +192,6 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     };
     match cursor.integer("the file type")? {
         0 => Ok(Encoding { version, order: None }),
-        1 if version == Version::V40 => {
-            let problem = "binary files of version 4.0 are not read";
-            let remedy = "Save as version 4.1 (gmsh old.msh -save -format msh41 -o new.msh)";
-            Err(cursor.error(problem, remedy))
-        }
         1 => match cursor.integer("the size of a number")? {
             8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {
