@@ -219,6 +219,14 @@ pub enum MeshError {
         /// How many points were given.
         given: usize,
     },
+    /// A list of data does not have as many numbers as the vertices of the mesh need.
+    #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
+    ValueCount {
+        /// How many numbers are needed: those of a vertex, times the vertices.
+        expected: usize,
+        /// How many were given.
+        given: usize,
+    },
     /// The bound on the inverse mean ratio that [`Topology::move_clamped`](crate::Topology::move_clamped) was given
     /// is NaN.
     #[error(

@@ -88,6 +88,7 @@ mod cpu;
 mod error;
 mod file;
 pub mod gpu;
+mod interpolate;
 mod layout;
 mod measure;
 mod mesh;
@@ -119,12 +120,14 @@ pub use error::{
     BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
 };
 pub use file::{
-    AbandonedWrites, Difference, Format, Group, Groups, MeshFile, Place, abandon_writes,
+    AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
+    abandon_writes,
 };
 pub use gpu::{
     BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
     VertexBuffer,
 };
+pub use interpolate::Interpolation;
 pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};

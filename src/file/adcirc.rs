@@ -1,13 +1,15 @@
 //! The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
 //!
 //! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
-//! The third number of a node's row is its depth. The lists of boundaries at the end are not read: their nodes are on the
-//! boundary of the mesh, weirs included, and do not move anyway.
+//! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
+//! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
+use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 
@@ -24,6 +26,7 @@ impl Walk for Adcirc {
         let elements = cursor.integer("the number of elements")?;
         let count = cursor.vertex_count()?;
         sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+        let mut depths = Heights::new(sink);
         each_row(
             cursor,
             count,
@@ -33,15 +36,16 @@ impl Walk for Adcirc {
                 let tag = cursor.integer("the number of a node")?;
                 let owner = format_args!("node {tag}");
                 let point = cursor.point(owner)?;
-                cursor.coordinate('z', owner)?;
-                Ok((tag, point))
+                Ok((tag, point, cursor.height(owner)?))
             },
-            |cursor, sink, _, (tag, (x_at, at))| {
+            |cursor, sink, _, (tag, (x_at, at), depth)| {
                 sink.node(cursor, tag, 2, x_at, at);
+                depths.see(depth);
                 Ok(())
             },
         )?;
         sink.end_nodes(cursor)?;
+        depths.send("depth", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
         each_row(
             cursor,
@@ -59,7 +63,54 @@ impl Walk for Adcirc {
             },
             |cursor, sink, _, element| sink.element(cursor, &element),
         )?;
-        sink.note("depths stay with their nodes: where those move, they no longer fit");
+        if sink.asks_for_groups() {
+            boundaries(cursor, sink);
+        }
         Ok(Layout::in_place(Format::Adcirc, Numbers::TEXT))
     }
+}
+
+/// Hands on the boundaries as lines: open ones, and those of land, of which islands are called so. What is damaged ends the
+/// search without an error: the mesh does not depend on it.
+fn boundaries(cursor: &mut Cursor<'_>, sink: &mut impl Sink) {
+    for is_open in [true, false] {
+        let Some(count) = number(cursor) else { return };
+        // How many nodes all of them have together.
+        if !cursor.next_row() {
+            return;
+        }
+        for index in 1..=count {
+            let Some(length) = number(cursor) else { return };
+            let kind = if is_open { 0 } else { cursor.integer("a type").unwrap_or(0) };
+            let word = match (is_open, kind) {
+                (true, _) => "open",
+                // Islands, by whatever condition holds there.
+                (false, 1 | 11 | 21) => "island",
+                _ => "land",
+            };
+            if kind > 1 {
+                sink.leaves_out("types of boundaries, and what is told of weirs");
+            }
+            let mut nodes = Vec::new();
+            for _ in 0..length {
+                match number(cursor) {
+                    Some(node) => nodes.push(node),
+                    None => return,
+                }
+            }
+            let label = Label::Name(format!("{word}{index}"));
+            sink.within(&[Within { what: "boundary", label, dimension: Some(1) }]);
+            // A node that there is not is no reason to refuse a mesh.
+            if sink.polyline(cursor, (0, [0; 2]), &nodes).is_err() {
+                return;
+            }
+            sink.within(&[]);
+        }
+    }
+}
+
+/// The number that the next row starts with.
+fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
+    cursor.next_row().then_some(())?;
+    cursor.integer("a number").ok()
 }

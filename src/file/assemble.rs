@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
     let Layout { format, numbers, encoded } = W::walk(source, &mut reader)?;
-    let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, on_lower, .. } = reader;
+    let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } = reader;
     if quadrilaterals > 0 {
         notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
     }
@@ -31,7 +31,8 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
             return Err(source.error_at(location, problem, CORRECT));
         }
     }
-    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions: regions.finish(), notes })
+    let regions = regions.finish();
+    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
@@ -55,6 +56,8 @@ struct Reader {
     regions: Regions,
     quadrilaterals: u64,
     notes: Vec<String>,
+    /// The names of real numbers that the file gives vertices besides coordinates.
+    data: Vec<String>,
     /// Where the file lists its vertices, for messages.
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
@@ -87,6 +90,14 @@ impl Sink for Reader {
         if !self.notes.iter().any(|before| before == note) {
             self.notes.push(note.to_owned());
         }
+    }
+
+    fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        if is_real && !self.data.contains(&name) {
+            self.data.push(name);
+        }
+        false
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {

@@ -1,8 +1,10 @@
 //! Whether two files of a mesh differ in nothing but coordinates. Nothing here is used to write files.
 
 use crate::error::Location;
+use crate::file::field::PointField;
 use crate::file::mesh_file::{MeshFile, Place};
-use crate::file::numbers::Numbers;
+use crate::file::numbers::{Encoded, Form, Numbers, Places};
+use crate::file::sink::{Home, Stored};
 use crate::file::text::{quoted, skip_to_token, token_end};
 use std::ops::Range;
 
@@ -24,6 +26,15 @@ impl MeshFile {
     /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
     /// themselves compared; so are the offsets of what stands after them.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
+        self.difference_besides(other, [&[], &[]])
+    }
+
+    /// The same, with the numbers of data left out too: those of fields of this file, and of the same fields of the other.
+    pub fn difference_besides(
+        &self,
+        other: &MeshFile,
+        fields: [&[PointField]; 2],
+    ) -> Option<Difference> {
         let (mine, theirs) = (self.sources(), other.sources());
         let place = |file: &MeshFile, part: usize, at: usize| {
             let source = &file.sources()[part];
@@ -52,15 +63,19 @@ impl MeshFile {
         if self.mesh().triangles != other.mesh().triangles {
             return differ(0, [0; 2], "the triangles are not the same".into());
         }
-        if let [Some(mine), Some(theirs)] = [self, other].map(MeshFile::encoded_bytes) {
-            let ranges = [self, other].map(|file| file.coordinates());
+        let encoded = [self, other].map(|file| file.encoded().map(Encoded::bytes));
+        if let [Some(mine), Some(theirs)] = encoded {
+            let ranges = [0, 1].map(|side| {
+                let (file, bytes) = ([self, other][side], [mine, theirs][side]);
+                merged(file.coordinates(), number_ranges(bytes, fields[side], is_beside_points))
+            });
             if unequal([mine, theirs], ranges).is_some() {
                 return differ(0, [0; 2], "third coordinates are not the same".into());
             }
         }
         for (part, (mine, theirs)) in mine.iter().zip(theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
-            let ranges = [self, other].map(|file| file.changeable(part));
+            let ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
             if let Some(at) = unequal(bytes, ranges) {
                 let text = |side: usize| match self.numbers() {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
@@ -100,14 +115,74 @@ impl MeshFile {
         ranges
     }
 
-    /// The ranges of a file that may change where vertices move, ascending.
-    fn changeable(&self, part: usize) -> Vec<Range<usize>> {
-        match (part, self.encoded_ranges()) {
-            (0, Some(ranges)) => ranges,
-            (0, None) => self.coordinates(),
-            _ => Vec::new(),
+    /// The ranges of a file that may change where vertices move and these data change, ascending.
+    fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
+        if part > 0 {
+            return Vec::new();
+        }
+        let bytes = &self.sources()[0].bytes;
+        let mut ranges = match self.encoded() {
+            None => self.coordinates(),
+            Some(points) => points.ranges(),
+        };
+        let homes = || fields.iter().filter_map(|field| Some(&field.stored()?.home));
+        let arrays = homes().filter_map(|home| match home {
+            Home::Encoded(array) => Some(&**array),
+            _ => None,
+        });
+        ranges.extend(arrays.clone().flat_map(Encoded::ranges));
+        // The offsets of arrays that stand after one that may have another length.
+        let encoded = || self.encoded().into_iter().chain(arrays.clone());
+        let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
+        if let (Some(first), Some(array)) = (first, encoded().next()) {
+            let later = array.offsets().iter().filter(|offset| offset.array_at >= first);
+            ranges.extend(later.map(|offset| offset.place.clone()));
+        }
+        let in_file = |home: &Home| matches!(home, Home::File);
+        merged(ranges, number_ranges(bytes, fields, in_file))
+    }
+}
+
+fn is_beside_points(home: &Home) -> bool {
+    matches!(home, Home::Points)
+}
+
+/// The ranges of the numbers of fields in the bytes that hold them.
+fn number_ranges(
+    bytes: &[u8],
+    fields: &[PointField],
+    in_these: impl Fn(&Home) -> bool,
+) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    for field in fields {
+        let Some(Stored { places, form, home }) = field.stored() else { continue };
+        if !in_these(home) {
+            continue;
+        }
+        let range = |at: usize| match form {
+            Form::Binary(_, precision) => at..at + precision.bytes(),
+            Form::Text(_) => {
+                let is_end = |byte: &u8| *byte <= b' ' || matches!(byte, b'#' | b'<');
+                let rest = bytes.get(at..).unwrap_or_default();
+                at..at + rest.iter().position(is_end).unwrap_or(rest.len())
+            }
+        };
+        match places {
+            Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
+            Places::Regular { start, stride } => {
+                let count = field.numbers();
+                ranges.extend((0..count).map(|index| range(start + index * stride)));
+            }
         }
     }
+    ranges
+}
+
+/// All of these ranges, ascending.
+fn merged(mut ranges: Vec<Range<usize>>, more: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    ranges.extend(more);
+    ranges.sort_unstable_by_key(|range| range.start);
+    ranges
 }
 
 /// Where two texts first differ outside of these ranges, of which both have as many if they are equal.

@@ -2,14 +2,14 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::format::Format;
-use crate::file::gather::PointArray;
 use crate::file::group_table::GroupTable;
 use crate::file::parsed::Parsed;
+use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms,
-    su2, vtk, vtu,
+    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply,
+    selafin, sms, su2, vtk, vtu,
 };
 use std::path::Path;
 
@@ -23,7 +23,8 @@ pub(crate) struct Reader {
     pub(crate) triangle_places: Places,
     pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
     pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
-    pub(crate) point_array: fn(&Source, &str) -> Result<PointArray, ReadError>,
+    pub(crate) content: fn(&Source) -> Result<convert::Content, ReadError>,
+    pub(crate) point_data: fn(&Source, Wanted<'_>) -> Result<PointData, ReadError>,
 }
 
 const fn reader<W: Walk>() -> Option<Reader> {
@@ -33,7 +34,8 @@ const fn reader<W: Walk>() -> Option<Reader> {
         triangle_places: assemble::triangle_places::<W>,
         groups: gather::groups::<W>,
         labels: gather::labels::<W>,
-        point_array: gather::point_array::<W>,
+        content: convert::content::<W>,
+        point_data: point_data::point_data::<W>,
     })
 }
 
@@ -58,10 +60,12 @@ impl Family {
             Format::Gmsh22
             | Format::Gmsh22Binary
             | Format::Gmsh40
+            | Format::Gmsh40Binary
             | Format::Gmsh41
             | Format::Gmsh41Binary => &GMSH,
             Format::Vtk | Format::VtkBinary => &VTK,
             Format::Vtu => &VTK_XML,
+            Format::Vtp => &VTK_XML_POLYGONS,
             Format::Su2 => &SU2,
             Format::Medit => &MEDIT,
             Format::MeditBinary => &MEDIT_BINARY,
@@ -134,12 +138,10 @@ static SELAFIN: Family = family(
     &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
     reader::<selafin::Selafin>(),
 );
-static VTK_XML: Family = family(
-    "VTK XML",
-    &[".vtu", ".vtp", ".pvtu", ".pvd"],
-    &[b"<VTKFile", b"<?xml"],
-    reader::<vtu::Vtu>(),
-);
+static VTK_XML: Family =
+    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
+static VTK_XML_POLYGONS: Family =
+    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
 static STL: Family = family("STL", &[".stl"], &[b"solid "], None);
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
 static ABAQUS: Family =
@@ -149,7 +151,7 @@ static HDF: Family =
 static GMSH_1: Family = family("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], None);
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 18] = [
+pub(crate) static FAMILIES: [&Family; 19] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -163,6 +165,7 @@ pub(crate) static FAMILIES: [&Family; 18] = [
     &FREEFEM,
     &SELAFIN,
     &VTK_XML,
+    &VTK_XML_POLYGONS,
     &STL,
     &PLY,
     &ABAQUS,

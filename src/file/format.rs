@@ -15,6 +15,8 @@ pub enum Format {
     Gmsh22Binary,
     /// gmsh's `.msh`, version 4.0, as text.
     Gmsh40,
+    /// gmsh's `.msh`, version 4.0, in binary.
+    Gmsh40Binary,
     /// gmsh's `.msh`, version 4.1, as text.
     Gmsh41,
     /// gmsh's `.msh`, version 4.1, in binary.
@@ -25,6 +27,8 @@ pub enum Format {
     VtkBinary,
     /// VTK's XML format of unstructured grids, `.vtu`.
     Vtu,
+    /// VTK's XML format of polygonal data, `.vtp`.
+    Vtp,
     /// SU2's `.su2`.
     Su2,
     /// Medit's `.mesh`.
@@ -51,16 +55,18 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 20] = [
+    pub const ALL: [Format; 22] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
         Format::Gmsh40,
+        Format::Gmsh40Binary,
         Format::Gmsh41,
         Format::Gmsh41Binary,
         Format::Vtk,
         Format::VtkBinary,
         Format::Vtu,
+        Format::Vtp,
         Format::Su2,
         Format::Medit,
         Format::MeditBinary,
@@ -81,11 +87,13 @@ impl Format {
             Format::Gmsh22 => "gmsh 2.2 ASCII",
             Format::Gmsh22Binary => "gmsh 2.2 binary",
             Format::Gmsh40 => "gmsh 4.0 ASCII",
+            Format::Gmsh40Binary => "gmsh 4.0 binary",
             Format::Gmsh41 => "gmsh 4.1 ASCII",
             Format::Gmsh41Binary => "gmsh 4.1 binary",
             Format::Vtk => "legacy VTK ASCII",
             Format::VtkBinary => "legacy VTK binary",
             Format::Vtu => "VTK XML",
+            Format::Vtp => "VTK XML polygons",
             Format::Su2 => "SU2",
             Format::Medit => "Medit ASCII",
             Format::MeditBinary => "Medit binary",

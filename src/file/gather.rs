@@ -1,5 +1,4 @@
-//! Walks through a file that was read before for what a reading leaves out: groups, the labels of vertices, and arrays of
-//! point data.
+//! Walks through a file that was read before for what a reading leaves out: groups, and the labels of vertices.
 
 use crate::error::ReadError;
 use crate::file::group_table::GroupTable;
@@ -22,22 +21,6 @@ pub(crate) fn labels<W: Walk>(source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = Labels::default();
     W::walk(source, &mut labels)?;
     Ok(labels.tags)
-}
-
-/// An array of point data.
-#[derive(Default)]
-pub(crate) struct PointArray {
-    /// How many numbers it has a point, and all of them. None if there is no array of this name.
-    pub(crate) found: Option<(u64, Vec<f64>)>,
-    /// The names of all arrays of the file.
-    pub(crate) known: Vec<String>,
-}
-
-/// The array of point data of this name.
-pub(crate) fn point_array<W: Walk>(source: &Source, name: &str) -> Result<PointArray, ReadError> {
-    let mut seeker = Seeker { name, components: 0, array: PointArray::default() };
-    W::walk(source, &mut seeker)?;
-    Ok(seeker.array)
 }
 
 #[derive(Default)]
@@ -162,34 +145,5 @@ impl Sink for Labels {
 
     fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
         Ok(())
-    }
-}
-
-struct Seeker<'n> {
-    name: &'n str,
-    /// Of the array that was announced last.
-    components: u64,
-    array: PointArray,
-}
-
-impl Sink for Seeker<'_> {
-    const TAKES_AHEAD: bool = true;
-
-    fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
-
-    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
-        Ok(())
-    }
-
-    fn point_array(&mut self, name: &[u8], components: u64) -> bool {
-        let name = String::from_utf8_lossy(name).into_owned();
-        let wanted = self.array.found.is_none() && name == self.name;
-        self.array.known.push(name);
-        self.components = components;
-        wanted
-    }
-
-    fn point_numbers(&mut self, numbers: Vec<f64>) {
-        self.array.found = Some((self.components, numbers));
     }
 }

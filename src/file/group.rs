@@ -10,7 +10,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
     /// What the format calls such a group, in one word: `physical` and `entity` of gmsh, `marker` and `zone` of SU2,
-    /// `reference` and `list` of Medit, `label` of FreeFem, `material` and `nodestring` of SMS, `material`, `object` and
+    /// `reference` and `list` of Medit, `label` of FreeFem, `material` and `nodestring` of SMS, `boundary` of ADCIRC, `material`, `object` and
     /// `group` of OBJ, `attribute` and `marker` of Triangle, and in VTK the name of the array of cell data.
     pub what: String,
     /// 0 for a group of points, 1 for lines, 2 for triangles and quadrilaterals.

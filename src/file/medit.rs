@@ -6,6 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::parsed::fixed_note;
@@ -65,6 +66,9 @@ impl Walk for Medit {
                     if let Some(kind) = kind_of(keyword) {
                         let count = value(cursor, "the number of elements")?;
                         lists.push(List { cursor: cursor.clone(), count, kind, keyword });
+                    }
+                    if sink.asks_for_data() && kind_of(keyword).is_none() {
+                        sink.leaves_out(&format!("the list {}", quoted(keyword)));
                     }
                     // What a list holds is numbers: the next keyword starts with a letter.
                     skip_numbers(cursor);
@@ -186,6 +190,7 @@ fn vertices(
     let count = cursor.vertex_count()?;
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
     let before = &mut cursor.clone();
+    let mut heights = Heights::new(sink);
     each_row(
         cursor,
         count,
@@ -193,17 +198,20 @@ fn vertices(
         sink,
         |cursor| {
             let point = cursor.point("a vertex")?;
-            if dimension == 3 {
-                cursor.coordinate('z', "a vertex")?;
-            }
+            let z = match dimension {
+                3 => Some(cursor.height("a vertex")?),
+                _ => None,
+            };
             cursor.signed("the reference of a vertex")?;
-            Ok(point)
+            Ok((point, z))
         },
-        |cursor, sink, done, (x_at, at)| {
+        |cursor, sink, done, ((x_at, at), z)| {
             sink.node(cursor, done + 1, 2, x_at, at);
+            z.into_iter().for_each(|z| heights.see(z));
             Ok(())
         },
     )?;
+    heights.send("z", Numbers::TEXT.into(), sink);
     if sink.asks_for_groups() {
         for vertex in 0..count {
             before.row(vertex, count, "vertices")?;

@@ -6,8 +6,9 @@
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
-use crate::file::numbers::Numbers;
+use crate::file::numbers::{Form, Numbers};
 use crate::file::parsed::fixed_note;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
@@ -106,6 +107,9 @@ impl Walk for MeditBinary {
                         15 => Some((Kind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
+                    if of.is_none() && sink.asks_for_data() {
+                        sink.leaves_out(&format!("the list of keyword {keyword}"));
+                    }
                     if let Some((kind, referred, name)) = of {
                         let count = integer(cursor, widths, widths.integer, "a count")?;
                         let size = (kind.nodes() + usize::from(referred)) * widths.integer;
@@ -199,6 +203,14 @@ fn vertices(
         }
         let place = &Cursor::at_byte_of(cursor.source, start + index * item);
         sink.node(place, tag, 2, start + index * item, [x, y]);
+    }
+    if dimension == 3 {
+        let mut heights = Heights::new(sink);
+        for (index, vertex) in bytes.chunks_exact(item).enumerate() {
+            let z = widths.order.real(widths.precision, &vertex[2 * size..3 * size]);
+            heights.see((start + index * item + 2 * size, z));
+        }
+        heights.send("z", Form::Binary(widths.order, widths.precision), sink);
     }
     if sink.asks_for_groups() {
         for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {

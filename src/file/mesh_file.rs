@@ -12,7 +12,6 @@ use crate::file::triangle::{self, Names};
 use crate::mesh::{Mesh, Precision};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
@@ -79,6 +78,7 @@ pub struct MeshFile {
     mesh: Mesh,
     format: Format,
     notes: Vec<String>,
+    data: Vec<String>,
     /// The byte at which the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
     /// How the first of the sources has the coordinates.
@@ -97,7 +97,7 @@ impl MeshFile {
     /// Reads a mesh, in the format its content shows.
     ///
     /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
-    /// compressed by gzip.
+    /// compressed by gzip or zstd.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
@@ -150,7 +150,7 @@ impl MeshFile {
         if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
             let problem =
                 "files of Triangle are not read compressed, as there are several to a mesh";
-            return Err(packed.error(problem, "Decompress all of them (gunzip)"));
+            return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
         }
         let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
         let sources = [node, ele].into_iter().chain(poly).collect();
@@ -158,7 +158,7 @@ impl MeshFile {
     }
 
     fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
-        let Parsed { format, mut mesh, x_at, numbers, encoded, regions, notes } = parsed;
+        let Parsed { format, mut mesh, x_at, numbers, encoded, regions, notes, data } = parsed;
         let Mesh { points, triangles, fixed } = &mut mesh;
         let interfaces = regions
             .as_ref()
@@ -170,7 +170,18 @@ impl MeshFile {
             return Err(sources[0].error(problem, remedy));
         }
         fixed.extend_from_slice(&interfaces);
-        Ok(MeshFile { mesh, format, notes, x_at, numbers, encoded, regions, interfaces, sources })
+        Ok(MeshFile {
+            mesh,
+            format,
+            notes,
+            data,
+            x_at,
+            numbers,
+            encoded,
+            regions,
+            interfaces,
+            sources,
+        })
     }
 
     /// The file that was read; of a Triangle mesh its `.node`.
@@ -284,16 +295,6 @@ impl MeshFile {
         self.encoded.as_deref()
     }
 
-    /// The bytes that hold the coordinates, if they are not those of the file.
-    pub(crate) fn encoded_bytes(&self) -> Option<&[u8]> {
-        self.encoded.as_deref().map(Encoded::bytes)
-    }
-
-    /// The ranges of the file that depend on the coordinates, if it has them encoded; ascending.
-    pub(crate) fn encoded_ranges(&self) -> Option<Vec<Range<usize>>> {
-        self.encoded.as_deref().map(Encoded::ranges)
-    }
-
     /// How many digits of coordinates the file holds. [`write`](Self::write) rounds to them; for
     /// [`Options::stored`](crate::Options::stored), so that a run judges the values as they will be written.
     pub fn precision(&self) -> Precision {
@@ -303,6 +304,13 @@ impl MeshFile {
     /// Remarks for the user on what the file holds besides triangles, one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// The names of the real numbers that the file gives vertices besides x and y: depths, third coordinates that are not
+    /// all the same, point data. [`write`](Self::write) keeps them as they are, so that they no longer fit where vertices
+    /// move; see [`point_fields`](Self::point_fields).
+    pub fn data_names(&self) -> &[String] {
+        &self.data
     }
 
     /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.

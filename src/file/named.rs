@@ -1,13 +1,12 @@
-//! What a user can name in a mesh file: groups of elements, single vertices, and arrays of point data.
+//! What a user can name in a mesh file: groups of elements, and single vertices.
 
 use crate::error::ReadError;
 use crate::file::families::Family;
-use crate::file::gather::PointArray;
-use crate::file::group::{Groups, distance};
+use crate::file::group::Groups;
 use crate::file::mesh_file::MeshFile;
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
-use crate::file::text::{Cursor, quoted};
+use crate::file::text::Cursor;
 use crate::file::triangle;
 use crate::file::triangle_groups;
 use std::path::Path;
@@ -22,6 +21,7 @@ impl MeshFile {
     /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
     /// | FreeFem | `label` of vertices, triangles and edges |
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
+    /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them |
     /// | OBJ | `material`, `object` and `group` |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
     /// | VTK | values of the cell data that tell [regions](Self#regions), called as these arrays are |
@@ -79,45 +79,6 @@ impl MeshFile {
             None => {
                 let places = triangle::vertex_places(source, self.x_at().iter().copied());
                 Ok(places.into_iter().map(|(_, label)| label).collect())
-            }
-        }
-    }
-
-    /// The numbers of an array of point data, one for each vertex: scalars of VTK's formats, and properties of the
-    /// vertices of PLY.
-    ///
-    /// # Errors
-    /// [`ReadError`] if there is no such array, its data are damaged, or it has not one number a vertex.
-    pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
-        let source = &self.sources()[0];
-        let PointArray { found, mut known } = match &Family::of(self.format()).reader {
-            Some(reader) => (reader.point_array)(source, name)?,
-            None => PointArray::default(),
-        };
-        let shown = quoted(name.as_bytes());
-        match found {
-            Some((1, numbers)) if numbers.len() == self.mesh().points.len() => Ok(numbers),
-            Some((1, numbers)) => {
-                let problem = format!("the array '{shown}' has {} numbers", numbers.len());
-                let remedy = format!("There are {} vertices", self.mesh().points.len());
-                Err(source.error(problem, remedy))
-            }
-            Some((components, _)) => {
-                let problem = format!("the array '{shown}' has {components} numbers a point");
-                Err(source.error(problem, "Take an array of one number a point"))
-            }
-            None if known.contains(&name.to_owned()) => {
-                let problem = format!("the array '{shown}' is damaged or cut off");
-                Err(source.error(problem, "Write the mesh again"))
-            }
-            None => {
-                known.sort_by_cached_key(|own| distance(own, name));
-                let problem = format!("no point data is called '{shown}'");
-                let remedy = match &known[..] {
-                    [] => "The file has no point data".to_owned(),
-                    _ => format!("There are {}", known.join(", ")),
-                };
-                Err(source.error(problem, remedy))
             }
         }
     }

@@ -29,18 +29,65 @@ impl Numbers {
     }
 }
 
+/// How a single number stands in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// As a token of text. What reads the file may know only single precision.
+    Text(Precision),
+    /// In binary.
+    Binary(Order, Precision),
+}
+
+impl Form {
+    pub(crate) fn precision(self) -> Precision {
+        match self {
+            Form::Text(precision) | Form::Binary(_, precision) => precision,
+        }
+    }
+}
+
+impl From<Numbers> for Form {
+    fn from(numbers: Numbers) -> Form {
+        match numbers {
+            Numbers::Text { precision } => Form::Text(precision),
+            Numbers::Binary { order, precision, .. } => Form::Binary(order, precision),
+        }
+    }
+}
+
+/// Where the numbers of an array start, ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Places {
+    /// Each by itself.
+    List(Vec<usize>),
+    /// One every so many bytes.
+    Regular { start: usize, stride: usize },
+}
+
 /// Bytes that replace a range of a file.
 pub(crate) struct Splice {
     pub(crate) range: Range<usize>,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Points that a file has in another form than as numbers in place: in base64, or compressed.
+/// Where a file says how far from their beginning an array stands in the data at its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Offset {
+    pub(crate) value: usize,
+    /// Where the array starts in the file.
+    pub(crate) array_at: usize,
+    /// Where the file has the value.
+    pub(crate) place: Range<usize>,
+}
+
+/// Arrays of numbers that a file has in another form than as numbers in place: in base64, or compressed.
 pub(crate) trait Encoded: Send + Sync {
     /// The numbers in binary, as they were read.
     fn bytes(&self) -> &[u8];
-    /// The ranges of the file that may change where vertices move, ascending.
+    /// Where they stand in the file.
     fn ranges(&self) -> Vec<Range<usize>>;
-    /// What changes in the file if these become the numbers: ranges of the file, ascending.
+    /// What of that is replaced if these become the numbers.
     fn splices(&self, new: &[u8]) -> Vec<Splice>;
+    /// What the file says of places in the data at its end: the same for all of its arrays.
+    fn offsets(&self) -> &[Offset];
 }

@@ -6,6 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
@@ -17,10 +18,12 @@ pub(crate) struct Obj;
 
 /// A row that is used.
 enum Row<'a> {
-    Vertex(usize, [f64; 2]),
+    Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
     Face(Vec<i64>),
-    /// The vertices of a line, or those that are points.
+    /// The vertices of a line.
+    Line(Vec<i64>),
+    /// Vertices that are points.
     Points(Vec<i64>),
     /// The start of a group, object or material, all of the row.
     Name(&'a [u8]),
@@ -34,15 +37,21 @@ impl Walk for Obj {
         let rows = Cursor::new(source).rows();
         let cursor = &mut Cursor::new(source);
         let mut count = 0;
+        let mut heights = Heights::new(sink);
         each_row(cursor, rows, "rows", sink, vertex, |cursor, sink, _, row| {
-            if let Row::Vertex(x_at, at) = row {
+            if let Row::Vertex(x_at, at, z) = row {
                 count += 1;
                 sink.node(cursor, count, 2, x_at, at);
+                heights.see(z);
             }
             Ok(())
         })?;
         cursor.check_vertex_count(count)?;
         sink.end_nodes(cursor)?;
+        if sink.asks_for_data() {
+            left_out(source, sink);
+        }
+        heights.send("z", Numbers::TEXT.into(), sink);
         let cursor = &mut Cursor::new(source);
         let (mut before, mut faces) = (0, 0);
         let mut names = Numbering::default();
@@ -67,7 +76,14 @@ impl Walk for Obj {
                 }
                 Row::Points(points) => {
                     let nodes = counted(cursor, &points, before)?;
-                    hold(cursor, sink, 0, (Kind::Point, region), &nodes)?;
+                    for &node in &nodes {
+                        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
+                        sink.element(cursor, &Element { tag: 0, kind, region, nodes })?;
+                    }
+                }
+                Row::Line(points) => {
+                    let nodes = counted(cursor, &points, before)?;
+                    sink.polyline(cursor, (0, region), &nodes)?;
                 }
                 Row::Other => {}
             }
@@ -140,22 +156,23 @@ fn face(
             nodes[..corners.len()].copy_from_slice(corners);
             sink.element(cursor, &Element { tag, kind, region, nodes })
         }
-        _ => hold(cursor, sink, tag, (Kind::Corner, region), corners),
+        _ => sink.polygon(cursor, (tag, region), corners),
     }
 }
 
-/// Hands on vertices that stay fixed.
-fn hold(
-    cursor: &Cursor<'_>,
-    sink: &mut impl Sink,
-    tag: u64,
-    (kind, region): (Kind, [i64; 2]),
-    vertices: &[u64],
-) -> Result<(), ReadError> {
-    vertices.iter().try_for_each(|&vertex| {
-        let nodes = [vertex, 0, 0, 0];
-        sink.element(cursor, &Element { tag, kind, region, nodes })
-    })
+/// Tells the sink what rows there are of those that are not read.
+#[cold]
+fn left_out(source: &Source, sink: &mut impl Sink) {
+    let mut cursor = Cursor::new(source);
+    while cursor.next_row() {
+        match cursor.token() {
+            Some(b"vt") => sink.leaves_out("texture coordinates"),
+            Some(b"vn") => sink.leaves_out("normals"),
+            Some(b"mtllib") => sink.leaves_out("the name of a library of materials"),
+            Some(b"s") => sink.leaves_out("smoothing groups"),
+            _ => {}
+        }
+    }
 }
 
 /// Reads a row if it is a vertex's.
@@ -165,8 +182,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
         return Ok(Row::Other);
     }
     let (x_at, at) = cursor.point("a vertex")?;
-    cursor.coordinate('z', "a vertex")?;
-    Ok(Row::Vertex(x_at, at))
+    Ok(Row::Vertex(x_at, at, cursor.height("a vertex")?))
 }
 
 /// Reads a row if it is not a vertex's.
@@ -174,7 +190,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
 fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let mut row = cursor.clone();
     match cursor.token() {
-        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2])),
+        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2], (0, 0.0))),
         Some(kind @ (b"f" | b"l" | b"p")) => {
             let mut corners = Vec::with_capacity(3);
             while let Some(token) = cursor.token() {
@@ -187,7 +203,11 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
             if corners.is_empty() {
                 return Err(cursor.error("an element without vertices", CORRECT));
             }
-            Ok(if kind == b"f" { Row::Face(corners) } else { Row::Points(corners) })
+            Ok(match kind {
+                b"f" => Row::Face(corners),
+                b"l" => Row::Line(corners),
+                _ => Row::Points(corners),
+            })
         }
         Some(b"g" | b"o" | b"usemtl") => Ok(Row::Name(row.rest())),
         Some(b"curv" | b"curv2" | b"surf") => {

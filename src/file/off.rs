@@ -4,6 +4,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
@@ -22,6 +23,9 @@ impl Walk for Off {
             let problem = format!("the header is `{}`, not OFF", quoted(header));
             return Err(cursor.error(problem, "Save as OFF with vertices of three coordinates"));
         }
+        if header != b"OFF" {
+            sink.leaves_out("normals, colors or texture coordinates");
+        }
         if cursor.is_at(b'B') {
             return Err(cursor.error("binary OFF is not read", "Save as text"));
         }
@@ -31,6 +35,7 @@ impl Walk for Off {
         let vertices = cursor.vertex_count()?;
         let faces = cursor.integer("the number of faces")?;
         sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        let mut heights = Heights::new(sink);
         each_row(
             cursor,
             vertices,
@@ -38,15 +43,16 @@ impl Walk for Off {
             sink,
             |cursor| {
                 let point = cursor.point("a vertex")?;
-                cursor.coordinate('z', "a vertex")?;
-                Ok(point)
+                Ok((point, cursor.height("a vertex")?))
             },
-            |cursor, sink, done, (x_at, at)| {
+            |cursor, sink, done, ((x_at, at), z)| {
                 sink.node(cursor, done, 2, x_at, at);
+                heights.see(z);
                 Ok(())
             },
         )?;
         sink.end_nodes(cursor)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         each_row(
             cursor,

@@ -1,81 +1,190 @@
-//! Files that are compressed as a whole, by gzip.
+//! Files that are compressed as a whole, by gzip or zstd.
 
 use flate2::Compression;
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
+use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// The ending of the names of compressed files.
-const ENDING: &str = ".gz";
 /// How many bytes a compressed one may stand for. A lattice, as regular as meshes are, has 5 to 20 of them; gzip can do a
 /// thousand.
 const MOST: usize = 200;
 /// So many bytes may be unpacked whatever the size of the compressed file.
 const ALWAYS: usize = 1 << 20;
 
+/// How a file is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Packing {
+    Gzip,
+    Zstd,
+}
+
+/// A compressed file as it was read.
+pub(crate) struct Packed {
+    pub(crate) packing: Packing,
+    pub(crate) bytes: Vec<u8>,
+}
+
 /// Why a compressed file is not read.
+#[derive(Debug)]
 pub(crate) struct Unpackable {
     pub(crate) problem: String,
     pub(crate) remedy: &'static str,
 }
 
-/// Whether the name promises a compressed file.
-pub(crate) fn has_ending(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
+impl Packing {
+    const ALL: [Packing; 2] = [Packing::Gzip, Packing::Zstd];
+
+    /// What a name ends in that promises a file compressed so, without the dot.
+    fn ending(self) -> &'static str {
+        match self {
+            Packing::Gzip => "gz",
+            Packing::Zstd => "zst",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Packing::Gzip => "gzip",
+            Packing::Zstd => "zstd",
+        }
+    }
+
+    /// What files start with that are compressed so.
+    fn opens(self) -> &'static [u8] {
+        match self {
+            Packing::Gzip => b"\x1F\x8B",
+            Packing::Zstd => b"\x28\xB5\x2F\xFD",
+        }
+    }
+
+    /// How a file of this name is compressed, if the name tells.
+    pub(crate) fn of(path: &Path) -> Option<Packing> {
+        let ending = path.extension()?;
+        Self::ALL.into_iter().find(|packing| ending.eq_ignore_ascii_case(packing.ending()))
+    }
+
+    /// Compresses what is written.
+    pub(crate) fn pack(
+        self,
+        out: &mut (dyn Write + Send),
+        write: impl Fn(&mut (dyn Write + Send)) -> io::Result<()>,
+    ) -> io::Result<()> {
+        match self {
+            Packing::Gzip => {
+                let mut encoder = GzEncoder::new(out, Compression::default());
+                write(&mut encoder)?;
+                encoder.finish().map(drop)
+            }
+            Packing::Zstd => {
+                let mut content: Vec<u8> = Vec::new();
+                write(&mut content)?;
+                out.write_all(&compress_to_vec(content.as_slice(), CompressionLevel::Fastest))
+            }
+        }
+    }
 }
 
 /// The name of the file, in small letters, that is in a compressed one.
 pub(crate) fn inner_name(name: &str) -> &str {
-    name.strip_suffix(ENDING).unwrap_or(name)
+    let inner = |packing: Packing| name.strip_suffix(packing.ending())?.strip_suffix('.');
+    Packing::ALL.into_iter().find_map(inner).unwrap_or(name)
 }
 
-/// The content of a file, if it is compressed.
-pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<Vec<u8>>, Unpackable> {
+/// The content of a file, if it is compressed, and how it is.
+pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<(Packing, Vec<u8>)>, Unpackable> {
     /// What other programs open their files with.
-    const OTHERS: [(&[u8], &str, &str); 4] = [
-        (b"\x28\xB5\x2F\xFD", "zstd", "Decompress it first (unzstd), or compress it by gzip"),
-        (b"\xFD7zXZ\0", "xz", "Decompress it first (unxz), or compress it by gzip"),
-        (b"BZh", "bzip2", "Decompress it first (bunzip2), or compress it by gzip"),
-        (b"PK\x03\x04", "zip", "Unpack it first (unzip), or compress it by gzip"),
+    const OTHERS: [(&[u8], &str, &str); 3] = [
+        (b"\xFD7zXZ\0", "xz", "Decompress it first (unxz), or compress it by gzip or zstd"),
+        (b"BZh", "bzip2", "Decompress it first (bunzip2), or compress it by gzip or zstd"),
+        (b"PK\x03\x04", "zip", "Unpack it first (unzip), or compress it by gzip or zstd"),
     ];
     if let Some((_, name, remedy)) = OTHERS.iter().find(|(opens, ..)| bytes.starts_with(opens)) {
         return Err(Unpackable { problem: format!("it is compressed by {name}"), remedy });
     }
-    if !bytes.starts_with(b"\x1F\x8B") {
-        return Ok(None);
-    }
+    let opens = |packing: &Packing| bytes.starts_with(packing.opens());
+    let Some(packing) = Packing::ALL.into_iter().find(opens) else { return Ok(None) };
     let most = bytes.len().saturating_mul(MOST).max(ALWAYS);
     let mut content = Vec::new();
-    let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
-    if let Err(error) = MultiGzDecoder::new(bytes).take(limit).read_to_end(&mut content) {
-        let problem = format!("it is compressed by gzip, but damaged or cut off: {error}");
+    let unpacked = match packing {
+        Packing::Gzip => unpack_gzip(bytes, most, &mut content),
+        Packing::Zstd => unpack_zstd(bytes, most, &mut content),
+    };
+    let name = packing.name();
+    if let Err(error) = unpacked {
+        let problem = format!("it is compressed by {name}, but damaged or cut off: {error}");
         return Err(Unpackable { problem, remedy: "Copy it again, or write the mesh again" });
     }
     if content.len() > most {
         let problem = format!("it unpacks to more than {MOST} times its size, which no mesh does");
-        return Err(Unpackable { problem, remedy: "If it is one, decompress it first (gunzip)" });
+        let remedy = match packing {
+            Packing::Gzip => "If it is one, decompress it first (gunzip)",
+            Packing::Zstd => "If it is one, decompress it first (unzstd)",
+        };
+        return Err(Unpackable { problem, remedy });
     }
-    Ok(Some(content))
+    Ok(Some((packing, content)))
 }
 
-/// Compresses what is written.
-pub(crate) fn pack(
-    out: &mut (dyn Write + Send),
-    write: impl Fn(&mut (dyn Write + Send)) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut encoder = GzEncoder::new(out, Compression::default());
-    write(&mut encoder)?;
-    encoder.finish().map(drop)
+/// Unpacks up to a byte more than `most`.
+fn unpack_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
+    let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
+    let read = MultiGzDecoder::new(bytes).take(limit).read_to_end(content);
+    read.map(drop).map_err(|error| error.to_string())
+}
+
+/// Unpacks one frame after the other, until the content has more than `most` bytes.
+fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
+    /// How many bytes are unpacked at a time.
+    const PART: usize = 1 << 20;
+    let mut decoder = FrameDecoder::new();
+    while !bytes.is_empty() {
+        if let Some(rest) = after_skipped(bytes)? {
+            bytes = rest;
+            continue;
+        }
+        decoder.init(&mut bytes).map_err(|error| error.to_string())?;
+        loop {
+            let strategy = BlockDecodingStrategy::UptoBytes(PART);
+            decoder.decode_blocks(&mut bytes, strategy).map_err(|error| error.to_string())?;
+            content.extend(decoder.collect().unwrap_or_default());
+            if content.len() > most {
+                return Ok(());
+            }
+            if decoder.is_finished() {
+                break;
+            }
+        }
+        let told = decoder.get_checksum_from_data();
+        if told.is_some() && told != decoder.get_calculated_checksum() {
+            return Err("the checksum is another one".into());
+        }
+    }
+    Ok(())
+}
+
+/// What follows a frame that is to be passed over, if one comes next.
+fn after_skipped(bytes: &[u8]) -> Result<Option<&[u8]>, String> {
+    match bytes {
+        [0x50..=0x5F, 0x2A, 0x4D, 0x18, rest @ ..] => {
+            let after = rest.split_first_chunk().and_then(|(&size, rest)| {
+                rest.get(usize::try_from(u32::from_le_bytes(size)).ok()?..)
+            });
+            after.map(Some).ok_or_else(|| "a frame is cut off".into())
+        }
+        _ => Ok(None),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn packed(content: &[u8]) -> Vec<u8> {
+    fn packed(packing: Packing, content: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
-        pack(&mut out, |out| out.write_all(content)).unwrap();
+        packing.pack(&mut out, |out| out.write_all(content)).unwrap();
         out
     }
 
@@ -87,32 +196,74 @@ mod tests {
     fn what_is_packed_is_unpacked() {
         let content: Vec<u8> =
             (0..100_000_u32).flat_map(|n| n.wrapping_mul(n).to_le_bytes()).collect();
-        assert_eq!(unpack(&packed(&content)).ok().flatten().as_deref(), Some(&content[..]));
-        // Several in one, as parallel programs write them.
-        let twice = [packed(b"$MeshFormat"), packed(b"\n4.1")].concat();
-        assert_eq!(unpack(&twice).ok().flatten().as_deref(), Some(&b"$MeshFormat\n4.1"[..]));
+        let text: String = (0..60_000).map(|n| format!("{n} {:?}\n", f64::from(n) * 0.1)).collect();
+        for packing in Packing::ALL {
+            let unpacked = |bytes: &[u8]| {
+                let (found, content) = unpack(bytes).unwrap().unwrap();
+                assert_eq!(found, packing);
+                content
+            };
+            for content in [&content[..], text.as_bytes(), b"", b"a", &[7; 4000]] {
+                assert!(unpacked(&packed(packing, content)) == content, "{packing:?}");
+            }
+            // Several in one, as parallel programs write them.
+            let twice = [packed(packing, b"$MeshFormat"), packed(packing, b"\n4.1")].concat();
+            assert_eq!(unpacked(&twice), b"$MeshFormat\n4.1");
+        }
+        let skipped = [&packed(Packing::Zstd, b"a")[..], b"\x53\x2A\x4D\x18\x02\0\0\0xy"].concat();
+        assert_eq!(unpack(&skipped).unwrap().unwrap().1, b"a");
+        assert!(problem(&skipped[..skipped.len() - 1]).contains("a frame is cut off"));
         assert!(unpack(b"$MeshFormat").ok().flatten().is_none());
+    }
+
+    /// A file of the zstd command, with a checksum.
+    #[test]
+    fn files_of_other_programs_are_unpacked() {
+        // printf 'mesh mesh mesh mesh mesh mesh mesh mesh\n' | zstd
+        let file =
+            b"\x28\xb5\x2f\xfd\x04\x58\x65\x00\x00\x30\x6d\x65\x73\x68\x20\x0a\x01\x00\x70\x8a\x16\x9f\xd2\x6b\x88";
+        match unpack(file) {
+            Ok(Some((_, content))) => {
+                assert_eq!(content, b"mesh mesh mesh mesh mesh mesh mesh mesh\n")
+            }
+            other => panic!("{other:?}"),
+        }
+        let mut wrong = file.to_vec();
+        *wrong.last_mut().unwrap() ^= 1;
+        assert!(problem(&wrong).contains("the checksum is another one"));
     }
 
     #[test]
     fn little_that_unpacks_to_much_is_no_mesh() {
-        let bomb = packed(&vec![b' '; 50 << 20]);
-        assert!(bomb.len() < 100_000);
-        assert!(problem(&bomb).starts_with("it unpacks to more than 200 times its size"));
-        assert!(problem(&packed(&[b' '; 1000])).is_empty());
+        for packing in Packing::ALL {
+            let bomb = packed(packing, &vec![b' '; 50 << 20]);
+            assert!(bomb.len() < 100_000);
+            assert!(problem(&bomb).starts_with("it unpacks to more than 200 times its size"));
+            assert!(problem(&packed(packing, &[b' '; 1000])).is_empty());
+        }
     }
 
     #[test]
     fn damage_is_told() {
-        let whole = packed(b"a mesh of some length, and more of it");
-        for cut in 2..whole.len() {
-            assert!(problem(&whole[..cut]).contains("damaged or cut off"), "{cut}");
+        for packing in Packing::ALL {
+            let whole = packed(packing, b"a mesh of some length, and more of it, and more of it");
+            for cut in 4..whole.len() {
+                assert!(problem(&whole[..cut]).contains("damaged or cut off"), "{packing:?} {cut}");
+            }
+            for at in 4..whole.len() {
+                for byte in [0, 1, 0x7F, 0xFF] {
+                    let mut wrong = whole.clone();
+                    wrong[at] = byte;
+                    // Told, or of no consequence; never a panic or a lot of memory.
+                    let _ = unpack(&wrong);
+                }
+            }
         }
-        let mut wrong = whole.clone();
-        let checksum = whole.len() - 6;
+        let mut wrong = packed(Packing::Gzip, b"a mesh of some length, and more of it");
+        let checksum = wrong.len() - 6;
         wrong[checksum] ^= 1;
         assert!(problem(&wrong).contains("damaged or cut off"));
-        assert!(problem(b"\x28\xB5\x2F\xFDx").contains("by zstd"));
+        assert!(problem(b"BZh9").contains("by bzip2"));
         assert!(problem(b"PK\x03\x04").contains("by zip"));
     }
 }

@@ -19,6 +19,8 @@ pub(crate) struct Parsed {
     pub(crate) regions: Option<Vec<u32>>,
     /// One-line remarks for the user.
     pub(crate) notes: Vec<String>,
+    /// The names of real numbers that the file gives vertices besides x and y, each once.
+    pub(crate) data: Vec<String>,
 }
 
 /// The remark that elements other than triangles keep their vertices fixed.

@@ -7,8 +7,9 @@
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk};
+use crate::file::heights::Heights;
+use crate::file::numbers::{Form, Numbers, Places};
+use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
 use crate::mesh::Precision;
@@ -68,7 +69,10 @@ impl Walk for Ply {
                     let problem = "strips of triangles are not read";
                     return Err(cursor.error(problem, "Save them as faces"));
                 }
-                _ => items.each(cursor, list, |_, _, _| Ok(()))?,
+                _ => {
+                    sink.leaves_out("elements that are neither vertices, faces nor edges");
+                    items.each(cursor, list, |_, _, _| Ok(()))?;
+                }
             }
         }
         layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
@@ -136,6 +140,63 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
     }
 }
 
+impl Property<'_> {
+    /// How many digits its numbers have, if they are single real numbers.
+    fn precision(&self) -> Option<Precision> {
+        match self.number {
+            _ if self.length.is_some() => None,
+            Number::Float => Some(Precision::Single),
+            Number::Double => Some(Precision::Double),
+            Number::Integer { .. } => None,
+        }
+    }
+}
+
+/// The properties of vertices besides coordinates, each of one number.
+struct Data<'l, 'a> {
+    properties: Vec<(usize, &'l Property<'a>)>,
+    /// The numbers of each and where they stand, if the sink asks for data.
+    numbers: Option<Vec<(Vec<f64>, Vec<usize>)>>,
+}
+
+impl<'l, 'a> Data<'l, 'a> {
+    fn new(list: &'l List<'a>, z: Option<usize>, sink: &impl Sink) -> Self {
+        let is_data = |(index, property): &(usize, &Property<'_>)| {
+            property.length.is_none() && Some(*index) != z && !matches!(property.name, b"x" | b"y")
+        };
+        let properties: Vec<_> = list.properties.iter().enumerate().filter(is_data).collect();
+        let empty = || properties.iter().map(|_| Default::default()).collect();
+        let numbers = sink.asks_for_data().then(empty);
+        Data { properties, numbers }
+    }
+
+    /// Takes the numbers of the next vertex.
+    fn see(&mut self, values: &[Vec<f64>], at: &[usize]) {
+        let Some(numbers) = &mut self.numbers else { return };
+        for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
+            numbers.push(values[index][0]);
+            places.push(at[index]);
+        }
+    }
+
+    fn send(self, items: Items, sink: &mut impl Sink) {
+        let mut numbers = self.numbers.map(Vec::into_iter);
+        for (_, property) in self.properties {
+            let precision = property.precision();
+            let own = numbers.as_mut().and_then(Iterator::next);
+            if sink.point_array(property.name, 1, precision.is_some())
+                && let Some((mut numbers, places)) = own
+            {
+                let stored = precision.and_then(|precision| {
+                    numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
+                    Stored::in_place(Places::List(places), items.form(precision))
+                });
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            }
+        }
+    }
+}
+
 impl Number {
     fn size(self) -> usize {
         match self {
@@ -147,6 +208,14 @@ impl Number {
 }
 
 impl Items {
+    /// How real numbers stand in the file.
+    fn form(self, precision: Precision) -> Form {
+        match self.order {
+            None => Form::Text(precision),
+            Some(order) => Form::Binary(order, precision),
+        }
+    }
+
     /// Hands all numbers of each item to `take`, with the places of the first number of each property.
     fn each<'a>(
         self,
@@ -234,12 +303,15 @@ impl Items {
             let problem = "y does not follow x with the same type";
             return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
         }
-        let wanted = |p: &Property<'_>| p.length.is_none() && sink.point_array(p.name, 1);
-        let wanted = list.properties.iter().position(wanted);
-        let mut numbers = Vec::new();
+        let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
+        let mut heights = Heights::new(sink);
+        let mut data = Data::new(list, z, sink);
         let mut tag = 0;
         self.each(cursor, list, |place, values, places| {
-            numbers.extend(wanted.map(|index| values[index][0]));
+            data.see(values, places);
+            if let Some(z) = z {
+                heights.see((places[z], values[z][0]));
+            }
             let at = [values[x][0], values[y][0]];
             if !at.iter().all(|x| x.is_finite()) {
                 let problem = format!("a coordinate of vertex {tag} is not a finite number");
@@ -249,10 +321,11 @@ impl Items {
             tag += 1;
             Ok(())
         })?;
-        if wanted.is_some() {
-            sink.point_numbers(numbers);
-        }
         sink.end_nodes(cursor)?;
+        if let Some(precision) = z.and_then(|z| list.properties[z].precision()) {
+            heights.send("z", self.form(precision), sink);
+        }
+        data.send(self, sink);
         Ok(match self.order {
             None => Layout::in_place(Format::Ply, Numbers::Text { precision }),
             Some(order) => Layout::in_place(Format::PlyBinary, Numbers::adjacent(order, precision)),
@@ -269,6 +342,9 @@ impl Items {
     ) -> Result<(), ReadError> {
         let mut tag = 0;
         let properties = &list.properties;
+        if properties.iter().any(|property| !names.contains(&property.name)) {
+            sink.leaves_out("properties of faces or edges");
+        }
         self.each(cursor, list, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
@@ -287,9 +363,8 @@ impl Items {
                     sink.element(place, &Element { tag, kind, region, nodes })?;
                 }
                 None => {
-                    for nodes in corners.iter().map(|corner| [node(corner), 0, 0, 0]) {
-                        sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
-                    }
+                    let corners: Vec<u64> = corners.iter().map(node).collect();
+                    sink.polygon(place, (tag, region), &corners)?;
                 }
             }
             tag += 1;

@@ -1,159 +1,84 @@
-//! Writes a file again with the coordinates of moved vertices replaced.
+//! Writes a file again with some of its numbers replaced.
 
-use crate::file::binary::Order;
-use crate::file::numbers::{Encoded, Numbers};
-use crate::file::text::{skip_to_token, token_end};
-use crate::mesh::Precision;
+use crate::file::column::{Change, Column};
+use crate::file::numbers::Splice;
 use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
 
-/// How many vertices one thread rewrites at a time.
-const BLOCK: usize = 2048;
+/// How many bytes one thread rewrites at a time.
+const BLOCK: usize = 1 << 17;
 
-/// A file's content, and which of its coordinates are to be replaced.
+/// A file's content, and which of its numbers may be replaced.
 pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
-    /// Where each vertex's x starts, ascending. Empty for a file without vertices.
-    pub(crate) x_at: &'a [usize],
-    /// How the coordinates stand there.
-    pub(crate) numbers: Numbers,
-    /// The coordinates as they were read.
-    pub(crate) old: &'a [[f64; 2]],
-    /// The coordinates to be written.
-    pub(crate) new: &'a [[f64; 2]],
+    /// Numbers that stand in it.
+    pub(crate) columns: &'a [Column<'a>],
+    /// Ranges that are replaced whole, ascending. No number of the columns stands in them.
+    pub(crate) splices: &'a [Splice],
 }
 
 impl Rewrite<'_> {
-    /// Writes the content to `out`, with those coordinates replaced whose bits differ between `old` and `new`.
+    /// Writes the content to `out`, with those numbers replaced that are not as they were.
     pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
-        let vertices = self.x_at.len();
-        if let Numbers::Binary { order, precision, y_after } = self.numbers
-            && y_after != precision.bytes()
-            && vertices > 0
-        {
-            return out.write_all(&self.in_two_lists(order, precision, y_after));
+        let mut at = 0;
+        for splice in self.splices {
+            self.write_range(at..splice.range.start, out)?;
+            out.write_all(&splice.bytes)?;
+            at = splice.range.end;
         }
-        write_blocks(out, vertices.div_ceil(BLOCK), |block| {
-            self.block(block * BLOCK..vertices.min((block + 1) * BLOCK))
-        })?;
-        out.write_all(&self.bytes[self.start_of(vertices)..])
+        self.write_range(at..self.bytes.len(), out)
     }
 
-    /// Writes `file` to `out`, with the content of this rewrite encoded in it where that changed.
-    pub(crate) fn write_encoded(
-        &self,
-        file: &[u8],
-        encoded: &dyn Encoded,
-        out: &mut (dyn Write + Send),
-    ) -> io::Result<()> {
-        let mut new = Vec::with_capacity(self.bytes.len());
-        self.write(&mut new)?;
-        let mut copied = 0;
-        if new != self.bytes {
-            for splice in encoded.splices(&new) {
-                out.write_all(&file[copied..splice.range.start])?;
-                out.write_all(&splice.bytes)?;
-                copied = splice.range.end;
-            }
+    fn write_range(&self, range: Range<usize>, out: &mut (dyn Write + Send)) -> io::Result<()> {
+        if self.columns.is_empty() {
+            return out.write_all(&self.bytes[range]);
         }
-        out.write_all(&file[copied..])
+        let count = range.len().div_ceil(BLOCK);
+        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK));
+        write_blocks(out, count, |block| {
+            // The first block starts where the range does, even if that is within a number.
+            let start = if block == 0 { range.start } else { cut(block) };
+            self.block(start..cut(block + 1).max(start))
+        })
     }
 
-    /// The new content of some vertices, up to the first vertex after them.
-    fn block(&self, vertices: Range<usize>) -> Vec<u8> {
-        match self.numbers {
-            Numbers::Text { precision } => self.block_of_text(precision, vertices),
-            Numbers::Binary { order, precision, .. } => {
-                self.block_of_numbers(order, precision, vertices)
-            }
-        }
-    }
-
-    fn block_of_numbers(
-        &self,
-        order: Order,
-        precision: Precision,
-        vertices: Range<usize>,
-    ) -> Vec<u8> {
-        let start = self.start_of(vertices.start);
-        let mut out = self.bytes[start..self.start_of(vertices.end)].to_vec();
-        for v in vertices {
-            let x_at = self.x_at[v] - start;
-            for (axis, (old, new)) in self.old[v].iter().zip(self.new[v]).enumerate() {
-                put(&mut out, x_at + axis * precision.bytes(), order, precision, *old, new);
-            }
-        }
-        out
-    }
-
-    /// The new content of a file that lists y elsewhere than x.
-    fn in_two_lists(&self, order: Order, precision: Precision, y_after: usize) -> Vec<u8> {
-        let mut out = self.bytes.to_vec();
-        for ((&x_at, old), new) in self.x_at.iter().zip(self.old).zip(self.new) {
-            put(&mut out, x_at, order, precision, old[0], new[0]);
-            put(&mut out, x_at + y_after, order, precision, old[1], new[1]);
-        }
-        out
-    }
-
-    fn block_of_text(&self, precision: Precision, vertices: Range<usize>) -> Vec<u8> {
-        let Rewrite { bytes, x_at, old, new, .. } = self;
-        let mut copied = self.start_of(vertices.start);
-        let end_of_block = self.start_of(vertices.end);
-        let mut out = Vec::with_capacity((end_of_block - copied) * 5 / 4);
-        for v in vertices {
-            let mut start = x_at[v];
-            for (old, new) in old[v].iter().zip(new[v]) {
-                start = skip_to_token(bytes, start);
-                let end = token_end(bytes, start);
-                let new = precision.rounded(new);
-                if old.to_bits() != new.to_bits() {
-                    out.extend_from_slice(&bytes[copied..start]);
-                    // The fewest digits that parse back to the same bits.
-                    match precision {
-                        Precision::Double => write!(out, "{new:?}"),
-                        Precision::Single => write!(out, "{:?}", new as f32),
-                    }
-                    .expect("memory takes what is written to it");
-                    copied = end;
+    /// The first place from `at` on that is within no number.
+    fn cut(&self, mut at: usize) -> usize {
+        loop {
+            let before = at;
+            for column in self.columns {
+                let item = column.first_from(at);
+                if let Some(last) = item.checked_sub(1) {
+                    at = at.max(column.end(self.bytes, last));
                 }
-                start = end;
+            }
+            if at == before {
+                return at;
             }
         }
-        out.extend_from_slice(&bytes[copied..end_of_block]);
+    }
+
+    /// The new content of a range.
+    fn block(&self, range: Range<usize>) -> Vec<u8> {
+        let mut changes = Vec::new();
+        for column in self.columns {
+            let items = column.first_from(range.start)..column.first_from(range.end);
+            column.changes(self.bytes, items, &mut changes);
+        }
+        if self.columns.len() > 1 {
+            changes.sort_unstable_by_key(|change| change.range.start);
+        }
+        let mut out = Vec::with_capacity(range.len() + range.len() / 4);
+        let mut copied = range.start;
+        for Change { range, value, form } in changes {
+            out.extend_from_slice(&self.bytes[copied..range.start]);
+            form.write(value, &mut out);
+            copied = range.end;
+        }
+        out.extend_from_slice(&self.bytes[copied..range.end]);
         out
-    }
-
-    /// Where the content of a vertex starts: the first vertex's at the start of the file, any other's at its x. For the
-    /// number of vertices, where the last vertex's coordinates end.
-    fn start_of(&self, vertex: usize) -> usize {
-        match vertex.checked_sub(1) {
-            None => 0,
-            Some(before) if vertex == self.x_at.len() => {
-                if let Numbers::Binary { precision, .. } = self.numbers {
-                    return self.x_at[before] + 2 * precision.bytes();
-                }
-                let y_at = skip_to_token(self.bytes, token_end(self.bytes, self.x_at[before]));
-                token_end(self.bytes, y_at)
-            }
-            Some(_) => self.x_at[vertex],
-        }
-    }
-}
-
-/// Replaces a number in binary if it moved.
-#[inline]
-fn put(out: &mut [u8], at: usize, order: Order, precision: Precision, old: f64, new: f64) {
-    let new = precision.rounded(new);
-    if old.to_bits() != new.to_bits() {
-        match precision {
-            Precision::Single => {
-                out[at..][..4].copy_from_slice(&order.single_bytes(new as f32));
-            }
-            Precision::Double => out[at..][..8].copy_from_slice(&order.bytes(new)),
-        }
     }
 }
 
@@ -180,10 +105,14 @@ fn write_blocks(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::binary::Order;
+    use crate::file::numbers::{Form, Numbers, Places};
+    use crate::mesh::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
+        let columns = Column::of_points(x_at, Numbers::TEXT, old, new);
         let mut out = Vec::new();
-        Rewrite { bytes, x_at, numbers: Numbers::TEXT, old, new }.write(&mut out).unwrap();
+        Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
         out
     }
 
@@ -214,24 +143,66 @@ mod tests {
     /// Against a plain replacement, row by row, of as many rows as fill several waves of blocks.
     #[test]
     fn blocks_join_without_a_seam() {
-        for vertices in [0, 1, BLOCK - 1, BLOCK, BLOCK + 1, 70 * BLOCK + 17] {
+        for vertices in [0, 1, 4000, 4001, 200_017] {
             let (mut bytes, mut expected) = (b"head\r\n".to_vec(), b"head\r\n".to_vec());
             let (mut x_at, mut old, mut new) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut z_at, mut z_old, mut z_new) = (Vec::new(), Vec::new(), Vec::new());
             for v in 0..vertices {
                 let [x, y] = [v as f64 * 0.37, v as f64];
                 let to = [x + f64::from(u8::from(v % 3 == 0)), if v % 5 == 0 { -y } else { y }];
                 let end = if v % 7 == 0 { " # moved\r\n\n" } else { "\r\n" };
                 write!(bytes, "{v}  ").unwrap();
                 x_at.push(bytes.len());
-                write!(bytes, "{x:?}\t{y:?}{end}").unwrap();
-                write!(expected, "{v}  {:?}\t{:?}{end}", to[0], to[1]).unwrap();
+                write!(bytes, "{x:?}\t{y:?} ").unwrap();
+                z_at.push(bytes.len());
+                write!(bytes, "7{end}").unwrap();
+                let z = if v % 4 == 0 { 0.25 } else { 7.0 };
+                let text = if v % 4 == 0 { "0.25" } else { "7" };
+                write!(expected, "{v}  {:?}\t{:?} {text}{end}", to[0], to[1]).unwrap();
                 old.push([x, y]);
                 new.push(to);
+                z_old.push(7.0);
+                z_new.push(z);
             }
             bytes.extend_from_slice(b"tail 1 2 3");
             expected.extend_from_slice(b"tail 1 2 3");
-            assert!(rewritten(&bytes, &x_at, &old, &new) == expected, "{vertices} vertices");
             assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
+            let mut columns = Column::of_points(&x_at, Numbers::TEXT, &old, &new);
+            let places = Places::List(z_at);
+            let form = Form::Text(Precision::Double);
+            columns.push(Column::of_array(&places, form, &z_old, &z_new));
+            let mut out = Vec::new();
+            Rewrite { bytes: &bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
+            assert!(out == expected, "{vertices} vertices");
         }
+    }
+
+    /// Numbers of several arrays in binary, interleaved and apart, beside ranges that are replaced.
+    #[test]
+    fn numbers_in_binary_are_replaced_where_they_stand() {
+        let count = 40_000;
+        let order = Order::Big;
+        let row = |x: f64, y: f64, z: f32| {
+            [&order.bytes(x)[..], &order.bytes(y), &order.single_bytes(z)].concat()
+        };
+        let old: Vec<[f64; 2]> = (0..count).map(|v| [f64::from(v), 0.5]).collect();
+        let new: Vec<[f64; 2]> = old.iter().map(|[x, y]| [x * 3.0, y + 1.0]).collect();
+        let z_old = vec![2.0; old.len()];
+        let z_new: Vec<f64> = (0..count).map(|v| f64::from(v % 3)).collect();
+        let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
+        let bytes = [b"head", &rows[..], b"tail"].concat();
+        let x_at: Vec<usize> = (0..old.len()).map(|v| 4 + 20 * v).collect();
+        let mut columns =
+            Column::of_points(&x_at, Numbers::adjacent(order, Precision::Double), &old, &new);
+        let places = Places::Regular { start: 20, stride: 20 };
+        let form = Form::Binary(order, Precision::Single);
+        columns.push(Column::of_array(&places, form, &z_old, &z_new));
+        let splices =
+            [Splice { range: 0..2, bytes: b"HHH".into() }, Splice { range: 3..4, bytes: vec![] }];
+        let mut out = Vec::new();
+        Rewrite { bytes: &bytes, columns: &columns, splices: &splices }.write(&mut out).unwrap();
+        let rows: Vec<u8> =
+            new.iter().zip(&z_new).flat_map(|([x, y], z)| row(*x, *y, *z as f32)).collect();
+        assert!(out == [b"HHHa", &rows[..], b"tail"].concat());
     }
 }

@@ -1,13 +1,17 @@
 //! Writing a mesh file again, with the coordinates of moved vertices replaced.
 
 use crate::error::WriteError;
+use crate::file::column::Column;
 use crate::file::detect;
 use crate::file::families::{Family, TRIANGLE};
+use crate::file::field::PointField;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
-use crate::file::packed;
+use crate::file::numbers::{Encoded, Offset, Splice};
+use crate::file::packed::Packing;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
+use crate::file::sink::{Home, Stored};
 use crate::file::triangle::Names;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -20,7 +24,7 @@ impl MeshFile {
     /// written under the name that `path` gives with or without ending. `path` may be the file
     /// that was read. It is replaced only once all is written; symbolic links are followed.
     ///
-    /// The file is compressed by gzip if `path` ends in `.gz`; if nothing has moved, a file that was compressed keeps its
+    /// The file is compressed if `path` ends in `.gz` (gzip) or `.zst` (zstd); if nothing has moved, a file that was compressed keeps its
     /// bytes.
     ///
     /// # Errors
@@ -28,11 +32,26 @@ impl MeshFile {
     /// points are not finite or not one per vertex, or if the system refuses. What stood at the
     /// destination then still stands there.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
+        self.write_with(path, points, &[])
+    }
+
+    /// Writes what [`write`](Self::write) does, with data of the vertices replaced too: by the values of these fields of this
+    /// file, which come from [`point_fields`](Self::point_fields). Numbers that have the bits they were read with keep
+    /// their text.
+    ///
+    /// # Errors
+    /// [`WriteError`] as for [`write`](Self::write).
+    pub fn write_with(
+        &self,
+        path: &Path,
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
         self.check_points(path, points)?;
         self.check_destination(path)?;
         let packs = self.packs(path);
         let job = |(part, destination)| -> Job<'_> {
-            (destination, Box::new(move |out| self.put(part, points, packs, out)))
+            (destination, Box::new(move |out| self.put(part, (points, fields), packs, out)))
         };
         let jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
         replace::replace_all(&jobs)
@@ -50,61 +69,102 @@ impl MeshFile {
         out: &mut (dyn Write + Send),
         points: &[[f64; 2]],
     ) -> Result<(), WriteError> {
+        self.write_to_with(name, out, points, &[])
+    }
+
+    /// Writes what [`write_with`](Self::write_with) does to where bytes can be written, as [`write_to`](Self::write_to) does.
+    ///
+    /// # Errors
+    /// [`WriteError`] as for [`write_to`](Self::write_to).
+    pub fn write_to_with(
+        &self,
+        name: &Path,
+        out: &mut (dyn Write + Send),
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
         self.check_points(name, points)?;
         if self.sources().len() > 1 {
             let problem = "a Triangle mesh is of several files".to_owned();
             let remedy = "Name a file to write to".to_owned();
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
-        let packs = self.sources()[0].packed.is_some();
-        self.put(0, points, packs, out).and_then(|()| out.flush()).map_err(|source| {
+        let packs = self.sources()[0].packed.as_ref().map(|packed| packed.packing);
+        self.put(0, (points, fields), packs, out).and_then(|()| out.flush()).map_err(|source| {
             let remedy = "Write to a file instead".to_owned();
             WriteError::Io { path: name.to_owned(), source, remedy }
         })
     }
 
-    /// Whether what is written to this path is to be compressed: its ending tells. Where a file was compressed without that
+    /// How what is written to this path is to be compressed: its ending tells. Where a file was compressed without such an
     /// ending, any other name gets a compressed file too.
-    fn packs(&self, path: &Path) -> bool {
+    fn packs(&self, path: &Path) -> Option<Packing> {
         let source = &self.sources()[0];
-        let told_by_ending = packed::has_ending(path) || packed::has_ending(&source.path);
-        if told_by_ending { packed::has_ending(path) } else { source.packed.is_some() }
+        match Packing::of(path) {
+            None if Packing::of(&source.path).is_none() => {
+                source.packed.as_ref().map(|packed| packed.packing)
+            }
+            by_ending => by_ending,
+        }
     }
 
     /// Writes one of the files.
     fn put(
         &self,
         part: usize,
-        points: &[[f64; 2]],
-        packs: bool,
+        (points, fields): (&[[f64; 2]], &[PointField]),
+        packs: Option<Packing>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
-        let source = &self.sources()[part];
-        if !packs {
-            return self.put_plain(part, points, out);
-        }
-        match &source.packed {
+        // Only the first file holds vertices.
+        let content = if part == 0 { Some((points, fields)) } else { None };
+        let Some(packing) = packs else { return self.put_plain(part, content, out) };
+        let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
+        match &self.sources()[part].packed {
             // Another program may pack the same content into other bytes.
-            Some(packed) if self.is_unmoved(points) => out.write_all(packed),
-            _ => packed::pack(out, |out| self.put_plain(part, points, out)),
+            Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
+            _ => packing.pack(out, |out| self.put_plain(part, content, out)),
         }
     }
 
     fn put_plain(
         &self,
         part: usize,
-        points: &[[f64; 2]],
+        content: Option<(&[[f64; 2]], &[PointField])>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
         let bytes = &self.sources()[part].bytes;
-        // Only the first file holds vertices.
-        let x_at = if part == 0 { self.x_at() } else { &[] };
-        let (numbers, old) = (self.numbers(), &self.mesh().points);
-        let rewrite = |bytes| Rewrite { bytes, x_at, numbers, old, new: points };
-        match self.encoded().filter(|_| part == 0) {
-            None => rewrite(bytes).write(out),
-            Some(encoded) => rewrite(encoded.bytes()).write_encoded(bytes, encoded, out),
+        let Some((points, fields)) = content else { return out.write_all(bytes) };
+        let points = || Column::of_points(self.x_at(), self.numbers(), &self.mesh().points, points);
+        // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
+        let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
+        let mut splices = Vec::new();
+        for field in fields.iter().filter(|field| field.is_changed()) {
+            let (Some(column), Some(Stored { home, .. })) = (field.column(), field.stored()) else {
+                continue;
+            };
+            match home {
+                Home::File => in_file.push(column),
+                Home::Points => in_points.push(column),
+                Home::Encoded(array) => splices.extend(encoded_again(&**array, &[column])?),
+            }
         }
+        match self.encoded() {
+            None => in_file.extend(points()),
+            Some(array) => {
+                in_points.extend(points());
+                splices.extend(encoded_again(array, &in_points)?);
+            }
+        }
+        let homes = fields.iter().filter_map(|field| field.stored().map(|stored| &stored.home));
+        let mut arrays = self.encoded().into_iter().chain(homes.filter_map(|home| match home {
+            Home::Encoded(array) => Some(&**array),
+            _ => None,
+        }));
+        let offsets = arrays.next().map_or(&[][..], |array| array.offsets());
+        splices.extend(corrected(offsets, &splices));
+        splices.sort_by_key(|splice| splice.range.start);
+        Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
     }
 
     /// Whether these are the points that were read, in the digits of the file.
@@ -145,10 +205,13 @@ impl MeshFile {
         {
             let problem =
                 format!("its ending is that of {owner}, but the mesh is {}", self.format());
-            return refused(problem, format!("Formats are not converted: end the name in {usual}"));
+            return refused(
+                problem,
+                format!("A run keeps the format: end the name in {usual}, and convert the result"),
+            );
         }
         Ok(match self.format() {
-            Format::Triangle if packed::has_ending(path) => {
+            Format::Triangle if Packing::of(path).is_some() => {
                 let problem =
                     "a Triangle mesh is of several files, which are not written compressed";
                 return refused(problem.into(), "End the name in .node".into());
@@ -191,4 +254,26 @@ impl MeshFile {
             None => Ok(()),
         }
     }
+}
+
+/// What replaces encoded arrays whose numbers change.
+fn encoded_again(array: &dyn Encoded, columns: &[Column<'_>]) -> io::Result<Vec<Splice>> {
+    let old = array.bytes();
+    let mut new = Vec::with_capacity(old.len());
+    Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
+    Ok(array.splices(&new))
+}
+
+/// The offsets that are others once arrays before them have other lengths.
+fn corrected(offsets: &[Offset], splices: &[Splice]) -> Vec<Splice> {
+    let corrected = offsets.iter().filter_map(|offset| {
+        let before = splices.iter().filter(|splice| splice.range.end <= offset.array_at);
+        let (removed, added) = before.fold((0, 0), |(removed, added), splice| {
+            (removed + splice.range.len(), added + splice.bytes.len())
+        });
+        let value = (offset.value + added).saturating_sub(removed);
+        let bytes = value.to_string().into_bytes();
+        (value != offset.value).then(|| Splice { range: offset.place.clone(), bytes })
+    });
+    corrected.collect()
 }

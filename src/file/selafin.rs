@@ -6,8 +6,8 @@
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::numbers::Numbers;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, volume};
+use crate::file::numbers::{Form, Numbers, Places};
+use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::mesh::Precision;
@@ -28,8 +28,10 @@ impl Walk for Selafin {
         let precision = if doubles { Precision::Double } else { Precision::Single };
         let counts = integers(record(cursor, order, "the numbers of variables", Some(8))?, order);
         let variables = u64::from(counts[0].unsigned_abs()) + u64::from(counts[1].unsigned_abs());
+        let mut names = Vec::new();
         for _ in 0..variables {
-            record(cursor, order, "the name of a variable", Some(32))?;
+            let name = record(cursor, order, "the name of a variable", Some(32))?;
+            names.push(name[..16].trim_ascii());
         }
         let parameters = integers(record(cursor, order, "the parameters", Some(40))?, order);
         if parameters[6] > 1 {
@@ -64,6 +66,7 @@ impl Walk for Selafin {
         let x_at = cursor.taken();
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
         let y_after = cursor.taken() - x_at;
+        let after_mesh = cursor.clone();
         sink.expect_nodes(points as usize);
         let number = |bytes: &[u8]| order.real(precision, bytes);
         let size = precision.bytes();
@@ -87,11 +90,41 @@ impl Walk for Selafin {
             let place = &Cursor::at_byte_of(source, listed_at + index * 4 * kind.nodes());
             sink.element(place, &Element { tag, kind, region: [0; 2], nodes })?;
         }
-        let numbers = Numbers::Binary { order, precision, y_after };
-        if variables > 0 {
-            sink.note("variables stay with their points: where those move, they no longer fit");
+        if sink.asks_for_data() {
+            sink.leaves_out("the title, the date, boundary numbers and times of a SELAFIN");
+            steps(after_mesh, order, precision, &names, numbers, sink);
+        } else {
+            names.iter().for_each(|name| _ = sink.point_array(name, 1, true));
         }
+        let numbers = Numbers::Binary { order, precision, y_after };
         Ok(Layout::in_place(Format::Selafin, numbers))
+    }
+}
+
+/// Reads the time steps, each a time and a record for each variable, up to the first that is damaged or cut off: the mesh does
+/// not depend on them.
+fn steps(
+    mut cursor: Cursor<'_>,
+    order: Order,
+    precision: Precision,
+    names: &[&[u8]],
+    bytes: usize,
+    sink: &mut impl Sink,
+) {
+    let cursor = &mut cursor;
+    while record(cursor, order, "the time of a step", None).is_ok() {
+        for name in names {
+            let Ok(values) = record(cursor, order, "the values of a variable", Some(bytes)) else {
+                return;
+            };
+            if sink.point_array(name, 1, true) {
+                let size = precision.bytes();
+                let numbers = values.chunks_exact(size).map(|x| order.real(precision, x)).collect();
+                let places = Places::Regular { start: cursor.taken(), stride: size };
+                let stored = Stored::in_place(places, Form::Binary(order, precision));
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            }
+        }
     }
 }
 

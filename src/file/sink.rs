@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::file::format::Format;
 use crate::file::label::Label;
-use crate::file::numbers::{Encoded, Numbers};
+use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::parallel_rows::take_rows;
 use crate::file::source::Source;
 use crate::file::text::Cursor;
@@ -118,6 +118,30 @@ pub(crate) trait Sink {
     fn expect_elements(&mut self, _count: usize) {}
     /// Takes an element that was just read.
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
+    /// Takes a polygon of more than four corners, which stay fixed.
+    fn polygon(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        corners: &[u64],
+    ) -> Result<(), ReadError> {
+        corners.iter().try_for_each(|&corner| {
+            let nodes = [corner, 0, 0, 0];
+            self.element(cursor, &Element { tag, kind: Kind::Corner, region, nodes })
+        })
+    }
+    /// Takes a line through any number of nodes, which stay fixed.
+    fn polyline(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        nodes.iter().try_for_each(|&node| {
+            let nodes = [node, 0, 0, 0];
+            self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
+        })
+    }
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
 
@@ -134,12 +158,65 @@ pub(crate) trait Sink {
     /// Takes the name of the groups of a tag, of one dimension or of all.
     fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
-    /// Takes the name of an array of point data, and how many numbers it has a point. Whether its numbers are wanted.
-    fn point_array(&mut self, _name: &[u8], _components: u64) -> bool {
+    /// Whether it asks for data of points that a reading may leave out: third coordinates that are all the same, and
+    /// lists after the elements.
+    fn asks_for_data(&self) -> bool {
         false
     }
+    /// Takes the name of an array of point data, how many numbers it has a point, and whether these are real numbers, not
+    /// whole ones. Third coordinates are such an array too. Whether its numbers are wanted.
+    fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
+        false
+    }
+    /// Announces third coordinates or depths as an array of point data.
+    fn height_array(&mut self, name: &[u8]) -> bool {
+        self.point_array(name, 1, true)
+    }
+    /// Takes the name of an array of cell data, as [`point_array`](Self::point_array) does those of points. Only a sink that
+    /// asks for data is to be told.
+    fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
+        false
+    }
+    /// Takes the numbers of the array of cell data that was announced last and is wanted. `tags` are those of the elements
+    /// that have them.
+    fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
+    /// Takes what the file holds that is handed on nowhere, a few words. Only a sink that asks for data is to be told.
+    fn leaves_out(&mut self, _what: &str) {}
     /// Takes the numbers of the array that was announced last and is wanted.
-    fn point_numbers(&mut self, _numbers: Vec<f64>) {}
+    fn point_numbers(&mut self, _numbers: PointNumbers) {}
+}
+
+/// The numbers of an array of point data.
+pub(crate) struct PointNumbers {
+    /// Those of one point after those of another, in the order of the file.
+    pub(crate) numbers: Vec<f64>,
+    /// The tag of the node that each tuple belongs to, if they are not those of all nodes in their order.
+    pub(crate) nodes: Option<Vec<u64>>,
+    /// Where they stand; none if they cannot be replaced.
+    pub(crate) stored: Option<Stored>,
+}
+
+/// Where the numbers of an array stand.
+pub(crate) struct Stored {
+    pub(crate) places: Places,
+    pub(crate) form: Form,
+    pub(crate) home: Home,
+}
+
+impl Stored {
+    /// Numbers that stand in the file itself.
+    pub(crate) fn in_place(places: Places, form: Form) -> Option<Stored> {
+        Some(Stored { places, form, home: Home::File })
+    }
+}
+
+/// What bytes the places of numbers are those of.
+pub(crate) enum Home {
+    File,
+    /// Those of the encoded points.
+    Points,
+    /// Those of an array that is encoded itself.
+    Encoded(Box<dyn Encoded>),
 }
 
 /// How a file has its numbers, known once it was read.

@@ -5,6 +5,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
+use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
@@ -15,7 +16,7 @@ pub(crate) struct Sms;
 
 /// A row that is used.
 enum Row {
-    Node(u64, usize, [f64; 2]),
+    Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
     String(Vec<u64>, End),
     /// The name of a material.
@@ -37,28 +38,32 @@ impl Walk for Sms {
     fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
         let rows = Cursor::new(source).rows();
         let nodes_first = &mut Cursor::new(source);
+        let mut heights = Heights::new(sink);
         each_row(nodes_first, rows, "rows", sink, node, |cursor, sink, _, row| {
-            if let Row::Node(tag, x_at, at) = row {
+            if let Row::Node(tag, x_at, at, z) = row {
                 sink.node(cursor, tag, 2, x_at, at);
+                heights.see(z);
             }
             Ok(())
         })?;
         sink.end_nodes(nodes_first)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
-        sink.columns(vec![Column::tags("material", 1)]);
+        let materials = || vec![Column::tags("material", 1)];
+        sink.columns(materials());
         each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
                 Row::String(nodes, end) => {
+                    // A row that goes on has the label of the one before it.
                     let label = Label::Tag(string);
                     sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
-                    for &node in &nodes {
-                        let nodes = [node, 0, 0, 0];
-                        let point = Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes };
-                        sink.element(cursor, &point)?;
-                    }
+                    // Node strings are of no material.
+                    sink.columns(Vec::new());
+                    sink.polyline(cursor, (0, [0; 2]), &nodes)?;
+                    sink.columns(materials());
                     sink.within(&[]);
                     strings.extend(nodes);
                     if let End::Last(name) = end {
@@ -78,7 +83,6 @@ impl Walk for Sms {
             strings.dedup();
             sink.note(&format!("{} nodes of node strings stay fixed", strings.len()));
         }
-        sink.note("elevations stay with their nodes: where those move, they no longer fit");
         Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
     }
 }
@@ -92,8 +96,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let tag = cursor.integer("the number of a node")?;
     let owner = format_args!("node {tag}");
     let (x_at, at) = cursor.point(owner)?;
-    cursor.coordinate('z', owner)?;
-    Ok(Row::Node(tag, x_at, at))
+    Ok(Row::Node(tag, x_at, at, cursor.height(owner)?))
 }
 
 /// Reads a row if it is that of an element or a node string.

@@ -1,7 +1,7 @@
 //! The bytes of one file.
 
 use crate::error::{Location, ReadError};
-use crate::file::packed::{self, Unpackable};
+use crate::file::packed::{self, Packed, Unpackable};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
     /// The file's own bytes, if it is compressed.
-    pub(crate) packed: Option<Vec<u8>>,
+    pub(crate) packed: Option<Packed>,
 }
 
 impl Source {
@@ -36,8 +36,9 @@ impl Source {
         let source = Source { path: path.to_owned(), bytes, packed: None };
         match packed::unpack(&source.bytes) {
             Ok(None) => Ok(source),
-            Ok(Some(content)) => {
-                Ok(Source { bytes: content, packed: Some(source.bytes), path: source.path })
+            Ok(Some((packing, content))) => {
+                let packed = Some(Packed { packing, bytes: source.bytes });
+                Ok(Source { bytes: content, packed, path: source.path })
             }
             Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
         }

@@ -75,7 +75,11 @@ impl Walk for Su2 {
                         }
                     }
                 }
+                b"NMARK" | b"NZONE" | b"IZONE" => {}
                 // Counts of other lists, boxes of free-form deformation.
+                _ if sink.asks_for_data() && !value.is_empty() => {
+                    sink.leaves_out(&format!("what {}= is", quoted(key)));
+                }
                 _ => {}
             }
         }

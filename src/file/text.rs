@@ -304,6 +304,18 @@ impl<'a> Cursor<'a> {
         })
     }
 
+    /// Reads a number that need not be finite, called `what` in messages.
+    pub(crate) fn real(&mut self, what: impl Display) -> Result<f64, ReadError> {
+        let token = self.token();
+        token.and_then(float).ok_or_else(|| self.unusable(token, what, "a number"))
+    }
+
+    /// Reads z. Returns where it stands, and z.
+    #[inline]
+    pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
+        Ok((self.at(), self.coordinate('z', owner)?))
+    }
+
     /// Reads x and y. Returns where x stands, and both.
     #[inline]
     pub(crate) fn point(

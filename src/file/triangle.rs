@@ -59,7 +59,7 @@ pub(crate) fn parse(
     ele: &Source,
     poly: Option<&Source>,
 ) -> Result<Parsed, ReadError> {
-    let (numbers, points, x_at) = vertices(node)?;
+    let (numbers, points, x_at, data) = vertices(node)?;
     let (triangles, regions) = triangles(ele, node, &numbers)?;
     let mut fixed = Vec::new();
     let mut notes = Vec::new();
@@ -76,6 +76,7 @@ pub(crate) fn parse(
         encoded: None,
         regions,
         notes,
+        data,
     })
 }
 
@@ -143,7 +144,7 @@ impl Numbers {
     }
 }
 
-type Vertices = (Numbers, Vec<[f64; 2]>, Vec<usize>);
+type Vertices = (Numbers, Vec<[f64; 2]>, Vec<usize>, Vec<String>);
 
 fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     let cursor = &mut Cursor::new(node);
@@ -151,6 +152,9 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     if numbers.count == 0 {
         return Err(cursor.error("no vertices are announced", "Write the mesh again"));
     }
+    // A header that says it wrongly keeps no one from reading the vertices.
+    let attributes = cursor.integer_or(0, "the number of attributes per vertex").unwrap_or(0);
+    let data = attribute_names(cursor.capacity(attributes, 1) as u64).collect();
     let capacity = cursor.capacity(numbers.count, "1 0 0\n".len());
     let mut points = Vec::with_capacity(capacity);
     let mut x_at = Vec::with_capacity(capacity);
@@ -175,7 +179,15 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
         x_at.push(at);
         points.push(point);
     }
-    Ok((numbers, points, x_at))
+    Ok((numbers, points, x_at, data))
+}
+
+/// The names of the attributes that vertices have.
+pub(crate) fn attribute_names(attributes: u64) -> impl Iterator<Item = String> {
+    (1..=attributes).map(move |number| match attributes {
+        1 => "attribute".to_owned(),
+        _ => format!("attribute{number}"),
+    })
 }
 
 /// Reads the number of vertices, and checks that they are in the plane.

@@ -129,6 +129,11 @@ fn triangle_folder([node, ele]: &[String; 2]) -> Folder {
     Folder::new(&[("in.node", node), ("in.ele", ele)])
 }
 
+/// What is told of data of vertices that stay as they are.
+const ATTRIBUTES: &str = "attribute1, attribute2 stay as they are and no longer fit where vertices have moved (--interpolate all takes \
+                          them to the new places)";
+const DEPTH: &str = "depth stays as it is and no longer fits where vertices have moved (--interpolate depth takes it to the new places)";
+
 #[test]
 fn triangle_files_keep_all_but_coordinates() {
     let clockwise = |mut mesh: Mesh| {
@@ -145,7 +150,12 @@ fn triangle_files_keep_all_but_coordinates() {
         for end in ["\n", "\r\n"] {
             let files = triangle_files(mesh, first).map(|text| text.replace('\n', end));
             let folder = triangle_folder(&files);
-            assert_only_coordinates_change(&folder, ["in.node", "out.node"], Layout::Node, &[]);
+            assert_only_coordinates_change(
+                &folder,
+                ["in.node", "out.node"],
+                Layout::Node,
+                &[ATTRIBUTES],
+            );
             assert_eq!(folder.text("out.ele"), files[1]);
             assert_eq!(folder.content().len(), 4);
         }
@@ -198,7 +208,7 @@ fn gmsh_files_keep_all_but_coordinates() {
         ] {
             let text = gmsh_text(&mesh, &lines, layout).replace('\n', end);
             let folder = Folder::new(&[("in.msh", &text)]);
-            assert_only_coordinates_change(&folder, ["in.msh", "out.msh"], layout, &[]);
+            assert_only_coordinates_change(&folder, ["in.msh", "out.msh"], layout, &[DEPTH]);
             assert_eq!(folder.content().len(), 2);
         }
     }
@@ -255,7 +265,7 @@ fn vertices_on_gmsh_lines_stay() {
     for layout in [Layout::Gmsh22, Layout::Gmsh41] {
         let text = gmsh_text(&disturbed(), &middle_row(), layout);
         let folder = Folder::new(&[("in.msh", &text)]);
-        assert_only_coordinates_change(&folder, ["in.msh", "out.msh"], layout, &[]);
+        assert_only_coordinates_change(&folder, ["in.msh", "out.msh"], layout, &[DEPTH]);
         assert_middle_row_held(&folder.mesh("in.msh"), &folder.mesh("out.msh"));
     }
 }
@@ -273,7 +283,12 @@ fn vertices_on_poly_segments_stay_and_the_poly_is_written_along() {
         poly.push_str("0\n# no holes");
         fs::write(folder.path("in.poly"), &poly).unwrap();
         let note = "10 segments of in.poly: their vertices stay fixed";
-        assert_only_coordinates_change(&folder, ["in.node", "out.node"], Layout::Node, &[note]);
+        assert_only_coordinates_change(
+            &folder,
+            ["in.node", "out.node"],
+            Layout::Node,
+            &[note, ATTRIBUTES],
+        );
         assert_middle_row_held(&folder.mesh("in"), &folder.mesh("out"));
         assert_eq!((folder.text("out.ele"), folder.text("out.poly")), (files[1].clone(), poly));
     }
@@ -322,8 +337,8 @@ fn a_mesh_is_replaced_in_place() {
     folder.line("in.node in.node --engine cpu").clean();
     assert_eq!(folder.text("in.node"), folder.text("out.node"));
     assert_eq!(folder.text("in.ele"), folder.text("out.ele"));
-    folder.line("a.msh out.msh --engine cpu").clean();
-    folder.line("b.msh b.msh --engine cpu").clean();
+    folder.line("a.msh out.msh --engine cpu --quiet").clean();
+    folder.line("b.msh b.msh --engine cpu --quiet").clean();
     assert_eq!((folder.text("b.msh"), folder.text("a.msh")), (folder.text("out.msh"), gmsh));
     assert_eq!(folder.content().len(), 7);
 }
@@ -369,7 +384,10 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         ("in.node none/out.node", &["none: no such directory", "Create the directory first"]),
         ("in.node out.msh", &["out.msh: its ending is that of gmsh", "end the name in .node"]),
         ("in.msh out.node", &["out.node: its ending is that of Triangle", "end the name in .msh"]),
-        ("in.msh out.vtk", &["out.vtk: its ending is that of legacy VTK", "not converted"]),
+        (
+            "in.msh out.vtk",
+            &["out.vtk: its ending is that of legacy VTK", "and convert the result"],
+        ),
         ("in.node locked", &["locked.ele: the file is read-only", "Make it writable"]),
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
         ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),

@@ -136,7 +136,6 @@ fn gmsh_errors_name_line_and_remedy() {
         assert!(GMSH41.contains(from), "{from}");
         assert_gmsh_error(&GMSH41.replacen(from, to, 1), parts);
     };
-    v4("4.1 0 8", "4.0 1 8", &["a.msh:2: binary files of version 4.0", "-format msh41"]);
     v4("2 1 1 4", "2 1 1 5", &["a.msh:14: a block of 5 nodes where", "leaves 4"]);
     v4("2 1 1 4", "2 1 1 3", &["a.msh:18: y of node 9 is missing"]);
     v4("2 5 1 9", "2 6 1 9", &["a.msh:22: the blocks hold 5 of the 6 nodes"]);
@@ -183,7 +182,7 @@ fn destinations_that_cannot_work_are_refused_and_left_alone() {
             assert!(write.contains(part), "no {part:?} in {write:?}");
         }
     };
-    let converted = "Formats are not converted: end the name in .node";
+    let converted = "A run keeps the format: end the name in .node, and convert the result";
     refused("la.1", "out.msh", &["out.msh: ", "that of gmsh", "mesh is Triangle", converted]);
     refused("la.1", "out.vtk", &["that of legacy VTK", converted]);
     refused("la.1", "old.node", &["old.ele: is a directory", "Give the name of a file"]);

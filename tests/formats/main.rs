@@ -1,7 +1,9 @@
 //! Reading and writing mesh files: what comes back byte for byte, and what each error says.
 
 mod binary;
+mod convert;
 mod damage;
+mod data;
 mod errors;
 mod groups;
 mod long;

@@ -7,6 +7,7 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use gpu_smooth::{Location, MeshFile};
+use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -89,7 +90,8 @@ fn what_cannot_be_unpacked_is_told() {
     let whole = packed(GMSH22.as_bytes());
     refused("a.msh.gz", &whole[..whole.len() / 2], &["a.msh.gz: ", "damaged or cut off"]);
     refused("a.msh.gz", &packed(&vec![b'\n'; 30 << 20]), &["200 times its size", "gunzip"]);
-    refused("a.msh.zst", b"\x28\xB5\x2F\xFD\0\0", &["compressed by zstd", "unzstd"]);
+    refused("a.msh.zst", b"\x28\xB5\x2F\xFD\0\0", &["by zstd, but damaged or cut off"]);
+    refused("a.msh.bz2", b"BZh91AY", &["compressed by bzip2", "bunzip2"]);
     refused("a.msh.gz", &packed(b""), &["the file is empty"]);
     refused("a.node.gz", &packed(NODE.as_bytes()), &["a.node.gz"]);
     fs::write(folder.path("b.ele"), packed(ELE.as_bytes())).unwrap();
@@ -124,4 +126,29 @@ fn bytes_in_memory_are_read_and_written() {
     let file = folder.read("a.node");
     let error = file.write_to(name, &mut Vec::new(), &file.mesh().points).unwrap_err().to_string();
     assert!(error.contains("of several files. Name a file"), "{error}");
+}
+
+#[test]
+fn files_compressed_by_zstd_are_read_and_written() {
+    let folder = Folder::new(&[("plain.msh", GMSH22)]);
+    // As another program may pack them.
+    let bytes = compress_to_vec(GMSH22.as_bytes(), CompressionLevel::Uncompressed);
+    fs::write(folder.path("in.msh.zst"), &bytes).unwrap();
+    let (file, plain) = (folder.read("in.msh.zst"), folder.read("plain.msh"));
+    assert_eq!((file.format(), file.mesh()), (plain.format(), plain.mesh()));
+    file.write(&folder.path("same.msh.ZST"), &file.mesh().points).unwrap();
+    assert!(fs::read(folder.path("same.msh.ZST")).unwrap() == bytes);
+    let mut moved = file.mesh().points.clone();
+    moved[4][0] += 0.0625;
+    plain.write(&folder.path("moved.msh"), &moved).unwrap();
+    let expected = folder.text("moved.msh");
+    for name in ["out.msh.zst", "out.msh.gz", "out.msh"] {
+        file.write(&folder.path(name), &moved).unwrap();
+        let start = fs::read(folder.path(name)).unwrap()[..2].to_vec();
+        let packed = [("zst", [0x28, 0xB5]), ("gz", [0x1F, 0x8B]), ("msh", [b'$', b'M'])];
+        assert!(packed.iter().any(|(ending, opens)| name.ends_with(ending) && start == opens));
+        let back = folder.read(name);
+        back.write(&folder.path("back.msh"), &back.mesh().points).unwrap();
+        assert_eq!(folder.text("back.msh"), expected, "{name}");
+    }
 }

@@ -126,7 +126,7 @@ fn list_of(made: &Made) -> &'static str {
         Format::Adcirc => "the list of nodes",
         Format::Sms2dm => "the list of ND rows",
         Format::FreeFem | Format::Off | Format::Ply | Format::PlyBinary => "the list of vertices",
-        Format::Gmsh40 => "$Nodes",
+        Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",
         Format::Selafin => "the list of points",
         other => panic!("no list of {other}"),
     }

@@ -7,12 +7,12 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use gpu_smooth::{Format, Location, Mesh, MeshFile, Precision};
+use gpu_smooth::{Conversion, Format, Location, Mesh, MeshFile, PointField, Precision};
 use std::fs;
 use std::io::Write;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+pub(crate) enum Place {
     Text,
     Base64,
     AppendedBase64,
@@ -20,18 +20,18 @@ enum Place {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Style {
-    place: Place,
+pub(crate) struct Style {
+    pub(crate) place: Place,
     /// None, or the attribute of the compressor.
-    compressor: Option<&'static str>,
+    pub(crate) compressor: Option<&'static str>,
     wide_header: bool,
     big: bool,
-    precision: Precision,
+    pub(crate) precision: Precision,
     /// The type of whole numbers.
     wide_integers: bool,
 }
 
-fn styles() -> Vec<Style> {
+pub(crate) fn styles() -> Vec<Style> {
     let mut styles = Vec::new();
     for place in [Place::Text, Place::Base64, Place::AppendedBase64, Place::AppendedRaw] {
         for compressor in [None, Some("vtkZLibDataCompressor"), Some("vtkLZ4DataCompressor")] {
@@ -91,6 +91,23 @@ impl Style {
         if raw { [header, content].concat() } else { [text(&header), text(&content)].concat() }
     }
 
+    /// Vectors of two numbers each, in the other precision than points have.
+    fn vectors(self, name: &str, count: usize) -> Array {
+        let single = self.precision == Precision::Double;
+        let precision = if single { Precision::Single } else { Precision::Double };
+        let kind = if single { "Float32" } else { "Float64" };
+        let mut bytes = Binary::empty(self.big);
+        let numbers: Vec<f64> = (0..2 * count).map(|i| i as f64 * -0.25).collect();
+        bytes.reals(precision, &numbers);
+        let text: Vec<_> = numbers.iter().map(f64::to_string).collect();
+        let attributes = format!("type=\"{kind}\" Name=\"flow\" NumberOfComponents=\"2\"");
+        Array {
+            attributes: attributes.replace("flow", name),
+            text: text.join(" "),
+            bytes: bytes.bytes,
+        }
+    }
+
     fn integers(self, name: &str, numbers: &[u32]) -> Array {
         let mut bytes = Binary::empty(self.big);
         let kind = if self.wide_integers { "Int64" } else { "UInt32" };
@@ -107,7 +124,97 @@ impl Style {
 }
 
 /// A file of the mesh, with an edge and a quadrilateral among its triangles, and regions.
-fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
+pub(crate) fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
+    write_pieces(&[mesh], style, false)
+}
+
+/// The same of several meshes, each with an edge before its triangles and a quadrilateral among them; as an unstructured grid or
+/// as polygonal data.
+pub(crate) fn write_pieces(meshes: &[&Mesh], style: Style, polygons: bool) -> Vec<u8> {
+    let mut out = Vec::new();
+    let order = if style.big { "BigEndian" } else { "LittleEndian" };
+    let header = if style.wide_header { "header_type=\"UInt64\"" } else { "" };
+    let compressor =
+        style.compressor.map(|name| format!("compressor=\"{name}\"")).unwrap_or_default();
+    let kind = if polygons { "PolyData" } else { "UnstructuredGrid" };
+    write!(
+        out,
+        "<?xml version=\"1.0\"?>\n<!-- <VTKFile> \"by hand\" -->\n<VTKFile type=\"{kind}\" \
+         byte_order=\"{order}\" {header} {compressor}>\n <{kind}>\n  <Piece \
+         NumberOfPoints=\"0\" NumberOfCells=\"0\"/>\n"
+    )
+    .unwrap();
+    let mut appended = Vec::new();
+    for mesh in meshes {
+        let cells = cells(mesh);
+        let counts = match polygons {
+            true => format!("NumberOfLines=\"1\" NumberOfPolys=\"{}\"", cells.len() - 1),
+            false => format!("NumberOfCells='{}'", cells.len()),
+        };
+        let points = mesh.points.len();
+        writeln!(out, "  <Piece NumberOfPoints=\"{points}\"\n {counts}>").unwrap();
+        for (section, arrays) in sections(mesh, &cells, style, polygons) {
+            writeln!(out, "<{section}>").unwrap();
+            for Array { attributes, text, bytes } in arrays {
+                match style.place {
+                    Place::Text => writeln!(
+                        out,
+                        "<DataArray {attributes} format=\"ascii\">\n{text}</DataArray>"
+                    )
+                    .unwrap(),
+                    Place::Base64 => {
+                        let text = String::from_utf8(style.encoded(&bytes)).unwrap();
+                        writeln!(
+                            out,
+                            "<DataArray {attributes} format=\"binary\">\n  {text}\n</DataArray>"
+                        )
+                        .unwrap();
+                    }
+                    _ => {
+                        let offset = appended.len();
+                        writeln!(
+                            out,
+                            "<DataArray {attributes} format=\"appended\" offset = \"{offset}\" />"
+                        )
+                        .unwrap();
+                        appended.extend(style.encoded(&bytes));
+                    }
+                }
+            }
+            writeln!(out, "</{section}>").unwrap();
+        }
+        out.extend_from_slice(b"  </Piece>\n");
+    }
+    writeln!(out, " </{kind}>").unwrap();
+    if matches!(style.place, Place::AppendedBase64 | Place::AppendedRaw) {
+        let raw = style.place == Place::AppendedRaw;
+        let encoding = if raw { "raw" } else { "base64" };
+        write!(out, " <AppendedData encoding=\"{encoding}\">\n _").unwrap();
+        out.extend(appended);
+        out.extend_from_slice(b"\n </AppendedData>\n");
+    }
+    out.extend_from_slice(b"</VTKFile>\n");
+    out
+}
+
+/// A cell's type, its points and its region.
+type Cell = (u32, Vec<u32>, u32);
+
+fn cells(mesh: &Mesh) -> Vec<Cell> {
+    let triangles = mesh.triangles.iter().enumerate();
+    let mut cells: Vec<Cell> = triangles.map(|(t, c)| (5, c.to_vec(), t as u32 / 30)).collect();
+    cells.insert(0, (3, vec![7, 8], 9));
+    cells.insert(5, (9, vec![15, 16, 22, 21], 9));
+    cells
+}
+
+/// The arrays of a piece by the element they stand in.
+fn sections(
+    mesh: &Mesh,
+    cells: &[Cell],
+    style: Style,
+    polygons: bool,
+) -> Vec<(&'static str, Vec<Array>)> {
     let mut points = Binary::empty(style.big);
     let mut words = Vec::new();
     for (i, &[x, y]) in mesh.points.iter().enumerate() {
@@ -120,97 +227,50 @@ fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
         text: words.join("  "),
         bytes: points.bytes,
     };
-    let mut cells: Vec<(u32, Vec<u32>, u32)> =
-        mesh.triangles.iter().enumerate().map(|(t, c)| (5, c.to_vec(), t as u32 / 30)).collect();
-    cells.insert(0, (3, vec![7, 8], 9));
-    cells.insert(5, (9, vec![15, 16, 22, 21], 9));
-    let column = |of: fn(&(u32, Vec<u32>, u32)) -> u32| cells.iter().map(of).collect::<Vec<_>>();
-    let connectivity: Vec<u32> = cells.iter().flat_map(|cell| cell.1.clone()).collect();
-    let mut end = 0;
-    let offsets: Vec<u32> = cells
-        .iter()
-        .map(|cell| {
+    let column = |of: fn(&Cell) -> u32| cells.iter().map(of).collect::<Vec<_>>();
+    // Connectivity and offsets of some cells.
+    let lists = |cells: &[Cell]| {
+        let connectivity: Vec<u32> = cells.iter().flat_map(|cell| cell.1.clone()).collect();
+        let mut end = 0;
+        let ends = cells.iter().map(|cell| {
             end += cell.1.len() as u32;
             end
-        })
-        .collect();
+        });
+        let offsets: Vec<u32> = ends.collect();
+        [style.integers("connectivity", &connectivity), style.integers("offsets", &offsets)]
+    };
     let numbers: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    let sections = [
-        ("PointData", vec![style.integers("number", &numbers)]),
+    let quality = style.vectors("quality", cells.len() / 2);
+    let mut sections = vec![
         (
-            "CellData",
-            vec![style.integers("offset", &offsets), style.integers("Region", &column(|c| c.2))],
-        ),
-        ("Points", vec![points]),
-        (
-            "Cells",
+            "PointData",
             vec![
-                style.integers("connectivity", &connectivity),
-                style.integers("offsets", &offsets),
-                style.integers("types", &column(|c| c.0)),
+                style.vectors("flow", mesh.points.len()),
+                style.integers("number", &numbers),
+                style.vectors("wind", mesh.points.len()),
             ],
         ),
+        (
+            "CellData",
+            vec![
+                style.integers("offset", &column(|c| c.0)),
+                style.integers("Region", &column(|c| c.2)),
+                quality,
+            ],
+        ),
+        ("Points", vec![points]),
     ];
-    let mut out = Vec::new();
-    let order = if style.big { "BigEndian" } else { "LittleEndian" };
-    let header = if style.wide_header { "header_type=\"UInt64\"" } else { "" };
-    let compressor =
-        style.compressor.map(|name| format!("compressor=\"{name}\"")).unwrap_or_default();
-    write!(
-        out,
-        "<?xml version=\"1.0\"?>\n<!-- <VTKFile> \"by hand\" -->\n<VTKFile type=\"UnstructuredGrid\" \
-         byte_order=\"{order}\" {header} {compressor}>\n <UnstructuredGrid>\n  <Piece \
-         NumberOfPoints=\"0\" NumberOfCells=\"0\"/>\n  <Piece NumberOfPoints=\"{}\"\n NumberOfCells='{}'>\n",
-        mesh.points.len(),
-        cells.len()
-    )
-    .unwrap();
-    let mut appended = Vec::new();
-    for (section, arrays) in sections {
-        writeln!(out, "<{section}>").unwrap();
-        for Array { attributes, text, bytes } in arrays {
-            match style.place {
-                Place::Text => {
-                    writeln!(
-                        out,
-                        "<DataArray {attributes} format=\"ascii\">\n{text}\n</DataArray>"
-                    )
-                    .unwrap();
-                }
-                Place::Base64 => {
-                    let text = String::from_utf8(style.encoded(&bytes)).unwrap();
-                    writeln!(
-                        out,
-                        "<DataArray {attributes} format=\"binary\">\n  {text}\n</DataArray>"
-                    )
-                    .unwrap();
-                }
-                _ => {
-                    let offset = appended.len();
-                    writeln!(
-                        out,
-                        "<DataArray {attributes} format=\"appended\" offset = \"{offset}\" />"
-                    )
-                    .unwrap();
-                    appended.extend(style.encoded(&bytes));
-                }
-            }
-        }
-        writeln!(out, "</{section}>").unwrap();
+    if polygons {
+        sections.push(("Lines", lists(&cells[..1]).into()));
+        sections.push(("Polys", lists(&cells[1..]).into()));
+    } else {
+        let types = style.integers("types", &column(|c| c.0));
+        sections.push(("Cells", lists(cells).into_iter().chain([types]).collect()));
     }
-    out.extend_from_slice(b"  </Piece>\n </UnstructuredGrid>\n");
-    if matches!(style.place, Place::AppendedBase64 | Place::AppendedRaw) {
-        let raw = style.place == Place::AppendedRaw;
-        let encoding = if raw { "raw" } else { "base64" };
-        write!(out, " <AppendedData encoding=\"{encoding}\">\n _").unwrap();
-        out.extend(appended);
-        out.extend_from_slice(b"\n </AppendedData>\n");
-    }
-    out.extend_from_slice(b"</VTKFile>\n");
-    out
+    sections
 }
 
-fn folder(bytes: &[u8]) -> Folder {
+pub(crate) fn folder(bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
     fs::write(folder.path("in.vtu"), bytes).unwrap();
     folder
@@ -314,8 +374,8 @@ fn what_is_not_read_is_refused_by_its_name() {
     let style = styles()[0];
     let text = String::from_utf8(write(&mesh, style)).unwrap();
     for (from, to, part) in [
-        ("UnstructuredGrid", "PolyData", "of the type PolyData"),
-        ("NumberOfPoints=\"0\"", "NumberOfPoints=\"3\"", "in several pieces"),
+        ("UnstructuredGrid", "ImageData", "of the type ImageData"),
+        ("NumberOfPoints=\"0\"", "NumberOfPoints=\"3\"", "no array of Points"),
         ("byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order", "vtkLZMADataCompressor"),
         ("type=\"Float64\"", "type=\"Int32\"", "points of the type Int32"),
         ("<Cells>", "<Other>", "no array of connectivity"),
@@ -324,5 +384,102 @@ fn what_is_not_read_is_refused_by_its_name() {
         let folder = folder(text.replacen(from, to, 1).as_bytes());
         let error = MeshFile::read(&folder.path("in.vtu")).unwrap_err().to_string();
         assert!(error.contains("in.vtu") && error.contains(part), "{error}");
+    }
+}
+
+/// The mesh twice, the second time farther right.
+fn pieces() -> [Mesh; 2] {
+    let first = base();
+    let mut second = first.clone();
+    second.points.iter_mut().for_each(|point| point[0] += 10.0);
+    [first, second]
+}
+
+fn both(pieces: &[Mesh; 2]) -> Mesh {
+    let [first, second] = pieces;
+    let count = first.points.len() as u32;
+    let triangles = second.triangles.iter().map(|t| t.map(|v| v + count));
+    Mesh {
+        points: first.points.iter().chain(&second.points).copied().collect(),
+        triangles: first.triangles.iter().copied().chain(triangles).collect(),
+        fixed: Vec::new(),
+    }
+}
+
+#[test]
+fn pieces_and_polygons_are_read_and_come_back() {
+    let pieces = pieces();
+    let [first, second] = &pieces;
+    let mut rng = SplitMix64::new(9);
+    for (n, style) in styles().into_iter().enumerate().step_by(5) {
+        let polygons = n % 2 == 0;
+        let several = n % 3 > 0;
+        let meshes = if several { vec![first, second] } else { vec![first] };
+        let mesh = if several { both(&pieces) } else { first.clone() };
+        let bytes = write_pieces(&meshes, style, polygons);
+        let names = if polygons { ["in.vtp", "out.vtp"] } else { ["in.vtu", "out.vtu"] };
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(names[0]), &bytes).unwrap();
+        let file = folder.read(names[0]);
+        let format = if polygons { Format::Vtp } else { Format::Vtu };
+        assert_eq!((file.format(), file.precision()), (format, style.precision), "{style:?}");
+        assert_eq!(file.mesh().points, rounded(&mesh.points, style.precision), "{style:?}");
+        assert_eq!(file.mesh().triangles, mesh.triangles, "{style:?}");
+        let regions: Vec<u32> =
+            (0..mesh.triangles.len()).map(|t| (t % first.triangles.len()) as u32 / 30).collect();
+        assert_eq!(file.regions(), Some(regions.as_slice()), "{style:?}");
+        let groups = file.groups().unwrap();
+        assert!(groups.iter().any(|group| group.quadrilaterals == meshes.len()));
+        file.write(&folder.path(names[1]), &mesh.points).unwrap();
+        assert!(fs::read(folder.path(names[1])).unwrap() == bytes, "{style:?}");
+
+        let mut to = file.mesh().points.clone();
+        let held = check::held(file.mesh());
+        for (point, _) in to.iter_mut().zip(held).filter(|(_, held)| !held) {
+            *point = point.map(|x| x + rng.range(-0.3, 0.3));
+        }
+        let mut fields = file.point_fields(None).unwrap();
+        assert_eq!(fields.len(), 1 + 2 * meshes.len());
+        for field in &mut fields {
+            let values = field.values().iter().map(|value| value + 0.5).collect();
+            field.set(values).unwrap();
+        }
+        file.write_with(&folder.path(names[1]), &to, &fields).unwrap();
+        let after = folder.read(names[1]);
+        assert_eq!(after.mesh().points, rounded(&to, style.precision), "{style:?}");
+        assert_eq!(after.mesh().triangles, mesh.triangles);
+        let found = after.point_fields(None).unwrap();
+        let bits = |field: &PointField| -> Vec<u64> {
+            field.values().iter().map(|x| x.to_bits()).collect()
+        };
+        assert!(found.iter().map(bits).eq(fields.iter().map(bits)), "{style:?}");
+        assert_eq!(file.difference_besides(&after, [&fields, &found]), None, "{style:?}");
+
+        // All of it comes over into one piece.
+        let conversion = Conversion::new(&file, Format::Vtu).unwrap().unwrap();
+        assert_eq!(conversion.lost(), [""; 0]);
+        conversion.write(&folder.path("one.vtu")).unwrap();
+        let one = folder.read("one.vtu");
+        assert_eq!(one.mesh().triangles, mesh.triangles);
+        let flow = one.point_fields(Some(&["flow".into()])).unwrap();
+        assert!(flow.len() == 1 && flow[0].values().iter().all(|value| value.is_finite()));
+    }
+}
+
+#[test]
+fn damaged_pieces_never_panic() {
+    let pieces = pieces();
+    let [first, second] = &pieces;
+    let mut random = damage::random(29);
+    for (n, style) in styles().into_iter().enumerate().step_by(5) {
+        let bytes = write_pieces(&[first, second], style, n % 2 == 0);
+        for _ in 0..12 {
+            let folder = folder(&damage::damaged(&bytes, &mut random));
+            let Ok(file) = MeshFile::read(&folder.path("in.vtu")) else { continue };
+            let _ = file.point_fields(None);
+            if let Ok(Some(conversion)) = Conversion::new(&file, Format::Gmsh22) {
+                conversion.text();
+            }
+        }
     }
 }

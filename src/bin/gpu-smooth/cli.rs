@@ -6,10 +6,12 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use gpu_smooth::{Conversion, Format};
 
 use crate::bench::BenchArgs;
 use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
+use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
@@ -20,7 +22,7 @@ use crate::run_args::SmoothArgs;
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
-                  Triangle .node/.ele, gmsh .msh, VTK .vtk and .vtu, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
+                  Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
                   fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
@@ -88,6 +90,8 @@ pub(crate) enum Command {
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
+    /// Writes a mesh in another format, and says before what that does not hold
+    Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters,
     /// Tells what each metric measures and what it is good for
@@ -125,6 +129,29 @@ pub(crate) struct CompareArgs {
     /// What may have moved: the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+    #[command(flatten)]
+    pub(crate) riding: RidingArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct ConvertArgs {
+    /// The mesh, in any format that is read; - for the standard input
+    pub(crate) input: PathBuf,
+    /// Where to write it; its ending tells the format. - for the standard output, with --to
+    pub(crate) output: PathBuf,
+    /// The format to write, where the ending does not tell it: .msh is gmsh 4.1 without it
+    #[arg(long, value_name = "FORMAT", value_parser = target)]
+    pub(crate) to: Option<Format>,
+    /// Write the mesh even if the format does not hold all of it
+    #[arg(long)]
+    pub(crate) lossy: bool,
+}
+
+/// The format of this short name.
+fn target(text: &str) -> Result<Format, String> {
+    let found = Conversion::targets().find(|(name, _)| *name == text);
+    let names = || Conversion::targets().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
+    found.map(|(_, format)| format).ok_or_else(|| format!("it is one of {}", names()))
 }
 
 #[derive(Args)]

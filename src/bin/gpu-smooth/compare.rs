@@ -20,7 +20,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     for note in choice.notes.iter().chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);
     }
-    if let Some(difference) = before.difference(&after) {
+    let (mine, theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
+    let fields = [mine.fields(), theirs.fields()];
+    if let Some(difference) = before.difference_besides(&after, fields) {
         let (place, other) = (&difference.place, &difference.other_place);
         let what = &difference.what;
         return Err(format!("{place} and {other}: more than coordinates is different: {what}"));
@@ -37,7 +39,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let held: Vec<u32> =
         moved.iter().copied().filter(|&vertex| !topology.free()[vertex as usize]).collect();
     let bad = topology.bad_triangles(new).map_err(told)?;
-    let (mut problems, mut list) = (Vec::new(), String::new());
+    let (mut problems, mut list) = (mine.implausible(&theirs, &moved), String::new());
     match held.len() {
         0 => {}
         1 => problems.push("1 vertex has moved that must not".to_owned()),
@@ -59,6 +61,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     }
     if !show.quiet {
         tell::say(&summary(&after, old, new, &moved));
+        if let Some(text) = mine.compared() {
+            tell::say(&text);
+        }
     }
     Ok(())
 }

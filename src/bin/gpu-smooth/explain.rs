@@ -133,6 +133,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         | MeshError::IndexOutOfRange { .. }
         | MeshError::RepeatedVertex { .. }
         | MeshError::PointCount { .. }
+        | MeshError::ValueCount { .. }
         | MeshError::BoundNotANumber => format!("{}: {error}", file.path().display()),
     }
 }

@@ -4,6 +4,7 @@ mod bench;
 mod cli;
 mod columns;
 mod compare;
+mod convert;
 mod engine;
 mod explain;
 mod groups;
@@ -16,6 +17,7 @@ mod picture;
 mod progress;
 mod quality;
 mod report;
+mod riding;
 mod run_args;
 mod shell;
 mod smooth;
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
+        Some(Command::Convert(args)) => convert::run(args, &cli.output),
         Some(Command::Adapters) => tell::adapters(),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),

@@ -37,6 +37,9 @@ pub(crate) struct Report {
     /// What the options hold or let move, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) choices: Vec<String>,
+    /// What data of vertices were taken to the new places.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) interpolated: Option<String>,
     /// Vertices that the shape guard keeps from moving on, if the run ended for that.
     pub(crate) held_back: usize,
     /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.

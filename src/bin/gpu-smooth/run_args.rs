@@ -8,14 +8,15 @@ use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme,
 use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
+use crate::riding::RidingArgs;
 
 #[derive(Args)]
 pub(crate) struct SmoothArgs {
-    /// The mesh to read; its format is told by its content. It may be compressed by gzip, or - for the standard input
+    /// The mesh to read; its format is told by its content. It may be compressed by gzip or zstd, or - for the standard input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
     /// Where to write the smoothed mesh, in the format of IN; may be IN itself, or - for the standard output.
-    /// A name that ends in .gz gets a compressed file
+    /// A name that ends in .gz or .zst gets a compressed file
     #[arg(required_unless_present = "out_dir", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Further meshes, with --out-dir
@@ -86,6 +87,9 @@ pub(crate) struct SmoothArgs {
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+
+    #[command(flatten)]
+    pub(crate) riding: RidingArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long, help_heading = "Untangling")]

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use gpu_smooth::MeshFile;
+use gpu_smooth::{MeshFile, PointField};
 
 use crate::tell;
 
@@ -22,11 +22,19 @@ pub(crate) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Writes a mesh, to the standard output if its name is `-`.
-pub(crate) fn write(file: &MeshFile, out: &Path, points: &[[f64; 2]]) -> Result<(), String> {
+/// Writes a mesh with these data, to the standard output if its name is `-`.
+pub(crate) fn write(
+    file: &MeshFile,
+    out: &Path,
+    points: &[[f64; 2]],
+    fields: &[PointField],
+) -> Result<(), String> {
     let written = match is_standard(out) {
-        true => file.write_to(Path::new("standard output"), &mut std::io::stdout(), points),
-        false => file.write(out, points),
+        true => {
+            let name = Path::new("standard output");
+            file.write_to_with(name, &mut std::io::stdout(), points, fields)
+        }
+        false => file.write_with(out, points, fields),
     };
     written.map_err(|error| error.to_string())
 }

@@ -83,6 +83,7 @@ pub(crate) fn carry_out<T>(
     follow.stage(Stage::Reading { bytes });
     let mut file = streams::read(input)?;
     let choice = args.moving.apply(&mut file)?;
+    let mut riding = args.riding.choose(&file)?;
     let file = file;
     let read_done = Instant::now();
     follow.has_read(&file)?;
@@ -96,9 +97,11 @@ pub(crate) fn carry_out<T>(
     let (prepared, taken) = std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
         let prepared = match Smoother::new(mesh) {
-            Err(error) if args.untangle && untangle::can_mend(&error) => {
-                untangle::mend(args, show, &file, out).map(Prepared::Mended).map_err(Failure::from)
-            }
+            Err(error) if args.untangle && untangle::can_mend(&error) => riding
+                .check_untangled()
+                .and_then(|()| untangle::mend(args, show, &file, out))
+                .map(Prepared::Mended)
+                .map_err(Failure::from),
             Err(error) => Err(refusal(args, &choice, &file, &error)),
             Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
         };
@@ -124,10 +127,16 @@ pub(crate) fn carry_out<T>(
     let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
     follow.has_smoothed()?;
     let after = smoother.quality(&outcome.points).map_err(told)?;
+    let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
+    let has_moved = outcome.points != mesh.points;
+    let left_behind = has_moved.then(|| riding.left_behind(&file)).flatten();
+    for note in interpolated.iter().chain(&left_behind) {
+        follow.remark(note);
+    }
     let smoothed = Instant::now();
 
     follow.stage(Stage::Writing { bytes });
-    streams::write(&file, out, &outcome.points)?;
+    streams::write(&file, out, &outcome.points, riding.fields())?;
     let written = Instant::now();
 
     let seconds = Seconds {
@@ -155,6 +164,7 @@ pub(crate) fn carry_out<T>(
         stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
         nothing_to_do: choice.nothing_to_do,
         choices: choice.notes,
+        interpolated,
         held_back: outcome.held_back,
         lost: outcome.lost,
         goal: goal_report(&outcome),

@@ -54,7 +54,7 @@ pub(crate) fn mend(
     if !args.keep_going {
         return Err(message);
     }
-    match streams::write(file, out, &points) {
+    match streams::write(file, out, &points, &[]) {
         Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
         Err(error) => Err(format!("{message}\n  {error}")),
     }

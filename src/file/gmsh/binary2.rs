@@ -7,14 +7,15 @@ use super::words::Words;
 use super::{block_fits, row};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::heights::Heights;
 use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 
 /// Reads `$Nodes` after its first line, or `$ParametricNodes`. Returns their number.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    order: Order,
-    parametric: bool,
+    (order, parametric): (Order, bool),
+    heights: &mut Heights,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
     const TAG: usize = 4;
@@ -26,8 +27,9 @@ pub(super) fn nodes(
         let progress = (done, count, "nodes");
         let words = &mut Words::take(cursor, order, NODE, progress)?;
         let tag = words.natural(cursor, "a node tag")?;
-        let at = words.point(cursor, tag)?;
-        sink.node(cursor, tag, 2, cursor.taken() + TAG, at);
+        let [x, y, z] = words.point(cursor, tag)?;
+        sink.node(cursor, tag, 2, cursor.taken() + TAG, [x, y]);
+        heights.see((cursor.taken() + TAG + 16, z));
         if parametric {
             // The dimension of its entity, the entity's tag, and a parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;

@@ -6,6 +6,7 @@ use super::words::Words;
 use super::{all_in_blocks, block_fits};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::heights::Heights;
 use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 
@@ -16,6 +17,7 @@ const BLOCK_HEADER: usize = 20;
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: Order,
+    heights: &mut Heights,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, order)?;
@@ -28,7 +30,7 @@ pub(super) fn nodes(
         words.int(); // The entity's own tag.
         let parametric = words.int() != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
@@ -39,8 +41,9 @@ pub(super) fn nodes(
             let progress = (done + at, count, "nodes");
             let words = &mut Words::take(cursor, order, 8 * (3 + parameters), progress)?;
             let tag = tags.size();
-            let at = words.point(cursor, tag)?;
-            sink.node(cursor, tag, dimension, cursor.taken(), at);
+            let [x, y, z] = words.point(cursor, tag)?;
+            sink.node(cursor, tag, dimension, cursor.taken(), [x, y]);
+            heights.see((cursor.taken() + 16, z));
         }
         done += size;
     }

@@ -1,4 +1,4 @@
-//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary (not 4.0).
+//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh only `$MeshFormat`, `$Nodes`
 //! and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical groups of each
@@ -7,6 +7,8 @@
 
 mod binary2;
 mod binary4;
+mod binary40;
+mod data;
 mod kind;
 mod model;
 mod text2;
@@ -17,7 +19,8 @@ mod words;
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::numbers::Numbers;
+use crate::file::heights::Heights;
+use crate::file::numbers::{Form, Numbers};
 use crate::file::parallel_rows::take_rows;
 use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
@@ -56,7 +59,8 @@ impl Walk for Gmsh {
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
-            (Version::V40, _) => Format::Gmsh40,
+            (Version::V40, None) => Format::Gmsh40,
+            (Version::V40, Some(_)) => Format::Gmsh40Binary,
             (Version::V4, None) => Format::Gmsh41,
             (Version::V4, Some(_)) => Format::Gmsh41Binary,
         };
@@ -90,18 +94,24 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
-                    sink.note(PARAMETRIC);
+                    note_parameters(sink);
                 }
+                let mut seen = Heights::new(sink);
+                let heights = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, sink)?,
-                    (Version::V40, _) => text40::nodes(cursor, sink)?,
-                    (Version::V4, None) => text4::nodes(cursor, sink)?,
-                    (Version::V2, Some(order)) => binary2::nodes(cursor, order, parametric, sink)?,
-                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, sink)?,
+                    (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
+                    (Version::V40, None) => text40::nodes(cursor, heights, sink)?,
+                    (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
+                    (Version::V2, Some(order)) => {
+                        binary2::nodes(cursor, (order, parametric), heights, sink)?
+                    }
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
                 };
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
                 sink.end_nodes(cursor)?;
+                seen.send("z", form(order), sink);
             }
             b"Elements" => {
                 once(cursor, &mut elements, "Elements")?;
@@ -112,11 +122,12 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, sink)?,
-                    (Version::V40, _) | (Version::V4, None) => {
+                    (Version::V40 | Version::V4, None) => {
                         text4::elements(cursor, version, &model, sink)?
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
                     (Version::V4, Some(order)) => binary4::elements(cursor, order, &model, sink)?,
+                    (Version::V40, Some(order)) => binary40::elements(cursor, order, &model, sink)?,
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
             }
@@ -130,11 +141,22 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, "entities")?;
             }
+            b"NodeData" | b"ElementData" => {
+                let order = known(cursor, encoding)?.order;
+                data::read(cursor, name == b"NodeData", order, sink);
+                skip_section(cursor, name, opened)?;
+            }
             name if name.starts_with(b"End") => {
                 let problem = format!("${} ends a section that never began", quoted(name));
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
-            name => skip_section(cursor, name, opened)?,
+            name => {
+                let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
+                if sink.asks_for_data() && !is_told {
+                    sink.leaves_out(&format!("the section ${}", quoted(name)));
+                }
+                skip_section(cursor, name, opened)?;
+            }
         }
     }
     let missing = if !nodes { "$Nodes" } else { "$Elements" };
@@ -144,6 +166,14 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
             format!("it has no {missing} section"),
             "The file is cut off or was saved without its mesh: save it again",
         )),
+    }
+}
+
+/// How a number stands in the file.
+fn form(order: Option<Order>) -> Form {
+    match order {
+        None => Form::Text(Precision::Double),
+        Some(order) => Form::Binary(order, Precision::Double),
     }
 }
 
@@ -162,11 +192,6 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     };
     match cursor.integer("the file type")? {
         0 => Ok(Encoding { version, order: None }),
-        1 if version == Version::V40 => {
-            let problem = "binary files of version 4.0 are not read";
-            let remedy = "Save as version 4.1 (gmsh old.msh -save -format msh41 -o new.msh)";
-            Err(cursor.error(problem, remedy))
-        }
         1 => match cursor.integer("the size of a number")? {
             8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {
@@ -180,6 +205,12 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
             Err(cursor.error(problem, "Save the mesh again with gmsh"))
         }
     }
+}
+
+/// Remarks that nodes have parameters.
+fn note_parameters(sink: &mut impl Sink) {
+    sink.note(PARAMETRIC);
+    sink.leaves_out("parameters of nodes on surfaces");
 }
 
 fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {

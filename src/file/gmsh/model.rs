@@ -88,7 +88,14 @@ impl Model {
                     None => {
                         text_entity(cursor, partitioned, dimension, numbers(dimension), progress)?
                     }
-                    Some(order) => binary_entity(cursor, order, partitioned, dimension, progress)?,
+                    Some(order) => binary_entity(
+                        cursor,
+                        order,
+                        partitioned,
+                        dimension,
+                        numbers(dimension),
+                        progress,
+                    )?,
                 };
                 self.entities.insert((dimension, tag), entity);
             }
@@ -171,6 +178,7 @@ fn binary_entity(
     order: Order,
     partitioned: bool,
     dimension: u8,
+    numbers: usize,
     progress: (u64, u64, &str),
 ) -> Result<(i64, Entity), ReadError> {
     let is_point = dimension == 0;
@@ -192,7 +200,7 @@ fn binary_entity(
         whole = whole_of(tag, dimension, parent, parent_dimension);
         ints(cursor)?;
     }
-    Words::take(cursor, order, if is_point { 24 } else { 48 }, progress)?;
+    Words::take(cursor, order, 8 * numbers, progress)?;
     let physical = ints(cursor)?.into_iter().map(i64::abs).collect();
     if !is_point {
         // What bounds it.

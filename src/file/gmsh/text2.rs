@@ -3,22 +3,29 @@
 use super::kind::{kind_of, node_tags};
 use super::{ahead, row};
 use crate::error::ReadError;
+use crate::file::heights::Heights;
 use crate::file::sink::{Column, Element, Sink};
 use crate::file::text::{CORRECT, Cursor};
 
 /// Reads `$Nodes` after its first line. Returns their number.
-pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.vertex_count()?;
     sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
-    let plain = ahead(cursor, count, sink, node, |cursor, sink, (tag, (x_at, at))| {
+    let plain = ahead(cursor, count, sink, node, |cursor, sink, (tag, (x_at, at), z)| {
         sink.node(cursor, tag, 2, x_at, at);
+        heights.see(z);
         true
     });
     for done in plain..count {
         row(cursor, done, count, "nodes")?;
-        let (tag, (x_at, at)) = node(cursor)?;
+        let (tag, (x_at, at), z) = node(cursor)?;
         sink.node(cursor, tag, 2, x_at, at);
+        heights.see(z);
     }
     Ok(count)
 }
@@ -45,14 +52,15 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<
     Ok(count)
 }
 
+/// A node's tag, x and y with the place of x, and z with its own.
+type Node = (u64, (usize, [f64; 2]), (usize, f64));
+
 #[inline]
-fn node(cursor: &mut Cursor<'_>) -> Result<(u64, (usize, [f64; 2])), ReadError> {
+fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     let tag = cursor.integer("a node tag")?;
     let owner = format_args!("node {tag}");
     let point = cursor.point(owner)?;
-    // z is not used, but a row without it is cut off.
-    cursor.coordinate('z', owner)?;
-    Ok((tag, point))
+    Ok((tag, point, cursor.height(owner)?))
 }
 
 #[inline]

@@ -4,12 +4,17 @@ use super::kind::{kind_of, node_tags};
 use super::model::Model;
 use super::{Version, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
+use crate::file::heights::Heights;
 use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns their number.
-pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of node blocks")?;
     let count = cursor.vertex_count()?;
@@ -22,7 +27,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         cursor.token(); // The entity's own tag, which may be negative.
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;
@@ -38,14 +43,16 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         }
         let mut owners = tags.iter();
         let read = |cursor: &mut Cursor<'_>| point(cursor, "a node");
-        let plain = ahead(cursor, size, sink, read, |cursor, sink, (x_at, at)| {
+        let plain = ahead(cursor, size, sink, read, |cursor, sink, ((x_at, at), z)| {
+            heights.see(z);
             let owner = owners.next();
             owner.inspect(|&&tag| sink.node(cursor, tag, dimension, x_at, at)).is_some()
         });
         for (at, &tag) in (plain..).zip(owners) {
             row(cursor, done + at, count, "nodes")?;
-            let (x_at, at) = point(cursor, format_args!("node {tag}"))?;
+            let ((x_at, at), z) = point(cursor, format_args!("node {tag}"))?;
             sink.node(cursor, tag, dimension, x_at, at);
+            heights.see(z);
         }
         done += size;
     }
@@ -104,14 +111,11 @@ fn node_tag(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     cursor.integer("a node tag")
 }
 
-/// Reads a node's coordinates. Returns where x stands, and x and y.
+/// x and y with the place of x, and z with its own.
+type Point = ((usize, [f64; 2]), (usize, f64));
+
+/// Reads a node's coordinates.
 #[inline]
-fn point(
-    cursor: &mut Cursor<'_>,
-    owner: impl Display + Copy,
-) -> Result<(usize, [f64; 2]), ReadError> {
-    let point = cursor.point(owner)?;
-    // z is not used, but a row without it is cut off.
-    cursor.coordinate('z', owner)?;
-    Ok(point)
+fn point(cursor: &mut Cursor<'_>, owner: impl Display + Copy) -> Result<Point, ReadError> {
+    Ok((cursor.point(owner)?, cursor.height(owner)?))
 }

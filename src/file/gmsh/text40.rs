@@ -2,11 +2,16 @@
 
 use super::{all_in_blocks, block_fits, row};
 use crate::error::ReadError;
+use crate::file::heights::Heights;
 use crate::file::sink::{Sink, each_row};
 use crate::file::text::Cursor;
 
 /// Reads `$Nodes` after its first line. Returns their number.
-pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut impl Sink,
+) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of node blocks")?;
     let count = cursor.vertex_count()?;
@@ -18,7 +23,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
         let dimension = cursor.integer("the dimension of a node block")?;
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
         if parametric && dimension >= 2 {
-            sink.note(super::PARAMETRIC);
+            super::note_parameters(sink);
         }
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;
@@ -26,12 +31,11 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64
             let tag = cursor.integer("a node tag")?;
             let owner = format_args!("node {tag}");
             let point = cursor.point(owner)?;
-            // z is not used, but a row without it is cut off.
-            cursor.coordinate('z', owner)?;
-            Ok((tag, point))
+            Ok((tag, point, cursor.height(owner)?))
         };
-        each_row(cursor, size, "nodes", sink, read, |cursor, sink, _, (tag, (x_at, at))| {
+        each_row(cursor, size, "nodes", sink, read, |cursor, sink, _, (tag, (x_at, at), z)| {
             sink.node(cursor, tag, dimension, x_at, at);
+            heights.see(z);
             Ok(())
         })?;
         done += size;

@@ -70,9 +70,9 @@ impl<'a> Words<'a> {
         self.order.u64(self.next())
     }
 
-    /// Reads x, y and z of a node and returns x and y. Writing leaves z alone.
+    /// Reads x, y and z of a node.
     #[inline]
-    pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 2], ReadError> {
+    pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {
         let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
         for (axis, x) in "xyz".chars().zip(point) {
             if !x.is_finite() {
@@ -80,8 +80,7 @@ impl<'a> Words<'a> {
                 return Err(cursor.error(problem, DAMAGED));
             }
         }
-        let [x, y, _] = point;
-        Ok([x, y])
+        Ok(point)
     }
 }
 

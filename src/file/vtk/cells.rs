@@ -29,10 +29,14 @@ impl Cell<'_> {
             nodes[..points.len()].copy_from_slice(points);
             return sink.element(cursor, &Element { tag, kind, region, nodes });
         }
-        points.iter().try_for_each(|&point| {
-            let nodes = [point, 0, 0, 0];
-            sink.element(cursor, &Element { tag, kind, region, nodes })
-        })
+        match (kind, cell_type) {
+            (Kind::Corner, _) => sink.polygon(cursor, (tag, region), points),
+            (_, 4) => sink.polyline(cursor, (tag, region), points),
+            _ => points.iter().try_for_each(|&point| {
+                let nodes = [point, 0, 0, 0];
+                sink.element(cursor, &Element { tag, kind, region, nodes })
+            }),
+        }
     }
 }
 

@@ -3,10 +3,14 @@
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::heights::TextNumbers;
 use crate::file::label::Label;
-use crate::file::sink::{Column, Sink};
+use crate::file::numbers::{Form, Places};
+use crate::file::sink::{Column, PointNumbers, Sink, Stored};
 use crate::file::text::{CUT_OFF, Cursor, quoted};
 use crate::file::vtk::take;
+use crate::mesh::Precision;
+use std::borrow::Cow;
 
 /// Names of arrays by which programs tell the regions of cells, in lower case: gmsh and meshio, VTK's own readers, and
 /// what solvers call materials.
@@ -35,6 +39,9 @@ const REGIONS: [&[u8]; 18] = [
 pub(in crate::file) fn names_regions(name: &[u8]) -> bool {
     REGIONS.contains(&name.to_ascii_lowercase().as_slice())
 }
+
+/// How many arrays tell regions at most.
+const MOST: usize = 2;
 
 /// An array of cell data that tells regions.
 pub(super) struct Regions {
@@ -71,7 +78,6 @@ pub(super) fn regions(
             break;
         }
     }
-    data.found.truncate(2);
     data.found
 }
 
@@ -155,14 +161,28 @@ impl<S: Sink> Data<'_, S> {
         components: u64,
         tuples: u64,
     ) -> Option<()> {
+        let name = &decoded(name)[..];
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
-        if !self.of_cells && of_all && self.sink.point_array(name, components) {
+        let precision = precision_of(kind);
+        if !self.of_cells && of_all && self.sink.point_array(name, components, precision.is_some())
+        {
             let numbers = self.numbers(cursor, kind, count)?;
             self.sink.point_numbers(numbers);
             return Some(());
         }
-        if !(self.of_cells && components == 1 && of_all && names_regions(name)) {
+        let is_region = components == 1 && names_regions(name) && self.found.len() < MOST;
+        if self.of_cells
+            && of_all
+            && !is_region
+            && self.sink.asks_for_data()
+            && self.sink.cell_array(name, components, precision.is_some())
+        {
+            let numbers = self.numbers(cursor, kind, count)?.numbers;
+            self.sink.cell_numbers(numbers, None);
+            return Some(());
+        }
+        if !(self.of_cells && of_all && is_region) {
             return pass(cursor, self.binary, kind, count).ok();
         }
         let name = String::from_utf8_lossy(name).into_owned();
@@ -186,19 +206,59 @@ impl<S: Sink> Data<'_, S> {
     }
 
     /// Reads numbers of any type.
-    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<Vec<f64>> {
+    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<PointNumbers> {
+        let precision = precision_of(kind);
         if self.binary {
             let (size, value) = (size_of(kind)?, value_of(kind));
             let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
-            return Some(bytes.map(|number| value(Order::Big.signed(number))).collect());
+            let numbers = bytes.map(|number| value(Order::Big.signed(number))).collect();
+            let places = Places::Regular { start: cursor.taken(), stride: size };
+            let stored = precision.and_then(|precision| {
+                Stored::in_place(places, Form::Binary(Order::Big, precision))
+            });
+            return Some(PointNumbers { numbers, nodes: None, stored });
         }
-        let mut numbers = Vec::with_capacity(cursor.capacity(count, "0 ".len()));
+        let mut numbers = TextNumbers::default();
         for _ in 0..count {
             cursor.next_word().then_some(())?;
-            numbers.push(cursor.coordinate('v', "a point").ok()?);
+            numbers.read(cursor).ok()?;
         }
-        Some(numbers)
+        let numbers = numbers.finish(precision.unwrap_or_default(), None);
+        Some(PointNumbers { stored: numbers.stored.filter(|_| precision.is_some()), ..numbers })
     }
+}
+
+/// How many digits numbers of this type have, if they are real.
+fn precision_of(kind: &[u8]) -> Option<Precision> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => Some(Precision::Single),
+        b"double" => Some(Precision::Double),
+        _ => None,
+    }
+}
+
+/// A name with the bytes that VTK writes as a percent sign and two digits.
+fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
+    if !name.contains(&b'%') {
+        return Cow::Borrowed(name);
+    }
+    let mut decoded = Vec::with_capacity(name.len());
+    let mut left = name;
+    while let Some((&first, rest)) = left.split_first() {
+        let digits = rest.get(..2).and_then(|digits| str::from_utf8(digits).ok());
+        let byte = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match byte.filter(|_| first == b'%') {
+            Some(byte) => {
+                decoded.push(byte);
+                left = &rest[2..];
+            }
+            None => {
+                decoded.push(first);
+                left = rest;
+            }
+        }
+    }
+    Cow::Owned(decoded)
 }
 
 fn number_of_bits(bits: i64) -> Option<Label> {

@@ -13,7 +13,8 @@ pub(in crate::file) use data::names_regions;
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::numbers::Numbers;
+use crate::file::heights::Heights;
+use crate::file::numbers::{Form, Numbers};
 use crate::file::sink::{Layout, Sink, Walk, each_row};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
@@ -45,7 +46,8 @@ enum List {
     Cells,
     Polygons,
     Strips,
-    /// Points and lines.
+    Lines,
+    /// Points.
     Others,
 }
 
@@ -67,6 +69,7 @@ impl Walk for Vtk {
         };
         let mut lists: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
+        let mut heights = None;
         let mut regions: Vec<Regions> = Vec::new();
         while cursor.next_word() {
             // VTK does not tell small letters from capitals.
@@ -78,13 +81,16 @@ impl Walk for Vtk {
                         let problem = "this is the second list of POINTS";
                         return Err(cursor.error(problem, "Save each mesh to a file of its own"));
                     }
-                    precision = Some(points(cursor, binary, sink)?);
+                    let mut seen = Heights::new(sink);
+                    precision = Some(points(cursor, binary, &mut seen, sink)?);
+                    heights = Some(seen);
                 }
                 b"CELLS" | b"POLYGONS" | b"LINES" | b"VERTICES" | b"TRIANGLE_STRIPS" => {
                     let kind = match keyword.as_slice() {
                         b"CELLS" => List::Cells,
                         b"POLYGONS" => List::Polygons,
                         b"TRIANGLE_STRIPS" => List::Strips,
+                        b"LINES" => List::Lines,
                         _ => List::Others,
                     };
                     lists.push(cells(cursor, binary, kind)?);
@@ -103,7 +109,10 @@ impl Walk for Vtk {
                     }
                 }
                 b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
-                b"FIELD" => data::pass_field(cursor, binary)?,
+                b"FIELD" => {
+                    sink.leaves_out("field data");
+                    data::pass_field(cursor, binary)?;
+                }
                 // Data of points and cells, to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
                     regions = data::regions(cursor, binary, &keyword, sink);
@@ -119,6 +128,13 @@ impl Walk for Vtk {
             return Err(source.error("it has no POINTS", "Save the mesh again"));
         };
         sink.end_nodes(cursor)?;
+        if let Some(heights) = heights {
+            let form = match binary {
+                true => Form::Binary(Order::Big, precision),
+                false => Form::Text(precision),
+            };
+            heights.send("z", form, sink);
+        }
         sink.columns(regions.iter().map(Regions::column).collect());
         let mut tag = 0;
         for cells in &lists {
@@ -147,6 +163,7 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
 fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
+    heights: &mut Heights,
     sink: &mut impl Sink,
 ) -> Result<Precision, ReadError> {
     let count = cursor.vertex_count()?;
@@ -164,13 +181,14 @@ fn points(
         let start = cursor.taken();
         sink.expect_nodes(bytes.len() / (3 * width));
         for (index, point) in bytes.chunks_exact(3 * width).enumerate() {
-            let [x, y] = [0, 1].map(|axis| {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
                 let number = &point[axis * width..][..width];
                 Order::Big.real(precision, number)
             });
             let x_at = start + index * 3 * width;
             let place = &Cursor::at_byte_of(cursor.source, x_at);
             sink.node(place, index as u64, 2, x_at, finite(place, [x, y])?);
+            heights.see((x_at + 2 * width, z));
         }
         return Ok(precision);
     }
@@ -185,14 +203,15 @@ fn points(
         sink,
         |cursor| {
             let point = cursor.point("a point")?;
-            cursor.coordinate('z', "a point")?;
+            let z = cursor.height("a point")?;
             match cursor.is_at_end() {
-                true => Ok(point),
+                true => Ok((point, z)),
                 false => Err(cursor.error("more than a point on a line", CORRECT)),
             }
         },
-        |cursor, sink, index, (x_at, at)| {
+        |cursor, sink, index, ((x_at, at), z)| {
             sink.node(cursor, index, 2, x_at, at);
+            heights.see(z);
             done = index + 1;
             Ok(())
         },
@@ -201,20 +220,19 @@ fn points(
         return Ok(precision);
     }
     for index in 0..count {
-        let mut x_at = 0;
+        let mut places = [0; 3];
         let mut point = [0.0; 3];
         for (axis, x) in point.iter_mut().enumerate() {
             if !rest.next_word() {
                 let problem = format!("the file ends after {index} of {count} points");
                 return Err(rest.error(problem, CUT_OFF));
             }
-            if axis == 0 {
-                x_at = rest.at();
-            }
+            places[axis] = rest.at();
             *x = rest.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
         }
         if index >= done {
-            sink.node(&rest, index, 2, x_at, [point[0], point[1]]);
+            sink.node(&rest, index, 2, places[0], [point[0], point[1]]);
+            heights.see((places[2], point[2]));
         }
     }
     *cursor = rest;
@@ -360,7 +378,9 @@ fn elements<S: Sink>(
             (Some(types), _) => types[index],
             (None, List::Polygons) => 7,
             (None, List::Strips) => 6,
-            (None, _) => 4,
+            // A list of lines, or one of points.
+            (None, List::Lines) => 4,
+            (None, _) => 2,
         };
         let mut region = [0; 2];
         for (number, regions) in region.iter_mut().zip(regions) {

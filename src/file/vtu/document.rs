@@ -2,6 +2,7 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
+use crate::file::numbers::Offset;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, quoted};
 use crate::file::vtu::blocks::Compressor;
@@ -15,14 +16,31 @@ pub(super) struct Document {
     /// How many bytes a number has that tells the length of a block.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
-    pub(super) points: u64,
-    pub(super) cells: u64,
+    pub(super) content: Content,
+    /// The pieces of the mesh, those without points too.
+    pub(super) pieces: Vec<Piece>,
     pub(super) arrays: Vec<Array>,
     pub(super) appended: Option<Appended>,
 }
 
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Content {
+    Grid,
+    Polygons,
+}
+
+/// How much a `Piece` holds.
+pub(super) struct Piece {
+    pub(super) points: u64,
+    /// The number of cells; of polygonal data those of points, lines, strips and polygons.
+    pub(super) cells: [u64; 4],
+}
+
 /// A `DataArray`.
 pub(super) struct Array {
+    /// The piece it stands in, or the last one before it.
+    pub(super) piece: usize,
     /// The element it stands in: `Points`, `Cells`, `PointData` and so on.
     pub(super) section: String,
     pub(super) name: String,
@@ -61,8 +79,8 @@ impl Document {
             order: Order::Little,
             header: 4,
             compressor: None,
-            points: 0,
-            cells: 0,
+            content: Content::Grid,
+            pieces: Vec::new(),
             arrays: Vec::new(),
             appended: None,
         };
@@ -92,7 +110,8 @@ impl Document {
                         "Piece" => document.piece(&tag)?,
                         "DataArray" | "Array" => {
                             let section = open.last().cloned().unwrap_or_default();
-                            let array = tag.array(section, after, is_empty)?;
+                            let piece = document.pieces.len().saturating_sub(1);
+                            let array = tag.array((section, piece), after, is_empty)?;
                             document.arrays.push(array);
                         }
                         "AppendedData" => {
@@ -115,13 +134,27 @@ impl Document {
         Ok(document)
     }
 
+    /// What the file says of the places of appended arrays.
+    pub(super) fn offsets(&self) -> Vec<Offset> {
+        let Some(appended) = self.appended else { return Vec::new() };
+        let offset = |array: &Array| {
+            let (value, place) = array.offset.clone()?;
+            Some(Offset { value, array_at: appended.start.saturating_add(value), place })
+        };
+        self.arrays.iter().filter_map(offset).collect()
+    }
+
     fn header_of(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
         let kind = tag.attribute("type")?.unwrap_or_default();
-        if kind != "UnstructuredGrid" {
-            let problem = format!("a VTK file of the type {}", quoted(kind.as_bytes()));
-            let remedy = "Save as an unstructured grid in one file (.vtu)";
-            return Err(tag.error(problem, remedy));
-        }
+        self.content = match kind.as_str() {
+            "UnstructuredGrid" => Content::Grid,
+            "PolyData" => Content::Polygons,
+            _ => {
+                let problem = format!("a VTK file of the type {}", quoted(kind.as_bytes()));
+                let remedy = "Save as an unstructured grid in one file (.vtu)";
+                return Err(tag.error(problem, remedy));
+            }
+        };
         if tag.attribute("byte_order")?.as_deref() == Some("BigEndian") {
             self.order = Order::Big;
         }
@@ -142,15 +175,20 @@ impl Document {
 
     fn piece(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
         let points = tag.number("NumberOfPoints")?;
-        if points == 0 {
-            return Ok(());
-        }
-        if self.points > 0 {
-            let problem = "the mesh is in several pieces";
-            return Err(tag.error(problem, "Merge the pieces, and save as one"));
-        }
-        self.points = points;
-        self.cells = tag.number("NumberOfCells")?;
+        let optional = |name: &str| match tag.attribute(name)? {
+            None => Ok(0),
+            Some(_) => tag.number(name),
+        };
+        let cells = match self.content {
+            Content::Grid => [tag.number("NumberOfCells")?, 0, 0, 0],
+            Content::Polygons => [
+                optional("NumberOfVerts")?,
+                optional("NumberOfLines")?,
+                optional("NumberOfStrips")?,
+                optional("NumberOfPolys")?,
+            ],
+        };
+        self.pieces.push(Piece { points, cells });
         Ok(())
     }
 }
@@ -182,7 +220,12 @@ impl Tag<'_> {
         })
     }
 
-    fn array(&self, section: String, after: usize, is_empty: bool) -> Result<Array, ReadError> {
+    fn array(
+        &self,
+        (section, piece): (String, usize),
+        after: usize,
+        is_empty: bool,
+    ) -> Result<Array, ReadError> {
         let bytes = &self.source.bytes;
         let format = match self.attribute("format")?.as_deref() {
             Some("binary") => Coding::Base64,
@@ -213,6 +256,7 @@ impl Tag<'_> {
             Some(_) => self.number("NumberOfComponents")?,
         };
         Ok(Array {
+            piece,
             section,
             name: self.attribute("Name")?.unwrap_or_default(),
             number: self.attribute("type")?.unwrap_or_default(),

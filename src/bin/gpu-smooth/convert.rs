@@ -1,0 +1,65 @@
+//! `gpu-smooth convert IN OUT`.
+
+use std::io::Write;
+
+use gpu_smooth::{Conversion, Format, output};
+
+use crate::cli::{ConvertArgs, OutputArgs};
+use crate::streams::{is_standard, read};
+use crate::tell;
+
+/// Writes a mesh in another format. An error if that does not hold all of it, unless it is to be written all the same.
+pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
+    let format = format(args)?;
+    let file = read(&args.input)?;
+    let conversion = Conversion::new(&file, format).map_err(|error| error.to_string())?;
+    let (path, out) = (file.path().display(), args.output.display());
+    let Some(conversion) = conversion else {
+        return Err(format!("{out}: {format} is not written by convert. {}", known()));
+    };
+    let lost = conversion.lost();
+    if !args.lossy && !lost.is_empty() {
+        let list: String = lost.iter().map(|what| format!("\n  {what}")).collect();
+        return Err(format!(
+            "{path}: {format} does not hold all of this mesh; --lossy writes it without{list}"
+        ));
+    }
+    for what in lost {
+        tell::note(show.quiet, &format!("lost: {what}"));
+    }
+    if is_standard(&args.output) {
+        let Some(text) = conversion.text() else {
+            return Err("a Triangle mesh is of several files: name OUT".into());
+        };
+        let mut out = std::io::stdout();
+        let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        return written.map_err(|error| format!("standard output: {error}"));
+    }
+    let written = conversion.destinations(&args.output);
+    if let Some(same) = written.iter().find(|own| file.paths().any(|p| output::same_file(p, own))) {
+        return Err(format!("{} is the mesh that is read. Take another name", same.display()));
+    }
+    conversion.write(&args.output).map_err(|error| error.to_string())?;
+    if !show.quiet {
+        let mesh = file.mesh();
+        let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
+        tell::say(&format!(
+            "{vertices} vertices and {triangles} triangles, with all else that {format} holds of {}: {out}",
+            file.format()
+        ));
+    }
+    Ok(())
+}
+
+/// The format to write.
+fn format(args: &ConvertArgs) -> Result<Format, String> {
+    let by_ending = || Conversion::target_of(&args.output);
+    args.to.or_else(by_ending).ok_or_else(|| {
+        format!("{}: its ending tells no format to convert to. {}", args.output.display(), known())
+    })
+}
+
+fn known() -> String {
+    let names: Vec<_> = Conversion::targets().map(|(name, _)| name).collect();
+    format!("--to takes one of {}", names.join(", "))
+}

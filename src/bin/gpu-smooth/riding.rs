@@ -1,0 +1,197 @@
+//! The option that takes data of vertices along: depths, third coordinates, point data.
+
+use clap::Args;
+use gpu_smooth::{Interpolation, MeshFile, PointField, Topology};
+
+/// Which data are taken along.
+#[derive(Args)]
+pub(crate) struct RidingArgs {
+    /// Data given at vertices that are taken to the new places, linear in the triangles of IN: depth, z, variables, point
+    /// data, or all of real numbers. Without it data stay as they are
+    #[arg(long, value_name = "NAME,...|all", help_heading = "What may move", value_parser = name)]
+    interpolate: Vec<String>,
+}
+
+/// Data that are taken along.
+pub(crate) struct Riding {
+    fields: Vec<PointField>,
+    /// Whether any were asked for.
+    asked: bool,
+}
+
+fn name(text: &str) -> Result<String, String> {
+    match text.starts_with("--") || text.trim().is_empty() {
+        true => Err("the name of data is needed, or all".into()),
+        false => Ok(text.to_owned()),
+    }
+}
+
+impl RidingArgs {
+    /// Finds the data in a file.
+    pub(crate) fn choose(&self, file: &MeshFile) -> Result<Riding, String> {
+        if self.interpolate.is_empty() {
+            return Ok(Riding { fields: Vec::new(), asked: false });
+        }
+        // A name may have commas itself.
+        let split = |text: &String| match file.data_names().contains(text) {
+            true => vec![text.clone()],
+            false => text.split(',').map(|name| name.trim().to_owned()).collect(),
+        };
+        let names: Vec<String> = self.interpolate.iter().flat_map(split).collect();
+        let all = names.iter().any(|name| name == "all");
+        let fields = file.point_fields(if all { None } else { Some(&names) });
+        let mut fields = fields.map_err(|error| format!("{error} (--interpolate)"))?;
+        if all {
+            // Third coordinates that are all the same stay so.
+            fields.retain(|field| {
+                let first = field.values().first();
+                field.values().iter().any(|value| Some(value) != first)
+            });
+        }
+        Ok(Riding { fields, asked: true })
+    }
+}
+
+impl Riding {
+    pub(crate) fn fields(&self) -> &[PointField] {
+        &self.fields
+    }
+
+    /// The names of the data, each once.
+    fn names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for field in &self.fields {
+            if !names.contains(&field.name()) {
+                names.push(field.name());
+            }
+        }
+        names
+    }
+
+    /// The remark on data that stay as they are.
+    pub(crate) fn left_behind(&self, file: &MeshFile) -> Option<String> {
+        let taken = self.names();
+        let left: Vec<_> =
+            file.data_names().iter().filter(|name| !taken.contains(&name.as_str())).collect();
+        let (verb, them) = match left[..] {
+            [] => return None,
+            [_] => ("stays as it is and no longer fits", "it"),
+            _ => ("stay as they are and no longer fit", "them"),
+        };
+        let option = if let [one] = left[..] { one.as_str() } else { "all" };
+        let names = listed(left.iter().map(|name| name.as_str()));
+        let option = if option.contains(' ') { format!("'{option}'") } else { option.to_owned() };
+        Some(format!(
+            "{names} {verb} where vertices have moved (--interpolate {option} takes {them} to the new places)"
+        ))
+    }
+
+    /// Fails if data are to be taken from a mesh that has to be untangled.
+    pub(crate) fn check_untangled(&self) -> Result<(), String> {
+        match self.fields.is_empty() {
+            true => Ok(()),
+            false => Err("--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
+                          untangle it without --interpolate, and interpolate in a second run"
+                .into()),
+        }
+    }
+
+    /// Takes the data to the new places. Returns what was done, if anything.
+    pub(crate) fn carry(
+        &mut self,
+        file: &MeshFile,
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+    ) -> Result<Option<String>, String> {
+        if self.fields.is_empty() {
+            let none = "there are no data of vertices that differ: nothing to interpolate";
+            return Ok(self.asked.then(|| none.into()));
+        }
+        let told = |error: gpu_smooth::MeshError| error.to_string();
+        let interpolation =
+            Interpolation::new(topology, &file.mesh().points, points).map_err(told)?;
+        let mut left = 0;
+        for field in &mut self.fields {
+            let values = interpolation.apply(field.values(), field.components()).map_err(told)?;
+            left += field.set(values).map_err(told)?;
+        }
+        let names = listed(self.names().into_iter());
+        let moved = match interpolation.moved() {
+            1 => "1 vertex has".to_owned(),
+            moved => format!("{moved} vertices have"),
+        };
+        let kept = match left {
+            0 => String::new(),
+            1 => "; 1 number stays, as none is given at a vertex around".to_owned(),
+            left => format!("; {left} numbers stay, as none is given at a vertex around"),
+        };
+        Ok(Some(format!("interpolated where {moved} moved: {names}{kept}")))
+    }
+}
+
+impl Riding {
+    /// What is wrong with data that another file has in place of these: at vertices that are not among the moved ones, which
+    /// are ascending, they have to have the same bits, and nowhere may they be beyond the least and the greatest there were.
+    pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
+        let mut problems = Vec::new();
+        if self.fields.len() != other.fields.len() {
+            problems.push("it has not the same data".to_owned());
+        }
+        for (old, new) in self.fields.iter().zip(&other.fields) {
+            let (name, each) = (old.name(), old.components().max(1));
+            if new.name() != name || new.values().len() != old.values().len() {
+                problems.push(format!("{name} is not the same data"));
+                continue;
+            }
+            let (mut held, mut beyond) = (0, 0);
+            let range = |component: usize| {
+                let values = old.values().iter().skip(component).step_by(each);
+                let finite = values.copied().filter(|value| value.is_finite());
+                finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+                    (value.min(least), value.max(most))
+                })
+            };
+            let ranges: Vec<_> = (0..each).map(range).collect();
+            for (index, (old, new)) in old.values().iter().zip(new.values()).enumerate() {
+                if old.to_bits() == new.to_bits() {
+                    continue;
+                }
+                let (least, most) = ranges[index % each];
+                held += usize::from(moved.binary_search(&((index / each) as u32)).is_err());
+                beyond += usize::from(!(least..=most).contains(new));
+            }
+            if held > 0 {
+                problems.push(format!("{name} differs at {held} vertices that have not moved"));
+            }
+            if beyond > 0 {
+                problems.push(format!("{beyond} values of {name} are beyond all there were"));
+            }
+        }
+        problems
+    }
+
+    /// What holds of data that are not implausible.
+    pub(crate) fn compared(&self) -> Option<String> {
+        let names = self.names();
+        let (verb, it) = match names.len() {
+            0 => return None,
+            1 => ("differs", "it is"),
+            _ => ("differ", "they are"),
+        };
+        Some(format!(
+            "{} {verb} only at vertices that have moved, and {it} within the values there were",
+            listed(names.into_iter())
+        ))
+    }
+}
+
+/// The first names of a list, and how many more there are.
+fn listed<'n>(names: impl ExactSizeIterator<Item = &'n str>) -> String {
+    const TOLD: usize = 6;
+    let more = names.len().saturating_sub(TOLD);
+    let first: Vec<_> = names.take(TOLD).collect();
+    match more {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}

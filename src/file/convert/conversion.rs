@@ -1,0 +1,141 @@
+//! Writing a mesh in another format than it was read in.
+
+use super::content::Content;
+use super::job::Job;
+use super::targets::{TARGETS, Target, Write};
+use super::triangle_source;
+use crate::error::{ReadError, WriteError};
+use crate::file::families::Family;
+use crate::file::format::Format;
+use crate::file::mesh_file::MeshFile;
+use crate::file::packed::Packing;
+use crate::file::replace::{self, Job as Replacement};
+use crate::file::triangle::Names;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A mesh that is to be written in another format.
+///
+/// ```no_run
+/// # use gpu_smooth::{Conversion, Format, MeshFile};
+/// # use std::path::Path;
+/// # fn f() -> Result<(), Box<dyn std::error::Error>> {
+/// let file = MeshFile::read(Path::new("part.msh"))?;
+/// let conversion = Conversion::new(&file, Format::Su2)?.ok_or("SU2 is not written")?;
+/// println!("lost: {}", conversion.lost().join("; "));
+/// conversion.write(Path::new("part.su2"))?;
+/// # Ok(())
+/// # }
+/// ```
+pub struct Conversion {
+    content: Content,
+    target: &'static Target,
+    lost: Vec<String>,
+}
+
+impl Conversion {
+    /// The formats that meshes are converted to, with a short name for each. Of those whose files end the same way, the
+    /// usual one comes first.
+    pub fn targets() -> impl Iterator<Item = (&'static str, Format)> {
+        TARGETS.iter().map(|target| (target.name, target.format))
+    }
+
+    /// The format that a mesh is converted to if its file is called so: by its ending, without that of compression. None if
+    /// no format of [`targets`](Self::targets) ends so.
+    pub fn target_of(path: &Path) -> Option<Format> {
+        let ends_so = |target: &&Target| Family::of(target.format).has_ending_of(path);
+        TARGETS.iter().find(ends_so).map(|target| target.format)
+    }
+
+    /// Makes a mesh ready to be written in another format. The file's content is searched again for elements of all kinds,
+    /// groups and data. None if meshes are not converted to this format.
+    ///
+    /// # Errors
+    /// [`ReadError`] if what names groups is damaged, which reading the mesh does not need.
+    pub fn new(file: &MeshFile, to: Format) -> Result<Option<Conversion>, ReadError> {
+        let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
+            return Ok(None);
+        };
+        let sources = file.sources();
+        let mut content = match &Family::of(file.format()).reader {
+            Some(reader) => (reader.content)(&sources[0])?,
+            None => triangle_source::content(&sources[0], &sources[1], sources.get(2))?,
+        };
+        // As they are read, in the digits of the file.
+        content.points.clone_from(&file.mesh().points);
+        let lost = target.holds.lost(&content);
+        Ok(Some(Conversion { content, target, lost }))
+    }
+
+    /// What the format does not hold of the mesh, one line each. Nothing is said of comments and titles, nor of the numbers of
+    /// elements: they are numbered anew.
+    pub fn lost(&self) -> &[String] {
+        &self.lost
+    }
+
+    /// The files that [`write`](Self::write) to `path` writes.
+    pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
+        match self.target.write {
+            Write::One(_) => vec![path.to_owned()],
+            Write::Several(_) => {
+                let Names { node, ele, poly } = Names::of(path);
+                vec![node, ele, poly]
+            }
+        }
+    }
+
+    /// Writes the mesh, compressed if the name of its file ends in `.gz` or `.zst`. Files are replaced once all is written.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the system refuses, or if several files are to be written under a compressed name.
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        let destinations = self.destinations(path);
+        let texts = self.texts();
+        let packs = Packing::of(path);
+        let refused = |problem: String, remedy: &str| {
+            let (path, remedy) = (path.to_owned(), remedy.to_owned());
+            Err(WriteError::Format { path, problem, remedy })
+        };
+        if packs.is_some() && destinations.len() > 1 {
+            let problem = "a Triangle mesh is of several files, which are not written compressed";
+            return refused(problem.into(), "End the name in .node");
+        }
+        if let Some(left) = destinations.get(texts.len()).filter(|left| left.exists()) {
+            let problem = format!(
+                "{} of another mesh is there, and would be read with this one",
+                left.display()
+            );
+            return refused(problem, "Remove it, or take another name");
+        }
+        destinations.iter().try_for_each(|path| replace::check(path))?;
+        let mut jobs: Vec<Replacement<'_>> = Vec::new();
+        for (path, text) in destinations.into_iter().zip(&texts) {
+            jobs.push((path, Box::new(move |out| put(text.as_bytes(), packs, out))));
+        }
+        replace::replace_all(&jobs)
+    }
+
+    /// The content of the file; none for a Triangle mesh, which is of several.
+    pub fn text(&self) -> Option<String> {
+        let mut texts = self.texts();
+        match self.target.write {
+            Write::One(_) => texts.pop(),
+            Write::Several(_) => None,
+        }
+    }
+
+    fn texts(&self) -> Vec<String> {
+        let job = Job::new(&self.content, self.target.holds);
+        match self.target.write {
+            Write::One(write) => vec![write(&job)],
+            Write::Several(write) => write(&job),
+        }
+    }
+}
+
+fn put(bytes: &[u8], packs: Option<Packing>, out: &mut (dyn io::Write + Send)) -> io::Result<()> {
+    match packs {
+        Some(packing) => packing.pack(out, |out| out.write_all(bytes)),
+        None => out.write_all(bytes),
+    }
+}

@@ -1,0 +1,135 @@
+//! Writes grids of coastal models: SMS's `.2dm`, and those of ADCIRC and SCHISM.
+
+use super::job::Job;
+use crate::file::sink::Kind;
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::fmt::Write;
+
+pub(crate) fn write_sms(job: &Job<'_>) -> String {
+    let content = job.content;
+    let mut out = "MESH2D\n".to_owned();
+    let mut element = 0;
+    for cell in job.cells() {
+        let kind = match content.cells.kinds[cell] {
+            Kind::Triangle => "E3T",
+            Kind::Quadrilateral => "E4Q",
+            Kind::Line if !is_of_string(job, cell) => "E2L",
+            _ => continue,
+        };
+        element += 1;
+        put!(out, "{kind} {element} {} {}\n", job.numbers(cell), job.tag(cell));
+    }
+    for vertex in 0..content.points.len() {
+        put!(out, "ND {} {}\n", job.number(vertex), job.space(vertex));
+    }
+    let mut materials = BTreeMap::new();
+    for cell in job.cells() {
+        let Some(group) = job.tags.group(content, cell) else { continue };
+        let is_line = content.cells.kinds[cell] == Kind::Line;
+        if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
+            materials.insert(job.tags.number(group), name.replace('"', "'"));
+        }
+    }
+    for (group, string) in strings(job) {
+        let Some((last, before)) = string.split_last() else { continue };
+        out.push_str("NS");
+        before.iter().for_each(|&vertex| put!(out, " {}", job.number(vertex as usize)));
+        put!(out, " -{}", job.number(*last as usize));
+        match content.groups[group as usize].name() {
+            Some(name) => put!(out, " \"{}\"\n", name.replace('"', "'")),
+            None => out.push('\n'),
+        }
+    }
+    materials.iter().for_each(|(tag, name)| put!(out, "MAT {tag} \"{name}\"\n"));
+    out
+}
+
+/// Lines joined to as long chains as they make, in either direction. The first line of each leads its chain.
+fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
+    let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
+    // Taken from the end, so that the first one comes first.
+    for (index, &[a, b]) in lines.iter().enumerate().rev() {
+        at.entry(a).or_default().push(index);
+        at.entry(b).or_default().push(index);
+    }
+    let mut used = vec![false; lines.len()];
+    let mut chains = Vec::new();
+    for (index, &[a, b]) in lines.iter().enumerate() {
+        if std::mem::replace(&mut used[index], true) {
+            continue;
+        }
+        // The vertex that a line not used yet leads to.
+        let mut next = |vertex: u32| {
+            let lines_at = at.get_mut(&vertex)?;
+            while let Some(line) = lines_at.pop() {
+                if !std::mem::replace(&mut used[line], true) {
+                    let [a, b] = lines[line];
+                    return Some(if a == vertex { b } else { a });
+                }
+            }
+            None
+        };
+        let mut chain = VecDeque::from([a, b]);
+        while let Some(vertex) = chain.back().and_then(|&end| next(end)) {
+            chain.push_back(vertex);
+        }
+        while let Some(vertex) = chain.front().and_then(|&end| next(end)) {
+            chain.push_front(vertex);
+        }
+        chains.push(chain.into());
+    }
+    chains
+}
+
+pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
+    let content = job.content;
+    let depth = job.point_data().next();
+    let is_inside = |cell: &usize| content.cells.kinds[*cell] != Kind::Line;
+    let elements = || job.cells().filter(is_inside);
+    let mut out = format!("grid\n{} {}\n", elements().count(), content.points.len());
+    for vertex in 0..content.points.len() {
+        let value = depth.map_or(0.0, |depth| depth.values[vertex]);
+        put!(out, "{} {} {value:?}\n", job.number(vertex), job.plane(vertex));
+    }
+    for (cell, element) in elements().zip(1..) {
+        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.numbers(cell));
+    }
+    // Boundaries that are called open are so; all others are of land.
+    let strings = strings(job);
+    let name = |group: u32| content.groups[group as usize].name().unwrap_or("");
+    for (what, is_open) in [("open", true), ("land", false)] {
+        let of = |(group, _): &&(u32, Vec<u32>)| name(*group).starts_with("open") == is_open;
+        let chosen: Vec<_> = strings.iter().filter(of).collect();
+        let nodes: usize = chosen.iter().map(|(_, string)| string.len()).sum();
+        put!(out, "{} = Number of {what} boundaries\n", chosen.len());
+        put!(out, "{nodes} = Total number of {what} boundary nodes\n");
+        for (group, string) in chosen {
+            put!(out, "{}", string.len());
+            if !is_open {
+                put!(out, " {}", u8::from(name(*group).starts_with("island")));
+            }
+            put!(out, " = Number of nodes for {what} boundary\n");
+            string.iter().for_each(|&vertex| put!(out, "{}\n", job.number(vertex as usize)));
+        }
+    }
+    out
+}
+
+/// Whether a line is one of a node string, not an element of a material.
+fn is_of_string(job: &Job<'_>, line: usize) -> bool {
+    job.group(line).is_some_and(|group| group.what != "material")
+}
+
+/// The lines of each group as chains of vertices.
+fn strings(job: &Job<'_>) -> Vec<(u32, Vec<u32>)> {
+    let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
+    for cell in job.all(Kind::Line).filter(|&cell| is_of_string(job, cell)) {
+        if let (Some(group), &[a, b]) =
+            (job.tags.group(job.content, cell), job.content.cells.of(cell))
+        {
+            lines.entry(group).or_default().push([a, b]);
+        }
+    }
+    let chained = lines.into_iter().map(|(group, lines)| (group, chains(&lines)));
+    chained.flat_map(|(group, chains)| chains.into_iter().map(move |c| (group, c))).collect()
+}

@@ -1,0 +1,269 @@
+//! What formats hold, and what of a mesh is lost in one of them.
+
+use super::content::{Content, Data, Group};
+use super::tags::{Tags, decides};
+use crate::file::label::Label;
+use crate::file::sink::Kind;
+
+/// What a format holds of a mesh.
+#[derive(Clone, Copy)]
+pub(crate) struct Holds {
+    pub(crate) points: Elements,
+    pub(crate) lines: Elements,
+    pub(crate) quadrilaterals: bool,
+    pub(crate) polygons: bool,
+    pub(crate) heights: bool,
+    /// The vertices' own numbers, whatever they are.
+    pub(crate) labels: bool,
+    /// How many groups an element has: one of each of these kinds of groups.
+    pub(crate) groups: Groups,
+    /// Names of groups of points, lines and surfaces.
+    pub(crate) names: [bool; 3],
+    /// What the groups are called that the format has names for itself.
+    pub(crate) own: &'static str,
+    /// Groups of a negative number.
+    pub(crate) negative: bool,
+    /// A number for each vertex.
+    pub(crate) vertex_groups: bool,
+    pub(crate) point_data: Numbers,
+    pub(crate) cell_data: Numbers,
+}
+
+/// Which elements of a dimension a format holds.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Elements {
+    None,
+    All,
+    /// Those of a group.
+    OfGroups,
+}
+
+/// Which groups of elements a format holds.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Groups {
+    None,
+    /// One group an element, of one kind of groups for each dimension.
+    One,
+    /// The same, of lines only.
+    OneOfLines,
+    /// A physical group, or what else matters most, and an entity of the model.
+    PhysicalAndEntity,
+    /// One group of each kind of groups.
+    Each,
+}
+
+/// Which data a format holds.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Numbers {
+    None,
+    All,
+    /// One number a vertex.
+    Scalars,
+    /// One number a vertex, without a name.
+    Unnamed,
+    /// Only what is called so.
+    Only(&'static str),
+}
+
+impl Holds {
+    /// Nothing but triangles.
+    pub(crate) const TRIANGLES: Holds = Holds {
+        points: Elements::None,
+        lines: Elements::None,
+        quadrilaterals: false,
+        polygons: false,
+        heights: false,
+        labels: false,
+        groups: Groups::None,
+        names: [false; 3],
+        own: "",
+        negative: true,
+        vertex_groups: false,
+        point_data: Numbers::None,
+        cell_data: Numbers::None,
+    };
+
+    /// What of a mesh is lost, one line each.
+    pub(crate) fn lost(&self, content: &Content) -> Vec<String> {
+        let mut lost = Vec::new();
+        self.lost_elements(content, &mut lost);
+        if !self.heights && !content.heights.is_empty() {
+            lost.push("third coordinates".into());
+        }
+        let starts = content.first_label().is_some_and(|first| first <= 1);
+        if !self.labels && !starts {
+            lost.push("the vertices' own numbers, which are not consecutive".into());
+        }
+        self.lost_groups(content, &mut lost);
+        let is_negative = |group: &&Group| matches!(group.label, Label::Tag(..0));
+        if !self.negative && content.groups.iter().any(|group| is_negative(&group)) {
+            let groups = listed(content.groups.iter().filter(is_negative));
+            lost.push(format!("negative numbers of groups, which become others: {groups}"));
+        }
+        if !self.vertex_groups && !content.vertex_groups.is_empty() {
+            let groups = content.vertex_groups.iter().map(|(group, _)| group);
+            lost.push(format!("groups of vertices: {}", listed(groups)));
+        }
+        self.point_data.lost("data of vertices", &content.point_data, &mut lost);
+        self.cell_data.lost("data of elements", &content.cell_data, &mut lost);
+        lost.extend(content.left_out.iter().cloned());
+        lost
+    }
+
+    /// Whether a cell is held.
+    pub(crate) fn holds(&self, content: &Content, tags: &Tags, cell: usize) -> bool {
+        let of = |elements: Elements| match elements {
+            Elements::None => false,
+            Elements::All => true,
+            Elements::OfGroups => tags.group(content, cell).is_some(),
+        };
+        match content.cells.kinds[cell] {
+            Kind::Point => of(self.points),
+            Kind::Line => of(self.lines),
+            Kind::Triangle => true,
+            Kind::Quadrilateral => self.quadrilaterals,
+            Kind::Corner => self.polygons,
+        }
+    }
+
+    fn lost_elements(&self, content: &Content, lost: &mut Vec<String>) {
+        let tags = Tags::new(content, self.negative);
+        for (kind, what) in [
+            (Kind::Point, "point"),
+            (Kind::Line, "line"),
+            (Kind::Quadrilateral, "quadrilateral"),
+            (Kind::Corner, "polygon of more than four corners"),
+        ] {
+            let dropped = |&cell: &usize| !self.holds(content, &tags, cell);
+            let count = content.cells.all(kind).filter(dropped).count();
+            let elements = if kind == Kind::Point { self.points } else { self.lines };
+            let of_none = match kind {
+                Kind::Point | Kind::Line if elements == Elements::OfGroups => " of no group",
+                _ => "",
+            };
+            match count {
+                0 => {}
+                1 => lost.push(format!("1 {what}{of_none}")),
+                count => {
+                    let what = what.replacen("point", "points", 1).replacen("line", "lines", 1);
+                    let what = what.replacen("lateral", "laterals", 1);
+                    let what = what.replacen("polygon", "polygons", 1);
+                    lost.push(format!("{count} {what}{of_none}"));
+                }
+            }
+        }
+    }
+
+    fn lost_groups(&self, content: &Content, lost: &mut Vec<String>) {
+        let several = content.sets.iter().any(|set| {
+            let what = |group: &u32| &content.groups[*group as usize].what;
+            set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| what(b) == what(group)))
+        });
+        if several && self.groups != Groups::None {
+            lost.push(
+                "that elements are of several groups of a kind: the first one is kept".into(),
+            );
+        }
+        for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
+            let whats = content.whats(dimension);
+            let Some(&main) = whats.first() else { continue };
+            let dropped = |what: &&str| match self.groups {
+                Groups::None => true,
+                Groups::One => *what != main && !decides(content, dimension, main, what),
+                Groups::OneOfLines => {
+                    dimension != 1 || (*what != main && !decides(content, 1, main, what))
+                }
+                Groups::PhysicalAndEntity => {
+                    *what != main && *what != "entity" && !decides(content, dimension, main, what)
+                }
+                Groups::Each => false,
+            };
+            let one = |what: &str| {
+                let groups = content.groups.iter();
+                groups.filter(|group| group.dimension == dimension && group.what == what).count()
+                    == 1
+            };
+            for what in whats.iter().copied().filter(dropped) {
+                let groups =
+                    || content.groups.iter().filter(|g| g.dimension == dimension && g.what == what);
+                // Of one group without a name nothing is lost but its number.
+                let keeps_none = match self.groups {
+                    Groups::None => true,
+                    Groups::OneOfLines => dimension != 1,
+                    _ => false,
+                };
+                if keeps_none && one(what) && groups().all(|group| group.name().is_none()) {
+                    continue;
+                }
+                lost.push(format!("groups of {of} ({what}): {}", listed(groups())));
+            }
+            let kept = whats.iter().copied().filter(|what| !dropped(what));
+            let kept: Vec<&str> = kept.collect();
+            let named = |group: &&Group| {
+                let is_kept = kept.contains(&group.what.as_str());
+                let is_told = is_kept && group.what != self.own;
+                group.dimension == dimension && is_told && group.name().is_some()
+            };
+            let named: Vec<&Group> = content.groups.iter().filter(named).collect();
+            if !self.names[usize::from(dimension)] && !named.is_empty() {
+                let names = listed(named.into_iter());
+                lost.push(format!("names of groups of {of}, which become numbers: {names}"));
+            }
+        }
+    }
+}
+
+impl Numbers {
+    /// Whether it holds these data.
+    pub(crate) fn holds(self, data: &Data) -> bool {
+        match self {
+            Numbers::None => false,
+            Numbers::All => true,
+            Numbers::Scalars | Numbers::Unnamed => data.components == 1,
+            Numbers::Only(name) => data.name == name && data.components == 1,
+        }
+    }
+
+    fn lost(self, what: &str, data: &[Data], lost: &mut Vec<String>) {
+        let names = |kept: bool| -> Vec<&str> {
+            let of = data.iter().filter(|data| self.holds(data) == kept);
+            let mut names: Vec<&str> = of.map(|data| data.name.as_str()).collect();
+            names.dedup();
+            names
+        };
+        let dropped = names(false);
+        if !dropped.is_empty() {
+            lost.push(format!("{what}: {}", first(&dropped)));
+        }
+        let mut kept = names(true);
+        // What the format calls them itself.
+        kept.retain(|name| !name.starts_with("attribute"));
+        if self == Numbers::Unnamed && !kept.is_empty() {
+            lost.push(format!("names of {what}: {}", first(&kept)));
+        }
+    }
+}
+
+/// The names or numbers of the first groups.
+fn listed<'g>(groups: impl Iterator<Item = &'g Group>) -> String {
+    let names: Vec<String> = groups
+        .map(|group| match (group.name(), &group.label) {
+            (Some(name), _) => name.to_owned(),
+            (None, label) => match label {
+                Label::Tag(tag) => tag.to_string(),
+                Label::Name(name) => name.clone(),
+            },
+        })
+        .collect();
+    first(&names.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// The first of some names, and how many more there are.
+fn first(names: &[&str]) -> String {
+    const TOLD: usize = 8;
+    let told = names[..names.len().min(TOLD)].join(", ");
+    match names.len().saturating_sub(TOLD) {
+        0 => told,
+        more => format!("{told} and {more} more"),
+    }
+}

@@ -1,0 +1,122 @@
+//! What a writer is given.
+
+use super::content::{Content, Data, Group};
+use super::holds::Holds;
+use super::tags::Tags;
+use crate::file::label::Label;
+use crate::file::sink::Kind;
+
+/// A mesh to be written, and what of it the format holds.
+pub(crate) struct Job<'a> {
+    pub(crate) content: &'a Content,
+    pub(crate) holds: Holds,
+    pub(crate) tags: Tags,
+    /// The number of each vertex, none of which is zero, for formats that write it.
+    numbers: Option<&'a [u64]>,
+}
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(content: &'a Content, holds: Holds) -> Job<'a> {
+        let numbers = (!content.labels.contains(&0)).then_some(content.labels.as_slice());
+        Job { content, holds, tags: Tags::new(content, holds.negative), numbers }
+    }
+
+    /// The cells that are held, in their order.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
+        let content = self.content;
+        (0..content.cells.len()).filter(|&cell| self.holds.holds(content, &self.tags, cell))
+    }
+
+    /// Those of a kind.
+    pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+        self.cells().filter(move |&cell| self.content.cells.kinds[cell] == kind)
+    }
+
+    pub(crate) fn count(&self, kind: Kind) -> usize {
+        self.all(kind).count()
+    }
+
+    /// The number that the file has for a vertex, or its place counted from one.
+    pub(crate) fn number(&self, vertex: usize) -> u64 {
+        self.numbers.map_or(vertex as u64 + 1, |numbers| numbers[vertex])
+    }
+
+    /// Those of the vertices of a cell, with blanks between.
+    pub(crate) fn numbers(&self, cell: usize) -> String {
+        self.joined(cell, |vertex| self.number(vertex))
+    }
+
+    /// The places of the vertices of a cell, counted from `first`, with blanks between.
+    pub(crate) fn places(&self, cell: usize, first: u64) -> String {
+        self.joined(cell, |vertex| vertex as u64 + first)
+    }
+
+    fn joined(&self, cell: usize, number: impl Fn(usize) -> u64) -> String {
+        let vertices = self.content.cells.of(cell).iter();
+        let numbers: Vec<String> = vertices.map(|&v| number(v as usize).to_string()).collect();
+        numbers.join(" ")
+    }
+
+    /// x and y of a vertex as text.
+    pub(crate) fn plane(&self, vertex: usize) -> String {
+        let [x, y] = self.content.points[vertex];
+        format!("{x:?} {y:?}")
+    }
+
+    /// x, y and z of a vertex as text.
+    pub(crate) fn space(&self, vertex: usize) -> String {
+        format!("{} {:?}", self.plane(vertex), self.content.z(vertex))
+    }
+
+    /// The number of the group of a cell that matters most, or zero.
+    pub(crate) fn tag(&self, cell: usize) -> i64 {
+        self.tags.tag(self.content, cell)
+    }
+
+    /// That group.
+    pub(crate) fn group(&self, cell: usize) -> Option<&'a Group> {
+        let group = self.tags.group(self.content, cell)?;
+        Some(&self.content.groups[group as usize])
+    }
+
+    /// The name of that group, or its number, in one word.
+    pub(crate) fn word(&self, group: u32) -> String {
+        let name = self.content.groups[group as usize].name().map(one_word);
+        name.unwrap_or_else(|| self.tags.number(group).to_string())
+    }
+
+    /// For each vertex the number of the group of vertices it belongs to; zero if it is of none.
+    pub(crate) fn vertex_tags(&self) -> Vec<i64> {
+        let mut tags = vec![0; self.content.points.len()];
+        for (group, vertices) in self.content.vertex_groups.iter().rev() {
+            if let Label::Tag(tag) = group.label {
+                vertices.iter().for_each(|&vertex| tags[vertex as usize] = tag);
+            }
+        }
+        tags
+    }
+
+    /// The data of vertices that are held.
+    pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+        self.content.point_data.iter().filter(|data| self.holds.point_data.holds(data))
+    }
+
+    /// The data of elements that are held.
+    pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+        self.content.cell_data.iter().filter(|data| self.holds.cell_data.holds(data))
+    }
+}
+
+/// A name without blanks.
+pub(crate) fn one_word(name: &str) -> String {
+    let words: Vec<&str> = name.split_whitespace().collect();
+    words.join("_")
+}
+
+/// A number as text: without a fraction if it is a whole one of an array of whole numbers.
+pub(crate) fn text_of(data: &Data, value: f64) -> String {
+    match data.is_real {
+        true => format!("{value:?}"),
+        false => format!("{}", value as i64),
+    }
+}

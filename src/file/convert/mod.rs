@@ -1,0 +1,30 @@
+//! A mesh of one format written in another: a reader's walk makes a description ([`content`]) of it, a row of [`targets`] says
+//! what a format holds of that, and a writer writes it.
+
+/// Appends formatted text to a string.
+macro_rules! put {
+    ($out:expr, $($text:tt)*) => {
+        write!($out, $($text)*).expect("memory takes what is written to it")
+    };
+}
+
+mod collector;
+mod content;
+mod conversion;
+mod gmsh;
+mod grids;
+mod holds;
+mod job;
+mod medit;
+mod ply;
+mod su2;
+mod surface;
+mod tags;
+mod targets;
+mod triangle;
+mod triangle_source;
+mod vtk;
+
+pub(crate) use collector::content;
+pub(crate) use content::Content;
+pub use conversion::Conversion;

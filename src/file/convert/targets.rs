@@ -1,0 +1,179 @@
+//! The formats that meshes of other formats are written in.
+
+use super::holds::{Elements, Groups, Holds, Numbers};
+use super::job::Job;
+use super::{gmsh, grids, medit, ply, su2, surface, triangle, vtk};
+use crate::file::format::Format;
+
+/// A format that meshes of others are written in: a row of [`TARGETS`].
+pub(crate) struct Target {
+    pub(crate) format: Format,
+    /// A short name, for those who want another format than the ending of a name stands for.
+    pub(crate) name: &'static str,
+    pub(crate) holds: Holds,
+    pub(crate) write: Write,
+}
+
+/// How a mesh is written.
+pub(crate) enum Write {
+    /// To one file.
+    One(fn(&Job<'_>) -> String),
+    /// To several files.
+    Several(fn(&Job<'_>) -> Vec<String>),
+}
+
+const GMSH: Holds = Holds {
+    points: Elements::All,
+    lines: Elements::All,
+    quadrilaterals: true,
+    heights: true,
+    labels: true,
+    groups: Groups::PhysicalAndEntity,
+    names: [true; 3],
+    negative: false,
+    point_data: Numbers::All,
+    cell_data: Numbers::All,
+    ..Holds::TRIANGLES
+};
+const VTK: Holds = Holds {
+    points: Elements::All,
+    lines: Elements::All,
+    quadrilaterals: true,
+    polygons: true,
+    heights: true,
+    groups: Groups::Each,
+    vertex_groups: true,
+    point_data: Numbers::All,
+    cell_data: Numbers::All,
+    ..Holds::TRIANGLES
+};
+
+/// Each format, of those that files end the same way for the usual one first.
+pub(crate) static TARGETS: [Target; 13] = [
+    Target {
+        format: Format::Gmsh41,
+        name: "gmsh41",
+        holds: GMSH,
+        write: Write::One(gmsh::write_41),
+    },
+    Target {
+        format: Format::Gmsh22,
+        name: "gmsh22",
+        holds: GMSH,
+        write: Write::One(gmsh::write_22),
+    },
+    Target { format: Format::Vtu, name: "vtu", holds: VTK, write: Write::One(vtk::write_xml) },
+    Target { format: Format::Vtk, name: "vtk", holds: VTK, write: Write::One(vtk::write_legacy) },
+    Target {
+        format: Format::Su2,
+        name: "su2",
+        holds: Holds {
+            lines: Elements::OfGroups,
+            quadrilaterals: true,
+            groups: Groups::OneOfLines,
+            names: [false, true, false],
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(su2::write),
+    },
+    Target {
+        format: Format::Medit,
+        name: "medit",
+        holds: Holds {
+            points: Elements::OfGroups,
+            lines: Elements::All,
+            quadrilaterals: true,
+            heights: true,
+            groups: Groups::One,
+            own: "list",
+            vertex_groups: true,
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(medit::write_medit),
+    },
+    Target {
+        format: Format::Triangle,
+        name: "triangle",
+        holds: Holds {
+            lines: Elements::All,
+            groups: Groups::One,
+            vertex_groups: true,
+            point_data: Numbers::Unnamed,
+            ..Holds::TRIANGLES
+        },
+        write: Write::Several(triangle::write),
+    },
+    Target {
+        format: Format::Obj,
+        name: "obj",
+        holds: Holds {
+            points: Elements::All,
+            lines: Elements::All,
+            quadrilaterals: true,
+            polygons: true,
+            heights: true,
+            groups: Groups::One,
+            names: [true; 3],
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(surface::write_obj),
+    },
+    Target {
+        format: Format::Off,
+        name: "off",
+        holds: Holds { quadrilaterals: true, heights: true, ..Holds::TRIANGLES },
+        write: Write::One(surface::write_off),
+    },
+    Target {
+        format: Format::Ply,
+        name: "ply",
+        holds: Holds {
+            lines: Elements::All,
+            quadrilaterals: true,
+            polygons: true,
+            heights: true,
+            point_data: Numbers::Scalars,
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(ply::write_ply),
+    },
+    Target {
+        format: Format::Sms2dm,
+        name: "2dm",
+        holds: Holds {
+            lines: Elements::All,
+            quadrilaterals: true,
+            heights: true,
+            labels: true,
+            groups: Groups::One,
+            names: [false, true, true],
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(grids::write_sms),
+    },
+    Target {
+        format: Format::Adcirc,
+        name: "adcirc",
+        holds: Holds {
+            lines: Elements::OfGroups,
+            quadrilaterals: true,
+            labels: true,
+            groups: Groups::OneOfLines,
+            own: "boundary",
+            point_data: Numbers::Only("depth"),
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(grids::write_adcirc),
+    },
+    Target {
+        format: Format::FreeFem,
+        name: "freefem",
+        holds: Holds {
+            lines: Elements::All,
+            groups: Groups::One,
+            vertex_groups: true,
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(medit::write_freefem),
+    },
+];

@@ -1,0 +1,132 @@
+//! Data that a file gives its vertices, and where they stand in it.
+
+use crate::error::MeshError;
+use crate::file::column::Column;
+use crate::file::sink::{PointNumbers, Stored};
+
+/// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data. It comes from
+/// [`MeshFile::point_fields`](crate::MeshFile::point_fields); with other values it goes into
+/// [`MeshFile::write_with`](crate::MeshFile::write_with).
+pub struct PointField {
+    name: String,
+    components: usize,
+    /// As many as there are components for each vertex.
+    values: Vec<f64>,
+    /// The numbers as they were read, in the order of the file, and as they are to be.
+    old: Vec<f64>,
+    new: Vec<f64>,
+    /// The vertex of each tuple, if they are not those of all vertices in their order.
+    vertices: Option<Vec<u32>>,
+    stored: Option<Stored>,
+}
+
+impl PointField {
+    /// A field of the numbers of an array, in a file of so many vertices. Tuples of no vertex have a number that no vertex has.
+    pub(crate) fn new(
+        name: String,
+        components: usize,
+        count: usize,
+        PointNumbers { numbers: old, stored, .. }: PointNumbers,
+        vertices: Option<Vec<u32>>,
+    ) -> PointField {
+        let values = match &vertices {
+            None => old.clone(),
+            Some(vertices) => {
+                let mut values = vec![f64::NAN; count.saturating_mul(components)];
+                for (tuple, &vertex) in old.chunks(components.max(1)).zip(vertices) {
+                    let start = vertex as usize * components;
+                    if let Some(own) = values.get_mut(start..start + tuple.len()) {
+                        own.copy_from_slice(tuple);
+                    }
+                }
+                values
+            }
+        };
+        PointField { name, components, values, new: old.clone(), old, vertices, stored }
+    }
+
+    /// What the file calls it: the name of an array, `depth` in grids of ADCIRC and SCHISM, `z` for third coordinates. Several
+    /// may have one name, such as the time steps of a result.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many numbers a vertex has.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    /// The numbers of one vertex after those of another, in the order of [`Mesh::points`](crate::Mesh::points). NaN for
+    /// vertices that the file gives none.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Takes other values, as many as [`values`](Self::values) has. What is not finite leaves the number as it is, and vertices
+    /// to which the file gives no number get none. Returns how many numbers were left because a value is not finite.
+    ///
+    /// # Errors
+    /// [`MeshError::ValueCount`] if there are not so many; then nothing is changed.
+    pub fn set(&mut self, values: Vec<f64>) -> Result<usize, MeshError> {
+        let (expected, given) = (self.values.len(), values.len());
+        if expected != given {
+            return Err(MeshError::ValueCount { expected, given });
+        }
+        let mut left = 0;
+        let each = self.components.max(1);
+        for (tuple, (new, old)) in self.new.chunks_mut(each).zip(self.old.chunks(each)).enumerate()
+        {
+            let vertex = self.vertices.as_ref().map_or(tuple, |vertices| vertices[tuple] as usize);
+            for (component, (new, old)) in new.iter_mut().zip(old).enumerate() {
+                let value = values.get(vertex * each + component);
+                let precision = self.stored.as_ref().map(|stored| stored.form.precision());
+                let is_finite = |value: &f64| match precision {
+                    Some(precision) => precision.rounded(*value).is_finite(),
+                    None => value.is_finite(),
+                };
+                *new = match value.copied().filter(is_finite) {
+                    Some(value) => value,
+                    None => {
+                        left += usize::from(old.is_finite());
+                        *old
+                    }
+                };
+            }
+        }
+        self.values = values;
+        Ok(left)
+    }
+
+    /// How many numbers the file has of it.
+    pub(crate) fn numbers(&self) -> usize {
+        self.old.len()
+    }
+
+    /// Where the numbers stand.
+    pub(crate) fn stored(&self) -> Option<&Stored> {
+        self.stored.as_ref()
+    }
+
+    /// Whether a number is to be another in the digits of the file.
+    pub(crate) fn is_changed(&self) -> bool {
+        let Some(stored) = &self.stored else { return false };
+        let bits = |x: f64| stored.form.precision().rounded(x).to_bits();
+        self.new.iter().zip(&self.old).any(|(&new, &old)| bits(new) != old.to_bits())
+    }
+
+    /// Its numbers as what may be replaced, if they stand in the file.
+    pub(crate) fn column(&self) -> Option<Column<'_>> {
+        let Stored { places, form, .. } = self.stored.as_ref()?;
+        Some(Column::of_array(places, *form, &self.old, &self.new))
+    }
+}
+
+impl std::fmt::Debug for PointField {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PointField")
+            .field("name", &self.name)
+            .field("components", &self.components)
+            .field("numbers", &self.old.len())
+            .finish_non_exhaustive()
+    }
+}

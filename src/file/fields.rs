@@ -1,0 +1,115 @@
+//! Data of the vertices of a mesh file, by name.
+
+use crate::error::ReadError;
+use crate::file::families::Family;
+use crate::file::field::PointField;
+use crate::file::group::distance;
+use crate::file::mesh_file::MeshFile;
+use crate::file::point_data::{PointData, Wanted};
+use crate::file::text::quoted;
+use crate::file::triangle_data;
+
+impl MeshFile {
+    /// The real numbers that the file gives its vertices under these names, or all there are for `None`. The file's
+    /// content is searched again for them.
+    ///
+    /// | format | what can be named |
+    /// |---|---|
+    /// | ADCIRC, SCHISM | `depth` |
+    /// | gmsh | `z`, and what `$NodeData` is called |
+    /// | SMS 2dm, Medit, OBJ, OFF | `z` |
+    /// | VTK | `z`, and point data of the types float and double |
+    /// | PLY | properties of vertices of the types float and double but x and y |
+    /// | SELAFIN | variables, in all time steps |
+    /// | Triangle | `attribute` of vertices, `attribute1` and so on if there are several |
+    ///
+    /// A field for each array: of one name there may be several, such as the time steps of a result.
+    ///
+    /// # Errors
+    /// [`ReadError`] if there is none of a name, if its numbers are whole, or if the data are damaged.
+    pub fn point_fields(&self, names: Option<&[String]>) -> Result<Vec<PointField>, ReadError> {
+        let PointData { fields, known } =
+            self.data_of(names.map_or(Wanted::Real, Wanted::Named))?;
+        let source = &self.sources()[0];
+        for name in names.unwrap_or_default() {
+            let shown = quoted(name.as_bytes());
+            match known.iter().find(|(known, _)| known == name) {
+                None => {
+                    let real = known.iter().filter(|(_, is_real)| *is_real);
+                    return Err(self.unknown(name, real.map(|(name, _)| name.clone()).collect()));
+                }
+                Some((_, false)) => {
+                    let problem = format!("the numbers of '{shown}' are whole");
+                    let remedy = "Only real numbers are taken between vertices";
+                    return Err(source.error(problem, remedy));
+                }
+                Some((_, true)) => {}
+            }
+        }
+        let vertices = self.mesh().points.len();
+        let is_real = |name: &str| known.iter().any(|(known, real)| known == name && *real);
+        for (name, _) in known.iter().filter(|(_, is_real)| *is_real) {
+            let is_wanted = names.is_none_or(|names| names.contains(name));
+            if is_wanted && !fields.iter().any(|field| field.name() == name) {
+                return Err(self.damaged(name));
+            }
+        }
+        for field in fields.iter().filter(|field| is_real(field.name())) {
+            let (found, each) = (field.values().len(), field.components());
+            if Some(found) != vertices.checked_mul(each) {
+                let name = quoted(field.name().as_bytes());
+                let problem = format!("'{name}' has {found} numbers, {each} a vertex");
+                return Err(source.error(problem, format!("There are {vertices} vertices")));
+            }
+        }
+        Ok(fields)
+    }
+
+    /// The numbers of an array of point data, one for each vertex: scalars of VTK's formats, properties of the vertices of PLY,
+    /// and whatever else [`point_fields`](Self::point_fields) finds, be its numbers real or whole.
+    ///
+    /// # Errors
+    /// [`ReadError`] if there is no such array, its data are damaged, or it has not one number a vertex.
+    pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
+        let source = &self.sources()[0];
+        let PointData { fields, known } = self.data_of(Wanted::Named(&[name.to_owned()]))?;
+        let vertices = self.mesh().points.len();
+        let shown = quoted(name.as_bytes());
+        match fields.first().map(|field| (field.components(), field.values())) {
+            Some((1, values)) if values.len() == vertices => Ok(values.to_vec()),
+            Some((1, values)) => {
+                let problem = format!("the array '{shown}' has {} numbers", values.len());
+                Err(source.error(problem, format!("There are {vertices} vertices")))
+            }
+            Some((components, _)) => {
+                let problem = format!("the array '{shown}' has {components} numbers a point");
+                Err(source.error(problem, "Take an array of one number a point"))
+            }
+            None if known.iter().any(|(known, _)| known == name) => Err(self.damaged(name)),
+            None => Err(self.unknown(name, known.into_iter().map(|(name, _)| name).collect())),
+        }
+    }
+
+    fn data_of(&self, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
+        let sources = self.sources();
+        match &Family::of(self.format()).reader {
+            Some(reader) => (reader.point_data)(&sources[0], wanted),
+            None => triangle_data::point_data(&sources[0], wanted),
+        }
+    }
+
+    fn damaged(&self, name: &str) -> ReadError {
+        let problem = format!("the array '{}' is damaged or cut off", quoted(name.as_bytes()));
+        self.sources()[0].error(problem, "Write the mesh again")
+    }
+
+    fn unknown(&self, name: &str, mut known: Vec<String>) -> ReadError {
+        known.sort_by_cached_key(|own| distance(own, name));
+        let problem = format!("no point data is called '{}'", quoted(name.as_bytes()));
+        let remedy = match &known[..] {
+            [] => "The file has no point data".to_owned(),
+            _ => format!("There are {}", known.join(", ")),
+        };
+        self.sources()[0].error(problem, remedy)
+    }
+}

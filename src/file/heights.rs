@@ -1,0 +1,94 @@
+//! Third coordinates and depths, which are data of points.
+
+use crate::error::ReadError;
+use crate::file::numbers::{Form, Places};
+use crate::file::sink::{Home, PointNumbers, Sink, Stored};
+use crate::file::text::Cursor;
+use crate::mesh::Precision;
+
+/// The third coordinates of the points as they are read: whether they differ, and all of them if the sink asks for data.
+pub(crate) struct Heights {
+    first: Option<f64>,
+    differ: bool,
+    collected: Option<(Vec<usize>, Vec<f64>)>,
+}
+
+impl Heights {
+    pub(crate) fn new(sink: &impl Sink) -> Heights {
+        let collected = sink.asks_for_data().then(Default::default);
+        Heights { first: None, differ: false, collected }
+    }
+
+    /// Takes the next point's, and where it stands.
+    #[inline]
+    pub(crate) fn see(&mut self, (at, z): (usize, f64)) {
+        match self.first {
+            None => self.first = Some(z),
+            Some(first) => self.differ |= z != first,
+        }
+        if let Some((places, numbers)) = &mut self.collected {
+            places.push(at);
+            numbers.push(z);
+        }
+    }
+
+    /// Hands them to the sink under this name, if they differ or it asks for data.
+    pub(crate) fn send(self, name: &str, form: Form, sink: &mut impl Sink) {
+        self.send_from(name, form, Home::File, sink);
+    }
+
+    /// The same, if they stand elsewhere than in the file itself.
+    pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut impl Sink) {
+        let is_told = self.differ || (self.collected.is_some() && self.first.is_some());
+        if is_told
+            && sink.height_array(name.as_bytes())
+            && let Some((places, mut numbers)) = self.collected
+        {
+            let precision = form.precision();
+            numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
+            let stored = Some(Stored { places: Places::List(places), form, home });
+            sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+        }
+    }
+}
+
+/// Collects numbers of text with their places.
+#[derive(Default)]
+pub(crate) struct TextNumbers {
+    places: Vec<usize>,
+    numbers: Vec<f64>,
+}
+
+impl TextNumbers {
+    /// Reads the next token of the row.
+    pub(crate) fn read(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
+        let at = cursor.at();
+        let number = cursor.real("a number of a point")?;
+        self.places.push(at);
+        self.numbers.push(number);
+        Ok(())
+    }
+
+    /// Reads one number of each of `count` rows, after so many tokens.
+    pub(crate) fn column(
+        &mut self,
+        mut cursor: Cursor<'_>,
+        count: u64,
+        before: u64,
+    ) -> Result<(), ReadError> {
+        for done in 0..count {
+            cursor.row(done, count, "points")?;
+            cursor.tokens(before);
+            self.read(&mut cursor)?;
+        }
+        Ok(())
+    }
+
+    /// All of them, as those of these nodes, or of all.
+    pub(crate) fn finish(self, precision: Precision, nodes: Option<Vec<u64>>) -> PointNumbers {
+        let Self { places, mut numbers } = self;
+        numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
+        let stored = Stored::in_place(Places::List(places), Form::Text(precision));
+        PointNumbers { numbers, nodes, stored }
+    }
+}

@@ -1,0 +1,101 @@
+//! Walks through a file that was read before for arrays of point data.
+
+use crate::error::ReadError;
+use crate::file::field::PointField;
+use crate::file::sink::{Element, PointNumbers, Sink, Walk};
+use crate::file::source::Source;
+use crate::file::tags::TagMap;
+use crate::file::text::Cursor;
+
+/// Which arrays are looked for.
+#[derive(Clone, Copy)]
+pub(crate) enum Wanted<'n> {
+    /// Those of these names, be their numbers real or whole.
+    Named(&'n [String]),
+    /// All of real numbers.
+    Real,
+}
+
+/// What was found.
+#[derive(Default)]
+pub(crate) struct PointData {
+    /// The wanted arrays, in the order of the file. Several may have one name.
+    pub(crate) fields: Vec<PointField>,
+    /// The name of each array of the file, and whether its numbers are real.
+    pub(crate) known: Vec<(String, bool)>,
+}
+
+/// The arrays of point data that are wanted.
+pub(crate) fn point_data<W: Walk>(
+    source: &Source,
+    wanted: Wanted<'_>,
+) -> Result<PointData, ReadError> {
+    let mut seeker = Seeker { wanted, ..Seeker::new() };
+    W::walk(source, &mut seeker)?;
+    Ok(seeker.found)
+}
+
+struct Seeker<'n> {
+    wanted: Wanted<'n>,
+    /// The name and the components of the array that was announced last.
+    last: (String, usize),
+    tags: Vec<u64>,
+    map: Option<TagMap>,
+    found: PointData,
+}
+
+impl Seeker<'_> {
+    fn new() -> Self {
+        let last = (String::new(), 0);
+        Self {
+            wanted: Wanted::Real,
+            last,
+            tags: Vec::new(),
+            map: None,
+            found: PointData::default(),
+        }
+    }
+}
+
+impl Sink for Seeker<'_> {
+    const TAKES_AHEAD: bool = true;
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
+
+    fn asks_for_data(&self) -> bool {
+        true
+    }
+
+    fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        let wanted = match self.wanted {
+            Wanted::Named(names) => names.contains(&name),
+            Wanted::Real => is_real,
+        };
+        if !self.found.known.iter().any(|(known, _)| *known == name) {
+            self.found.known.push((name.clone(), is_real));
+        }
+        self.last = (name, usize::try_from(components).unwrap_or(usize::MAX));
+        wanted
+    }
+
+    fn point_numbers(&mut self, numbers: PointNumbers) {
+        let tags = &self.tags;
+        let vertices = numbers.nodes.as_ref().map(|nodes| {
+            // There is no error to tell: the file was read before without one.
+            let map = self.map.get_or_insert_with(|| {
+                TagMap::new(tags).unwrap_or(TagMap::Run { first: 0, count: 0 })
+            });
+            nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect()
+        });
+        let (name, components) = std::mem::take(&mut self.last);
+        let count = self.tags.len();
+        self.found.fields.push(PointField::new(name, components, count, numbers, vertices));
+    }
+}

@@ -1,0 +1,34 @@
+//! The attributes of vertices in a `.node` of the mesh generator Triangle.
+
+use crate::error::ReadError;
+use crate::file::field::PointField;
+use crate::file::heights::TextNumbers;
+use crate::file::point_data::{PointData, Wanted};
+use crate::file::source::Source;
+use crate::file::text::Cursor;
+use crate::file::triangle::{attribute_names, vertex_header};
+use crate::mesh::Precision;
+
+/// The wanted attributes of the vertices of a file that was read before.
+pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
+    let cursor = &mut Cursor::new(node);
+    let count = vertex_header(cursor)?;
+    let attributes = cursor.integer_or(0, "the number of attributes per vertex")?;
+    let mut data = PointData::default();
+    // More than a row can hold are no attributes.
+    let most = cursor.capacity(attributes, 1) as u64;
+    for (column, name) in attribute_names(most).enumerate() {
+        let is_wanted = match wanted {
+            Wanted::Named(names) => names.contains(&name),
+            Wanted::Real => true,
+        };
+        data.known.push((name.clone(), true));
+        if is_wanted {
+            let mut numbers = TextNumbers::default();
+            numbers.column(cursor.clone(), count, 3 + column as u64)?;
+            let numbers = numbers.finish(Precision::Double, None);
+            data.fields.push(PointField::new(name, 1, count as usize, numbers, None));
+        }
+    }
+    Ok(data)
+}

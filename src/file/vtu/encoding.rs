@@ -1,0 +1,70 @@
+//! Arrays that are encoded, as base64 or compressed, and what they become with other numbers.
+
+use super::blocks::{Unwrapped, Wrapping};
+use crate::file::numbers::{Encoded, Offset, Splice};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Arrays of points or of their data that are encoded, one for each piece of the mesh.
+pub(super) struct Encoding {
+    parts: Vec<Part>,
+    /// The numbers of all of them.
+    bytes: Vec<u8>,
+    offsets: Arc<[Offset]>,
+}
+
+struct Part {
+    wrapping: Wrapping,
+    /// How it was wrapped, without its bytes.
+    old: Unwrapped,
+    /// Where it stands in the file.
+    range: Range<usize>,
+    /// Its bytes among those of all.
+    own: Range<usize>,
+}
+
+impl Encoding {
+    pub(super) fn new(
+        arrays: Vec<(Wrapping, Unwrapped, Range<usize>)>,
+        offsets: Arc<[Offset]>,
+    ) -> Encoding {
+        let mut bytes = Vec::new();
+        let mut parts = Vec::new();
+        for (wrapping, mut old, range) in arrays {
+            let start = bytes.len();
+            let own = std::mem::take(&mut old.bytes);
+            match bytes.is_empty() {
+                true => bytes = own,
+                false => bytes.extend_from_slice(&own),
+            }
+            parts.push(Part { wrapping, old, range, own: start..bytes.len() });
+        }
+        Encoding { parts, bytes, offsets }
+    }
+}
+
+impl Encoded for Encoding {
+    fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn ranges(&self) -> Vec<Range<usize>> {
+        self.parts.iter().map(|part| part.range.clone()).collect()
+    }
+
+    fn splices(&self, new: &[u8]) -> Vec<Splice> {
+        let changed = self.parts.iter().filter(|part| {
+            let own = part.own.clone();
+            new[own.clone()] != self.bytes[own]
+        });
+        let splice = |part: &Part| {
+            let bytes = part.wrapping.wrap(&part.old, &new[part.own.clone()]);
+            Splice { range: part.range.clone(), bytes }
+        };
+        changed.map(splice).collect()
+    }
+
+    fn offsets(&self) -> &[Offset] {
+        &self.offsets
+    }
+}

@@ -1,0 +1,158 @@
+//! The points of a VTK XML file, piece by piece.
+
+use super::arrays::File;
+use super::blocks::{Unwrapped, Wrapping};
+use super::document::{Array, Coding};
+use super::encoding::Encoding;
+use crate::error::ReadError;
+use crate::file::heights::Heights;
+use crate::file::numbers::{Encoded, Numbers};
+use crate::file::sink::{Home, Sink};
+use crate::file::text::{CORRECT, Cursor, quoted};
+use crate::mesh::Precision;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How the points of all pieces stand in the file.
+pub(super) struct Stored {
+    pub(super) numbers: Numbers,
+    pub(super) encoded: Option<Box<dyn Encoded>>,
+}
+
+/// The arrays of points read so far.
+struct Points<'s, S> {
+    sink: &'s mut S,
+    heights: Heights,
+    /// How the numbers stand: the same in all pieces.
+    numbers: Option<(Numbers, bool)>,
+    encoded: Vec<(Wrapping, Unwrapped, Range<usize>)>,
+    /// How many bytes the encoded arrays have.
+    bytes: usize,
+    /// How many points were read.
+    count: u64,
+    /// Where the last array of points ends that is not encoded.
+    end: usize,
+}
+
+/// Hands on the points of all pieces.
+pub(super) fn read(file: &File<'_>, sink: &mut impl Sink) -> Result<Stored, ReadError> {
+    let heights = Heights::new(sink);
+    let mut points =
+        Points { sink, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
+    for (piece, announced) in file.document.pieces.iter().enumerate() {
+        if announced.points > 0 || file.document.pieces.len() == 1 {
+            points.read(file, file.array(piece, "Points", None)?, announced.points)?;
+        }
+    }
+    let Points { heights, numbers, encoded, sink, .. } = points;
+    let Some((numbers, is_encoded)) = numbers else {
+        return Err(file.source.error("it has no piece with points", CORRECT));
+    };
+    let home = if is_encoded { Home::Points } else { Home::File };
+    let encoded = is_encoded.then(|| {
+        let offsets = Arc::clone(&file.offsets);
+        Box::new(Encoding::new(encoded, offsets)) as Box<dyn Encoded>
+    });
+    sink.end_nodes(&Cursor::new(file.source))?;
+    heights.send_from("z", numbers.into(), home, sink);
+    Ok(Stored { numbers, encoded })
+}
+
+impl<S: Sink> Points<'_, S> {
+    fn read(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
+        let cursor = &mut Cursor::standing_at(file.source, points.at);
+        cursor.check_vertex_count(self.count.saturating_add(count))?;
+        if points.components != 3 {
+            let problem = format!("points of {} components", points.components);
+            return Err(cursor.error(problem, "Points have three coordinates in VTK"));
+        }
+        let precision = match points.number.as_str() {
+            "Float32" => Precision::Single,
+            "Float64" => Precision::Double,
+            other => {
+                let problem = format!("points of the type {}", quoted(other.as_bytes()));
+                return Err(cursor.error(problem, "Float32 and Float64 are read"));
+            }
+        };
+        let (start, numbers, is_encoded) = match points.format {
+            Coding::Ascii => {
+                self.text(file, points, count)?;
+                (points.content.start, Numbers::Text { precision }, false)
+            }
+            _ => self.binary(file, points, count, precision)?,
+        };
+        if *self.numbers.get_or_insert((numbers, is_encoded)) != (numbers, is_encoded) {
+            let problem = "the points of this piece are not encoded as those before";
+            return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
+        }
+        if !is_encoded && start < self.end {
+            let problem = "the points of this piece stand before those of another";
+            return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
+        }
+        self.end = start;
+        self.count += count;
+        Ok(())
+    }
+
+    /// Hands on points in binary. Returns where they start, how they stand, and whether they are encoded.
+    fn binary(
+        &mut self,
+        file: &File<'_>,
+        points: &Array,
+        count: u64,
+        precision: Precision,
+    ) -> Result<(usize, Numbers, bool), ReadError> {
+        let cursor = &Cursor::standing_at(file.source, points.at);
+        let (wrapping, old, range) = file.unwrap(points)?;
+        let wide = precision.bytes();
+        if Some(old.bytes.len() as u64) != count.checked_mul(3 * wide as u64) {
+            let problem = format!("{} bytes for {count} points", old.bytes.len());
+            return Err(cursor.error(problem, CORRECT));
+        }
+        // Raw bytes are replaced in place, all others encoded again.
+        let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
+        let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
+        self.sink.expect_nodes(old.bytes.len() / (3 * wide));
+        for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate() {
+            let number = |axis: usize| {
+                let bytes = &point[axis * wide..][..wide];
+                wrapping.order.real(precision, bytes)
+            };
+            let at = [number(0), number(1)];
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("point {index} is not finite");
+                return Err(cursor.error(problem, "Write the mesh again"));
+            }
+            let x_at = start + index * 3 * wide;
+            self.sink.node(cursor, self.count + index as u64, 2, x_at, at);
+            self.heights.see((x_at + 2 * wide, number(2)));
+        }
+        let numbers = Numbers::adjacent(wrapping.order, precision);
+        if is_encoded {
+            self.bytes += old.bytes.len();
+            self.encoded.push((wrapping, old, range));
+        }
+        Ok((start, numbers, is_encoded))
+    }
+
+    /// Hands on points written as text.
+    fn text(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
+        let cursor = &mut Cursor::within(file.source, points.content.clone());
+        self.sink.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
+        for index in 0..count {
+            let mut point = [0.0; 3];
+            let mut places = [0; 3];
+            for (axis, x) in point.iter_mut().enumerate() {
+                if !cursor.next_word() {
+                    let problem = format!("the array ends after {index} of {count} points");
+                    return Err(cursor.error(problem, CORRECT));
+                }
+                places[axis] = cursor.at();
+                *x = cursor.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
+            }
+            self.sink.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
+            self.heights.see((places[2], point[2]));
+        }
+        Ok(())
+    }
+}

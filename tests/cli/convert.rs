@@ -1,0 +1,73 @@
+//! `gpu-smooth convert`.
+
+use super::{Folder, assert_holds};
+use std::fs;
+
+const SMS: &str = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .5 .5 0\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\n\
+                   E3T 3 3 4 5 2\nE3T 4 4 1 5 2\nNS 1 2 -3 \"shore\"\nMAT 2 \"mud\"\n";
+
+#[test]
+fn what_is_lost_is_told_before_it_is() {
+    let folder = Folder::new(&[("in.2dm", SMS)]);
+    let refused = folder.line("convert in.2dm out.mesh").refused(&[
+        "in.2dm: Medit ASCII does not hold all of this mesh; --lossy writes it without\n",
+        "\n  names of groups of lines, which become numbers: shore\n",
+        "\n  names of groups of surfaces, which become numbers: mud\n",
+    ]);
+    assert_eq!(refused.err.lines().count(), 3);
+    assert!(!folder.path("out.mesh").exists());
+    let run = folder.line("convert in.2dm out.mesh --lossy");
+    assert_eq!((run.code, run.err.lines().count()), (Some(0), 2));
+    assert_holds(&run.err, &["gpu-smooth: lost: names of groups of lines"]);
+    assert_holds(&folder.text("out.mesh"), &["Edges\n2\n1 2 1\n2 3 1\n", "3 4 5 2\n"]);
+    folder.line("convert in.2dm again.mesh --lossy --quiet").clean();
+}
+
+#[test]
+fn a_mesh_is_converted_by_the_ending_or_by_name() {
+    let folder = Folder::new(&[("in.2dm", SMS)]);
+    let out = folder.line("convert in.2dm out.msh").clean().out;
+    assert_eq!(
+        out,
+        "5 vertices and 4 triangles, with all else that gmsh 4.1 ASCII holds of SMS 2dm: out.msh\n"
+    );
+    assert_holds(&folder.text("out.msh"), &["4.1 0 8", "1 1 \"shore\"", "2 2 \"mud\""]);
+    folder.line("convert in.2dm old.msh --to gmsh22").clean();
+    assert_holds(&folder.text("old.msh"), &["2.2 0 8"]);
+    let piped = folder.line("convert in.2dm - --to gmsh22").clean().out;
+    assert_eq!(piped, folder.text("old.msh"));
+    folder.line("convert in.2dm out.msh.gz").clean();
+    let packed = folder.line("groups out.msh.gz").clean().out;
+    assert_eq!(packed.replace("out.msh.gz", "out.msh"), folder.line("groups out.msh").clean().out);
+    // A smoothed mesh, and back to what it was.
+    folder.line("out.msh better.msh --engine cpu --quiet --free-interfaces").clean();
+    folder.line("convert better.msh better.2dm").clean();
+    assert_holds(
+        &folder.text("better.2dm"),
+        &["NS 1 2 -3 \"shore\"", "MAT 2 \"mud\"", "E3T 4 4 1 5 2"],
+    );
+    folder.line("convert in.2dm out.node --lossy --quiet").clean();
+    assert_holds(&folder.text("out.poly"), &["2 1\n1 1 2 1\n"]);
+    folder.line("quality out.node").clean();
+}
+
+#[test]
+fn what_cannot_be_converted_is_refused() {
+    let folder = Folder::new(&[("in.2dm", SMS), ("word", "1 2 x\n")]);
+    folder.line("convert in.2dm in.2dm").refused(&["in.2dm is the mesh that is read"]);
+    folder
+        .line("convert in.2dm out.xyz")
+        .refused(&["out.xyz: its ending tells no format", "gmsh22"]);
+    folder.line("convert in.2dm out.slf").refused(&["out.slf: its ending tells no format"]);
+    folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
+    folder.line("convert word out.msh").refused(&["word"]);
+    folder.line("convert in.2dm - --to triangle --lossy --quiet").refused(&["name OUT"]);
+    let run = folder.line("convert in.2dm out.msh --to word");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["it is one of gmsh41, gmsh22, vtu, vtk"]);
+    fs::write(folder.path("out.poly"), "0").unwrap();
+    let no_lines = SMS.replace("NS 1 2 -3 \"shore\"\n", "").replace("MAT 2 \"mud\"\n", "");
+    fs::write(folder.path("plain.2dm"), no_lines).unwrap();
+    folder.line("convert plain.2dm out.node").refused(&["out.poly of another mesh is there"]);
+    assert!(!folder.path("out.node").exists());
+}

@@ -1,0 +1,254 @@
+//! Meshes written in other formats: what comes back of them, and what is told to be lost.
+
+use super::made::base;
+use super::others::{folder, for_each};
+use super::vtu::{self, styles};
+use super::{Folder, damage};
+use gpu_smooth::{Conversion, Format, Group, MeshFile};
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::Mutex;
+
+/// The ending of the files of a target.
+fn ending(format: Format) -> &'static str {
+    match format {
+        Format::Triangle => "node",
+        Format::Gmsh22 | Format::Gmsh41 | Format::FreeFem => "msh",
+        Format::Vtk => "vtk",
+        Format::Vtu => "vtu",
+        Format::Su2 => "su2",
+        Format::Medit => "mesh",
+        Format::Obj => "obj",
+        Format::Off => "off",
+        Format::Ply => "ply",
+        Format::Sms2dm => "2dm",
+        _ => "gr3",
+    }
+}
+
+/// What a group holds, with its name where it has one.
+fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
+    let triangles = group.triangles().to_vec();
+    (group.dimension, group.name.clone(), triangles, group.lines, group.quadrilaterals)
+}
+
+/// What is to come back of a mesh from every format: all of it where nothing is told to be lost.
+fn check(file: &MeshFile, folder: &Folder) -> usize {
+    let mut clean = 0;
+    for (name, format) in Conversion::targets() {
+        let out = format!("{name}.{}", ending(format));
+        let conversion = Conversion::new(file, format).unwrap().unwrap();
+        conversion.write(&folder.path(&out)).unwrap();
+        let back = folder.read(&out);
+        assert_eq!(back.format(), format);
+        assert_eq!(back.mesh().points, file.mesh().points, "{name}");
+        assert_eq!(back.mesh().triangles, file.mesh().triangles, "{name}");
+        // All that was written is read: it gives the same file again, and nothing of it is lost.
+        let again = Conversion::new(&back, format).unwrap().unwrap();
+        let [again_text, text] = [&again, &conversion].map(|c| c.text().unwrap_or_default());
+        let differ = again_text.lines().zip(text.lines()).find(|(again, first)| again != first);
+        assert_eq!(differ, None, "{name}");
+        assert_eq!(again_text.len(), text.len(), "{name}");
+        assert_eq!(again.lost(), [""; 0], "{name}");
+        if !conversion.lost().is_empty() {
+            continue;
+        }
+        clean += 1;
+        let (before, after) = (file.groups().unwrap(), back.groups().unwrap());
+        let after: Vec<_> = after.iter().map(held).collect();
+        // A tag of zero is no group everywhere, and entities are told by physical groups where they may be.
+        let is_kept = |group: &&Group| {
+            let is_points = group.lines + group.triangles().len() + group.quadrilaterals == 0;
+            // Lines of an OBJ are in the groups of its faces, and chains of nodes are counted as points.
+            let is_points =
+                is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);
+            group.tag != Some(0) && !group.what.contains("entity") && !is_points
+        };
+        for group in before.iter().filter(is_kept) {
+            let own = held(group);
+            let same = after.iter().any(|other| {
+                let named = own.1.is_none() || own.1 == other.1;
+                named && (own.0, &own.2, own.3, own.4) == (other.0, &other.2, other.3, other.4)
+            });
+            assert!(same, "{name}: {own:?} is none of {after:?}");
+        }
+        let values = |file: &MeshFile| -> BTreeMap<String, Vec<u64>> {
+            let fields = file.point_fields(None).unwrap();
+            let bits = |x: &f64| (x + 0.0).to_bits();
+            let of = |field: &gpu_smooth::PointField| {
+                (field.name().to_owned(), field.values().iter().map(bits).collect())
+            };
+            // gmsh pads vectors of two numbers.
+            fields.iter().filter(|field| field.components() != 2).map(of).collect()
+        };
+        let (mut before, after) = (values(file), values(&back));
+        // Third coordinates that are all the same need not be written.
+        let is_flat = |z: &Vec<u64>| z.iter().all(|bits| *bits == z[0]);
+        if before.get("z").is_some_and(is_flat) {
+            before.remove("z");
+        }
+        for (array, values) in before {
+            let found = after.get(&array).or_else(|| after.get(&array.replace(' ', "_")));
+            assert!(found == Some(&values), "{name}: {array}");
+        }
+    }
+    clean
+}
+
+#[test]
+fn every_format_is_converted_to_every_other() {
+    let clean = Mutex::new(0);
+    for_each(&base(), |made| {
+        let folder = folder(made, &made.bytes);
+        *clean.lock().unwrap() += check(&folder.read(made.name), &folder);
+    });
+    let clean = clean.into_inner().unwrap();
+    assert!(clean > 70, "{clean} conversions lose nothing");
+}
+
+const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"in let\"\n1 2 \"wall\"\n2 1 \"steel\"\n\
+$EndPhysicalNames\n$Nodes\n6\n1 0 0 0.5\n2 1 0 1\n3 1 1 1\n4 0 1 1\n5 .5 .5 1\n6 2 .5 1\n$EndNodes\n$Elements\n9\n\
+1 1 2 1 7 1 2\n2 1 2 2 8 2 3\n3 1 2 2 8 3 4\n4 1 2 2 9 4 1\n5 2 2 1 4 1 2 5\n6 2 2 1 4 2 3 5\n7 2 2 1 4 3 4 5\n\
+8 2 2 1 4 4 1 5\n9 2 2 3 4 2 6 3\n$EndElements\n$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n6 2.5\n$EndElementData\n";
+
+/// The mesh in another format, and what is lost.
+fn converted(name: &str, text: &str, to: Format) -> (String, String) {
+    let folder = Folder::new(&[(name, text)]);
+    let conversion = Conversion::new(&folder.read(name), to).unwrap().unwrap();
+    (conversion.text().unwrap(), conversion.lost().join("; "))
+}
+
+#[test]
+fn names_and_numbers_stand_where_formats_have_them() {
+    let (su2, lost) = converted("in.msh", GMSH, Format::Su2);
+    let expected = "NDIME= 2\nNELEM= 5\n5 0 1 4 0\n5 1 2 4 1\n5 2 3 4 2\n5 3 0 4 3\n5 1 5 2 4\nNPOIN= 6\n\
+        0.0 0.0 0\n1.0 0.0 1\n1.0 1.0 2\n0.0 1.0 3\n0.5 0.5 4\n2.0 0.5 5\nNMARK= 2\nMARKER_TAG= in_let\n\
+        MARKER_ELEMS= 1\n3 0 1\nMARKER_TAG= wall\nMARKER_ELEMS= 3\n3 1 2\n3 2 3\n3 3 0\n";
+    assert_eq!(su2, expected);
+    let expected = "third coordinates; groups of lines (entity): 7, 8, 9; \
+                    groups of surfaces (physical): steel, 3; data of elements: e";
+    assert_eq!(lost, expected);
+
+    let (sms, lost) = converted("in.msh", GMSH, Format::Sms2dm);
+    let expected = "MESH2D\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\nE3T 3 3 4 5 1\nE3T 4 4 1 5 1\nE3T 5 2 6 3 3\n\
+        ND 1 0.0 0.0 0.5\nND 2 1.0 0.0 1.0\nND 3 1.0 1.0 1.0\nND 4 0.0 1.0 1.0\nND 5 0.5 0.5 1.0\nND 6 2.0 0.5 1.0\n\
+        NS 1 -2 \"in let\"\nNS 2 3 4 -1 \"wall\"\nMAT 1 \"steel\"\n";
+    assert_eq!(sms, expected);
+    assert_eq!(lost, "groups of lines (entity): 7, 8, 9; data of elements: e");
+
+    let (medit, lost) = converted("in.msh", GMSH, Format::Medit);
+    assert!(medit.starts_with("MeshVersionFormatted 2\nDimension 3\nVertices\n6\n0.0 0.0 0.5 0\n"));
+    assert!(medit.ends_with(
+        "Edges\n4\n1 2 1\n2 3 2\n3 4 2\n4 1 2\nTriangles\n5\n1 2 5 1\n2 3 5 1\n\
+                             3 4 5 1\n4 1 5 1\n2 6 3 3\nEnd\n"
+    ));
+    assert!(
+        lost.contains("names of groups of lines, which become numbers: in let, wall"),
+        "{lost}"
+    );
+
+    // What names groups in one version of a format does in the other.
+    let (newer, lost) = converted("in.msh", GMSH, Format::Gmsh41);
+    assert_eq!(lost, "");
+    let (older, lost) = converted("in.msh", &newer, Format::Gmsh22);
+    assert_eq!(lost, "");
+    let rows = |text: &str| -> Vec<String> {
+        let words = |row: &str| row.split_whitespace().collect::<Vec<_>>().join(" ");
+        text.lines().map(words).collect()
+    };
+    let (older, elements) = (rows(&older), "2 1 2 2 8 2 3".to_owned());
+    assert!(older.contains(&elements) && older.contains(&"1 2 \"wall\"".to_owned()), "{older:?}");
+    assert!(older.contains(&"6 2.5".to_owned()), "{older:?}");
+    assert!(older.contains(&"9 2 2 3 1 2 6 3".to_owned()), "{older:?}");
+}
+
+const GRID: &str = "bay\n4 5\n1 0 0 2.5\n2 1 0 3\n3 1 1 4\n4 0 1 5\n5 .5 .5 9\n1 3 1 2 5\n2 3 2 3 5\n3 3 3 4 5\n4 3 4 1 5\n\
+1 = Number of open boundaries\n2 = Total\n2 = Number of nodes for open boundary 1\n1\n2\n2 ! land\n5\n3 0 = first\n2\n3\n4\n2 1\n4\n1\n";
+
+#[test]
+fn boundaries_of_a_grid_are_groups() {
+    let folder = Folder::new(&[("in.14", GRID), ("cut.14", &GRID[..GRID.len() - 9])]);
+    let groups = folder.read("in.14").groups().unwrap();
+    let told: Vec<_> = groups.iter().map(|group| (group.to_string(), group.vertices())).collect();
+    let expected: [(String, &[u32]); 3] = [
+        ("boundary line open1".into(), &[0, 1]),
+        ("boundary line land1".into(), &[1, 2, 3]),
+        ("boundary line island2".into(), &[0, 3]),
+    ];
+    assert_eq!(told, expected);
+    // A list that is cut off is passed over.
+    assert_eq!(folder.read("cut.14").groups().unwrap().len(), 2);
+    let (gmsh, lost) = converted("in.14", GRID, Format::Gmsh22);
+    assert_eq!(lost, "");
+    assert!(gmsh.contains("1 1 \"open1\"") && gmsh.contains("$NodeData\n1\n\"depth\""), "{gmsh}");
+    let (sms, lost) = converted("in.14", GRID, Format::Sms2dm);
+    assert!(sms.contains("NS 2 3 -4 \"land1\"\n"), "{sms}");
+    assert_eq!(lost, "data of vertices: depth");
+    let (back, lost) = converted("in.msh", &gmsh, Format::Adcirc);
+    assert_eq!(lost, "names of groups of lines, which become numbers: open1, land1, island2");
+    let tail = &back[back.find("1 = Number of open").unwrap()..];
+    let expected = "1 = Number of open boundaries\n2 = Total number of open boundary nodes\n\
+        2 = Number of nodes for open boundary\n1\n2\n2 = Number of land boundaries\n5 = Total number of land boundary nodes\n\
+        3 0 = Number of nodes for land boundary\n2\n3\n4\n2 1 = Number of nodes for land boundary\n4\n1\n";
+    assert_eq!(tail, expected);
+}
+
+#[test]
+fn what_formats_do_not_hold_is_told() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\nvt 0 0\nusemtl a b\no part\nf 1/1/1 2//1 5\n\
+               f 2 3 5\no other\nf 3 4 5\nf 4 1 5\nf 2 6 7 3\nl 1 2 3\np 5\n";
+    let of = |to| converted("in.obj", obj, to).1;
+    let left = "normals; texture coordinates";
+    let objects = "groups of points (object): other; groups of lines (object): other; \
+                   groups of surfaces (object): part, other";
+    assert_eq!(of(Format::Gmsh22), format!("{objects}; {left}"));
+    let off = of(Format::Off);
+    assert!(off.starts_with("1 point; 2 lines; groups of points (material): a b; "), "{off}");
+    let vtu = of(Format::Vtu);
+    let names = "names of groups of surfaces, which become numbers: a b, part, other; ";
+    assert!(vtu.contains(names) && vtu.ends_with(left), "{vtu}");
+    assert!(of(Format::FreeFem).starts_with("1 point; 1 quadrilateral; "));
+
+    let sparse = GMSH.replace("\n6 2 .5 1", "\n60 2 .5 1").replace("4 2 6 3\n", "4 2 60 3\n");
+    let (_, lost) = converted("in.msh", &sparse, Format::Vtu);
+    assert!(lost.contains("the vertices' own numbers, which are not consecutive"), "{lost}");
+    let (text, lost) = converted("in.msh", &sparse, Format::Gmsh41);
+    assert!(lost.is_empty() && text.contains("\n60\n"), "{lost}");
+    assert!(
+        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Selafin)
+            .unwrap()
+            .is_none()
+    );
+}
+
+#[test]
+fn every_encoding_of_vtu_is_converted() {
+    for style in styles().into_iter().step_by(7) {
+        let folder = vtu::folder(&vtu::write(&base(), style));
+        assert!(check(&folder.read("in.vtu"), &folder) >= 2, "{style:?}");
+    }
+}
+
+/// What can be read can be converted, however it was damaged.
+#[test]
+fn damaged_files_are_converted_or_refused() {
+    let mut random = damage::random(17);
+    let styles: Vec<_> = styles().into_iter().step_by(17).collect();
+    let vtus = styles.iter().map(|style| ("in.vtu", vtu::write(&base(), *style)));
+    let mut samples: Vec<(&str, Vec<u8>)> = vtus.collect();
+    samples.extend([("in.msh", GMSH.into()), ("in.14", GRID.into())]);
+    let mut read = 0;
+    for round in 0..200 {
+        let (name, bytes) = &samples[round % samples.len()];
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), damage::damaged(bytes, &mut random)).unwrap();
+        let Ok(file) = MeshFile::read(&folder.path(name)) else { continue };
+        for (_, format) in Conversion::targets() {
+            if let Ok(Some(conversion)) = Conversion::new(&file, format) {
+                conversion.text();
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 300, "{read} conversions");
+}
