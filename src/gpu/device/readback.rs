@@ -1,7 +1,9 @@
 //! Reading buffers back to the host. Buffers are mapped for reading nowhere else.
 
+use std::marker::PhantomData;
+
 use bytemuck::Pod;
-use futures_intrusive::channel::shared::oneshot_channel;
+use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
@@ -23,9 +25,20 @@ pub(crate) async fn read<T: Pod>(
     count: usize,
     waiting: Waiting,
 ) -> Result<Vec<T>, GpuError> {
+    submit_and_copy::<T>(gpu, |_| {}, source, count)?.values(waiting).await
+}
+
+/// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. A
+/// submission by itself would make some drivers block the thread until the work before it is done.
+pub(crate) fn submit_and_copy<'g, T: Pod>(
+    gpu: &'g Gpu,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder),
+    source: &wgpu::Buffer,
+    count: usize,
+) -> Result<Copied<'g, T>, GpuError> {
     let size = (count * size_of::<T>()) as u64;
     let label = Some("gpu-smooth readback");
-    let (sender, receiver) = oneshot_channel();
+    let (sender, arrival) = oneshot_channel();
     let staging = scoped(&gpu.device, || {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label,
@@ -35,6 +48,7 @@ pub(crate) async fn read<T: Pod>(
         });
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        encode(&mut encoder);
         encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
         gpu.queue.submit([encoder.finish()]);
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -43,19 +57,36 @@ pub(crate) async fn read<T: Pod>(
         });
         staging
     })?;
-    if waiting == Waiting::Block {
-        let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        gpu.check()?;
-        polled.map_err(|error| GpuError::Lost(error.to_string()))?;
+    Ok(Copied { gpu, staging, arrival, values: PhantomData })
+}
+
+/// Values on their way to the host.
+pub(crate) struct Copied<'g, T> {
+    gpu: &'g Gpu,
+    staging: wgpu::Buffer,
+    arrival: OneshotReceiver<Result<(), wgpu::BufferAsyncError>>,
+    values: PhantomData<fn() -> T>,
+}
+
+impl<T: Pod> Copied<'_, T> {
+    /// The values, once they are there.
+    pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
+        let Self { gpu, staging, arrival, .. } = self;
+        if waiting == Waiting::Block {
+            let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            gpu.check()?;
+            polled.map_err(|error| GpuError::Lost(error.to_string()))?;
+        }
+        match arrival.receive().await {
+            Some(Ok(())) => gpu.check()?,
+            Some(Err(error)) => return Err(GpuError::Lost(error.to_string())),
+            None => return Err(GpuError::Lost("the readback was abandoned".into())),
+        }
+        let view =
+            staging.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
+        let values = bytemuck::pod_collect_to_vec(&view[..]);
+        drop(view);
+        staging.unmap();
+        Ok(values)
     }
-    match receiver.receive().await {
-        Some(Ok(())) => gpu.check()?,
-        Some(Err(error)) => return Err(GpuError::Lost(error.to_string())),
-        None => return Err(GpuError::Lost("the readback was abandoned".into())),
-    }
-    let view = staging.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
-    let values = bytemuck::pod_collect_to_vec(&view[..]);
-    drop(view);
-    staging.unmap();
-    Ok(values)
 }

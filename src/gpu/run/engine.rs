@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 
+use bytemuck::Pod;
 use glam::DVec2;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
 use crate::gpu::mesh::MeshBuffers;
@@ -18,6 +19,9 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, History, Objectives, Plan, Proposal, Step, Stop};
+
+/// Number of totals that the objective along a correction leaves.
+const TOTALS: usize = 4;
 
 /// A mesh that is swept on a device.
 pub(crate) struct GpuEngine<'a> {
@@ -80,14 +84,31 @@ impl<'a> GpuEngine<'a> {
         })
     }
 
-    async fn control(&self) -> Result<Control, GpuError> {
-        let control = readback::read(self.gpu, &self.dispatches.control, 1, self.waiting).await?;
+    /// Submits what `encode` encodes, and in the same submission a copy of the first `count` values of `source`.
+    fn submit_and_copy<T: Pod>(
+        &self,
+        encode: impl FnOnce(&mut Passes<'_>),
+        source: &wgpu::Buffer,
+        count: usize,
+    ) -> Result<Copied<'a, T>, GpuError> {
+        let encode =
+            |encoder: &mut wgpu::CommandEncoder| encode(&mut encoder.passes("gpu-smooth run"));
+        readback::submit_and_copy(self.gpu, encode, source, count)
+    }
+
+    /// Submits what `encode` encodes, and returns the control block after it.
+    async fn control_after(
+        &self,
+        encode: impl FnOnce(&mut Passes<'_>) + Send,
+    ) -> Result<Control, GpuError> {
+        let copied = self.submit_and_copy(encode, &self.dispatches.control, 1)?;
+        let control: Vec<Control> = copied.values(self.waiting).await?;
         control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
     }
 
     /// Submits sweeps, with an evaluation in front if there was none yet, and adds the device's results to the history.
     async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
-        self.submit(|passes| {
+        let sweeps = |passes: &mut Passes<'_>| {
             if self.evaluated == 0 {
                 self.dispatches.encode_evaluation(passes);
             }
@@ -95,8 +116,8 @@ impl<'a> GpuEngine<'a> {
                 self.dispatches.encode_sweep(passes, step);
                 self.dispatches.encode_evaluation(passes);
             }
-        })?;
-        let control = self.control().await?;
+        };
+        let control = self.control_after(sweeps).await?;
         for evaluation in self.evaluated..control.evaluated {
             let sums = control.history[(evaluation % HISTORY) as usize];
             history.record(self.objectives_of(&sums));
@@ -128,10 +149,9 @@ impl<'a> GpuEngine<'a> {
         positions
     }
 
-    /// The four totals of the objective along the correction.
-    async fn totals(&self, levels: &Levels) -> Result<Proposal, GpuError> {
-        let totals: Vec<[f32; 2]> =
-            readback::read(self.gpu, &levels.vectors, 4, self.waiting).await?;
+    /// The proposal that four totals of the objective along the correction make.
+    async fn proposal(&self, totals: Copied<'_, [f32; 2]>) -> Result<Proposal, GpuError> {
+        let totals = totals.values(self.waiting).await?;
         let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
         let triangles = self.problem.triangles().len() as f64;
         Ok(Proposal {
@@ -148,8 +168,8 @@ impl Engine for GpuEngine<'_> {
     }
 
     async fn objectives(&mut self) -> Result<Objectives, GpuError> {
-        self.submit(|passes| self.dispatches.encode_evaluation(passes))?;
-        let control = self.control().await?;
+        let evaluation = |passes: &mut Passes<'_>| self.dispatches.encode_evaluation(passes);
+        let control = self.control_after(evaluation).await?;
         let last = control.evaluated.saturating_sub(1) % HISTORY;
         Ok(self.objectives_of(&control.history[last as usize]))
     }
@@ -216,7 +236,7 @@ impl Engine for GpuEngine<'_> {
             let (params, free) = (&self.dispatches.params, self.problem.free_count() as u32);
             secants = Secants::new(self.gpu, &self.mesh, params, levels, free)?;
         }
-        self.submit(|passes| {
+        let correction = |passes: &mut Passes<'_>| {
             self.dispatches.encode_sweep(passes, step);
             match &mut secants {
                 Some(secants) => secants.encode_correction(self.gpu, levels, passes),
@@ -226,17 +246,19 @@ impl Engine for GpuEngine<'_> {
                 }
             }
             levels.encode_objective(passes);
-        })?;
-        let totals = self.totals(levels).await;
+        };
+        let totals = self.submit_and_copy(correction, &levels.vectors, TOTALS)?;
+        let proposal = self.proposal(totals).await;
         self.secants = secants;
-        totals
+        proposal
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         let Some(levels) = &self.levels else { return Ok(None) };
         levels.set_length(self.gpu, length as f32);
-        self.submit(|passes| levels.encode_objective(passes))?;
-        Ok(self.totals(levels).await?.there)
+        let objective = |passes: &mut Passes<'_>| levels.encode_objective(passes);
+        let totals = self.submit_and_copy(objective, &levels.vectors, TOTALS)?;
+        Ok(self.proposal(totals).await?.there)
     }
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
