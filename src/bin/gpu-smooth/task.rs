@@ -97,6 +97,7 @@ pub(crate) fn carry_out<T>(
         let opening = scope.spawn(move || engine(size));
         let prepared = match Smoother::new(mesh) {
             Err(error) if args.untangle && untangle::can_mend(&error) => {
+                follow.stage(Stage::Untangling);
                 untangle::mend(args, show, &file, out).map(Prepared::Mended).map_err(Failure::from)
             }
             Err(error) => Err(refusal(args, &choice, &file, &error)),
