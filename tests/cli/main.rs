@@ -7,6 +7,7 @@ mod support;
 mod adapters;
 mod arguments;
 mod bench;
+mod browser;
 mod compare;
 mod convert;
 mod files;

@@ -73,8 +73,10 @@ pub(crate) struct Engines<'a> {
 struct Found {
     /// A device, and from how many vertices it is taken.
     gpu: Option<(Taken, usize)>,
-    /// The CPU, and up to how many vertices it is taken.
-    cpu: Option<(Taken, usize)>,
+    /// The CPU, and up to how many vertices it is taken because no GPU is faster.
+    small: Option<(Taken, usize)>,
+    /// The CPU, and from how many vertices it is taken because there is no GPU.
+    large: Option<(Taken, usize)>,
 }
 
 impl<'a> Engines<'a> {
@@ -93,7 +95,7 @@ impl<'a> Engines<'a> {
             return asked.clone();
         }
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        let Found { gpu, cpu } = &mut *found;
+        let Found { gpu, small, large } = &mut *found;
         if let Some((taken, least)) = gpu
             && size.vertices >= *least
             && let Backend::Gpu(gpu) = &*taken.backend
@@ -101,28 +103,23 @@ impl<'a> Engines<'a> {
         {
             return taken.clone();
         }
-        if let Some((taken, most)) = cpu
-            && size.vertices <= *most
-        {
+        if let Some((taken, _)) = small.as_ref().filter(|(_, most)| size.vertices <= *most) {
+            return taken.clone();
+        }
+        if let Some((taken, _)) = large.as_ref().filter(|(_, least)| size.vertices >= *least) {
             return taken.clone();
         }
         let (backend, reason) = Backend::auto(size, &self.args.options(Precision::Double));
         let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
-        let holds_up_to = match reason {
-            Reason::GpuIsFaster { pays_from } => {
-                *gpu = Some((taken.clone(), pays_from));
-                None
-            }
-            // So it is with any smaller mesh.
-            Reason::CpuIsFaster { .. } => Some(size.vertices),
+        let known = (taken.clone(), size.vertices);
+        match reason {
+            Reason::GpuIsFaster { pays_from } => *gpu = Some((taken.clone(), pays_from)),
+            Reason::CpuIsFaster { .. } => *small = Some(known),
             Reason::OnlySoftware(_) | Reason::GpuFails(GpuError::NoAdapter { .. }) => {
-                Some(usize::MAX)
+                *large = Some(known);
             }
             // Another mesh may fit.
-            _ => None,
-        };
-        if let Some(most) = holds_up_to {
-            *cpu = Some((taken.clone(), most));
+            _ => {}
         }
         taken
     }

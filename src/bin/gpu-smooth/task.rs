@@ -97,11 +97,14 @@ pub(crate) fn carry_out<T>(
     let (prepared, taken) = std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
         let prepared = match Smoother::new(mesh) {
-            Err(error) if args.untangle && untangle::can_mend(&error) => riding
-                .check_untangled()
-                .and_then(|()| untangle::mend(args, show, &file, out))
-                .map(Prepared::Mended)
-                .map_err(Failure::from),
+            Err(error) if args.untangle && untangle::can_mend(&error) => {
+                follow.stage(Stage::Untangling);
+                riding
+                    .check_untangled()
+                    .and_then(|()| untangle::mend(args, show, &file, out))
+                    .map(Prepared::Mended)
+                    .map_err(Failure::from)
+            }
             Err(error) => Err(refusal(args, &choice, &file, &error)),
             Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
         };

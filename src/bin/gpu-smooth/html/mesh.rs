@@ -14,8 +14,16 @@ use crate::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, t
 const SHOWN: [Measure; 4] =
     [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
 
-/// Meshes of more triangles are shown as a picture and by parts. With fewer, the page has up to some 20 MB.
-pub(crate) const MOST: usize = 250_000;
+/// What bounds the size of a page.
+pub(crate) struct Bounds {
+    /// Meshes of more triangles are shown as a picture and by parts.
+    most: usize,
+    /// The width or height of that picture in pixels, whichever is longer.
+    pixels: u32,
+}
+
+/// With these, a page has up to some 15 MB.
+pub(crate) const BOUNDS: Bounds = Bounds { most: 250_000, pixels: 2000 };
 
 /// How many triangles around each of the worst ones are shown of a larger mesh.
 const AROUND: usize = 1500;
@@ -23,12 +31,9 @@ const AROUND: usize = 1500;
 /// The most edges of the boundary, and of lines between regions, that are shown of a larger mesh.
 const MOST_EDGES: usize = 200_000;
 
-/// The width or height of the picture of a larger mesh, in pixels, whichever is longer.
-const PIXELS: u32 = 2000;
-
 /// How a mesh of so many triangles is shown, in a sentence or two.
 pub(crate) fn caption(triangles: usize) -> String {
-    match triangles > MOST {
+    match triangles > BOUNDS.most {
         false => format!("All {triangles} triangles."),
         true => format!(
             "{triangles} triangles, too many for a page: the whole is a picture by shape, where the worst of the triangles that \
@@ -37,15 +42,15 @@ pub(crate) fn caption(triangles: usize) -> String {
     }
 }
 
-/// All that the script needs. A mesh of more than `most` triangles is not shown whole.
+/// All that the script needs.
 pub(crate) fn data(
     file: &MeshFile,
     states: [&Measured<'_>; 2],
     spots: &[Spot],
-    most: usize,
+    bounds: &Bounds,
 ) -> Result<Value, String> {
     let topology = states[0].topology();
-    let is_whole = topology.triangles().len() <= most;
+    let is_whole = topology.triangles().len() <= bounds.most;
     let outlines = Outlines::of(topology, &file.mesh().fixed, file.regions());
     let shown = match is_whole {
         true => (0..topology.triangles().len()).collect(),
@@ -79,7 +84,7 @@ pub(crate) fn data(
     for state in states {
         let picture = match is_whole {
             true => None,
-            false => Some(picture(topology, state, extent)?),
+            false => Some(picture(topology, state, extent, bounds.pixels)?),
         };
         both.push(json!({
             "points": part.points(state.points()),
@@ -141,8 +146,9 @@ fn picture(
     topology: &Topology<'_>,
     state: &Measured<'_>,
     extent: Extent,
+    pixels: u32,
 ) -> Result<String, String> {
-    let bytes = picture_of(topology, state, SHOWN[0], extent, PIXELS)?;
+    let bytes = picture_of(topology, state, SHOWN[0], extent, pixels)?;
     Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
 }
 
@@ -225,7 +231,7 @@ mod tests {
         let topology = Topology::new(file.mesh()).unwrap();
         let state = Measured::new(&file.mesh().points, &topology).unwrap();
         let spots = worst::spots(&file, [&state; 2]);
-        let of = |most| data(&file, [&state; 2], &spots, most).unwrap();
+        let of = |most| data(&file, [&state; 2], &spots, &Bounds { most, pixels: 300 }).unwrap();
         let count = |data: &Value, key: &str| {
             BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4
         };
@@ -240,7 +246,7 @@ mod tests {
             let png = picture.strip_prefix("data:image/png;base64,").unwrap();
             let png = BASE64_STANDARD.decode(png).unwrap();
             // Width and height stand there.
-            assert_eq!(png[16..24], [0, 0, 7, 208, 0, 0, 7, 208]);
+            assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 1, 44]);
         }
         // The worst are at the vertex that is out of place, and shown in both.
         for data in [&whole, &parts] {

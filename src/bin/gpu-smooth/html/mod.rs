@@ -59,7 +59,7 @@ fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
         page.lead(&warning);
     }
     page.section("Summary", &tables::summary(&done.report));
-    let data = mesh::data(done.file, states, &spots, mesh::MOST)?;
+    let data = mesh::data(done.file, states, &spots, &mesh::BOUNDS)?;
     page.mesh(&mesh::caption(topology.triangles().len()), &data);
     page.section("Worst triangles", &worst::lists(&spots));
     page.section("Distribution", &histograms(states));

@@ -1,4 +1,4 @@
-//! Who smooths which mesh: large ones one after the other on all cores, small ones side by side on a core each.
+//! Who smooths which mesh: large ones one after the other on all cores, small ones side by side, each on one thread.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -10,6 +10,9 @@ use crate::many::listing::Listed;
 
 /// Files of more bytes than this are large: some 100,000 vertices as text. Less than that does not keep all cores busy.
 const LARGE: u64 = 10 << 20;
+
+/// Small meshes under way for each core. Writing waits until the disk has the file; another mesh takes the core meanwhile.
+const PER_CORE: usize = 2;
 
 /// How often an interrupt is looked for.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -62,7 +65,7 @@ pub(crate) fn run(
 /// Calls `work` for each of some meshes on threads of their own, which share the cores. It returns whether to go on.
 fn side_by_side(meshes: &[usize], work: &(dyn Fn(usize) -> bool + Sync)) {
     let cores = rayon::current_num_threads();
-    let workers = cores.min(meshes.len());
+    let workers = (PER_CORE * cores).min(meshes.len());
     let next = AtomicUsize::new(0);
     let take_and_work = || {
         while let Some(&i) = meshes.get(next.fetch_add(1, Ordering::Relaxed))

@@ -39,7 +39,7 @@ fn usual(stage: Stage) -> Option<f64> {
         Stage::Reading { bytes } => bytes as f64 / READ,
         Stage::Preparing { vertices } => vertices as f64 / PREPARE,
         Stage::Writing { bytes } => bytes as f64 / WRITE,
-        Stage::Smoothing => return None,
+        Stage::Untangling | Stage::Smoothing => return None,
     };
     (seconds > 0.0).then_some(seconds)
 }

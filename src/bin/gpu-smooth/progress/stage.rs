@@ -7,6 +7,8 @@ pub(crate) enum Stage {
     Reading { bytes: u64 },
     /// A mesh of so many vertices is made ready.
     Preparing { vertices: usize },
+    /// Inverted triangles are turned back.
+    Untangling,
     /// Sweeps are done.
     Smoothing,
     /// A file of about so many bytes is written.
@@ -19,6 +21,7 @@ impl Stage {
         match self {
             Self::Reading { .. } => "reading",
             Self::Preparing { .. } => "preparing",
+            Self::Untangling => "untangling",
             Self::Smoothing => "smoothing",
             Self::Writing { .. } => "writing",
         }

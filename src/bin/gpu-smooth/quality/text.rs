@@ -177,3 +177,24 @@ pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
         (unit, _) => format!("{measure} {}{unit}", five(value)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_terminal_has_the_most_important_columns() {
+        let names = |width| {
+            let mut style = Style::of_terminal(true);
+            style.width = width;
+            let line = line("shape", COLUMNS.map(str::to_owned), &style);
+            assert!(line.trim_end().len() <= width, "{line}");
+            line[NAME..].trim().split("  ").map(|n| n.trim().to_owned()).collect::<Vec<_>>()
+        };
+        let full = |width| names(width).into_iter().filter(|n| !n.is_empty()).collect::<Vec<_>>();
+        assert_eq!(full(80), COLUMNS);
+        assert_eq!(full(71), ["min", "5 %", "median", "mean", "max", "sd"]);
+        assert_eq!(full(50), ["min", "mean", "max"]);
+        assert_eq!(full(40), ["min", "max"]);
+    }
+}
