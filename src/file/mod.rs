@@ -27,6 +27,7 @@ mod obj;
 mod off;
 mod packed;
 mod parallel_rows;
+mod parameters;
 mod parsed;
 mod ply;
 mod point_data;

@@ -70,9 +70,11 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         interrupt::has_result();
         let after = smoother.quality(&outcome.points).map_err(told)?;
         let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
+        let parameters = riding.add_parameters(&file, &outcome.points)?;
         let has_moved = outcome.points != mesh.points;
         let left_behind = has_moved.then(|| riding.left_behind(&file)).flatten();
-        for note in interpolated.iter().chain(&left_behind) {
+        let parameters = parameters.filter(|_| has_moved);
+        for note in interpolated.iter().chain(&left_behind).chain(&parameters) {
             tell::note(show.quiet, note);
         }
         let smoothed = Instant::now();

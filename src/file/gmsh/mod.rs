@@ -213,6 +213,12 @@ fn note_parameters(sink: &mut impl Sink) {
     sink.leaves_out("parameters of nodes on surfaces");
 }
 
+/// Announces that nodes have parameters on a surface. Whether these are wanted.
+fn has_parameters(sink: &mut impl Sink, surface: i64) -> bool {
+    sink.leaves_out("parameters of nodes on surfaces");
+    sink.parameters(surface)
+}
+
 fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
     encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
