@@ -9,7 +9,7 @@ use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, parameters,
+    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, parametric,
     ply, selafin, sms, su2, vtk, vtu,
 };
 use std::path::Path;
@@ -37,7 +37,7 @@ const fn reader<W: Walk>() -> Option<Reader> {
         groups: gather::groups::<W>,
         labels: gather::labels::<W>,
         content: convert::content::<W>,
-        parameters: parameters::parameters::<W>,
+        parameters: parametric::parameters::<W>,
         point_data: point_data::point_data::<W>,
     })
 }

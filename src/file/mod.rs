@@ -28,6 +28,7 @@ mod off;
 mod packed;
 mod parallel_rows;
 mod parameters;
+mod parametric;
 mod parsed;
 mod ply;
 mod point_data;
