@@ -57,7 +57,8 @@ pub(crate) struct OutputArgs {
 pub(crate) enum Command {
     /// Tells how good meshes are, and where they are worst
     Quality(QualityArgs),
-    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
+    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like, and data of
+    /// vertices
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     Compare(CompareArgs),
