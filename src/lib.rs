@@ -28,7 +28,8 @@
 //!
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
 //! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
-//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; what may move is
+//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; a
+//! [`Conversion`] writes a mesh in another format, and an [`Interpolation`] takes data of vertices to new places; what may move is
 //! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]). [`Measured`] tells how good triangles
 //! are by each [`Measure`] of the field, and [`Quality`] what smoothing has made of a mesh.
 //!

@@ -13,6 +13,7 @@ use crate::mesh::Mesh;
 pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
     let Layout { format, numbers, encoded } = W::walk(source, &mut reader)?;
+    let has_parameters = reader.has_parameters;
     let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } = reader;
     if quadrilaterals > 0 {
         notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
@@ -32,7 +33,7 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
         }
     }
     let regions = regions.finish();
-    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data })
+    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data, has_parameters })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
@@ -58,6 +59,8 @@ struct Reader {
     notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides coordinates.
     data: Vec<String>,
+    /// Whether nodes have parameters on surfaces of the model that can be replaced.
+    has_parameters: bool,
     /// Where the file lists its vertices, for messages.
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
@@ -90,6 +93,11 @@ impl Sink for Reader {
         if !self.notes.iter().any(|before| before == note) {
             self.notes.push(note.to_owned());
         }
+    }
+
+    fn parameters(&mut self, _: i64) -> bool {
+        self.has_parameters = true;
+        false
     }
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {

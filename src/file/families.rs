@@ -1,6 +1,7 @@
 //! What each format is known by, and its reader.
 
 use crate::error::{Location, ReadError};
+use crate::file::field::PointField;
 use crate::file::format::Format;
 use crate::file::group_table::GroupTable;
 use crate::file::parsed::Parsed;
@@ -8,8 +9,8 @@ use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
-    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, ply,
-    selafin, sms, su2, vtk, vtu,
+    adcirc, assemble, convert, freefem, gather, gmsh, medit, meditb, obj, off, packed, parametric,
+    ply, selafin, sms, su2, vtk, vtu,
 };
 use std::path::Path;
 
@@ -24,6 +25,7 @@ pub(crate) struct Reader {
     pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
     pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
     pub(crate) content: fn(&Source) -> Result<convert::Content, ReadError>,
+    pub(crate) parameters: fn(&Source) -> Result<Vec<PointField>, ReadError>,
     pub(crate) point_data: fn(&Source, Wanted<'_>) -> Result<PointData, ReadError>,
 }
 
@@ -35,6 +37,7 @@ const fn reader<W: Walk>() -> Option<Reader> {
         groups: gather::groups::<W>,
         labels: gather::labels::<W>,
         content: convert::content::<W>,
+        parameters: parametric::parameters::<W>,
         point_data: point_data::point_data::<W>,
     })
 }

@@ -79,6 +79,7 @@ pub struct MeshFile {
     format: Format,
     notes: Vec<String>,
     data: Vec<String>,
+    has_parameters: bool,
     /// The byte at which the x of each vertex starts in the first of the sources.
     x_at: Vec<usize>,
     /// How the first of the sources has the coordinates.
@@ -158,7 +159,17 @@ impl MeshFile {
     }
 
     fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
-        let Parsed { format, mut mesh, x_at, numbers, encoded, regions, notes, data } = parsed;
+        let Parsed {
+            format,
+            mut mesh,
+            x_at,
+            numbers,
+            encoded,
+            regions,
+            notes,
+            data,
+            has_parameters,
+        } = parsed;
         let Mesh { points, triangles, fixed } = &mut mesh;
         let interfaces = regions
             .as_ref()
@@ -175,6 +186,7 @@ impl MeshFile {
             format,
             notes,
             data,
+            has_parameters,
             x_at,
             numbers,
             encoded,
@@ -311,6 +323,12 @@ impl MeshFile {
     /// move; see [`point_fields`](Self::point_fields).
     pub fn data_names(&self) -> &[String] {
         &self.data
+    }
+
+    /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps them;
+    /// see [`plane_parameters`](Self::plane_parameters).
+    pub fn has_parameters(&self) -> bool {
+        self.has_parameters
     }
 
     /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.

@@ -27,6 +27,8 @@ mod obj;
 mod off;
 mod packed;
 mod parallel_rows;
+mod parameters;
+mod parametric;
 mod parsed;
 mod ply;
 mod point_data;

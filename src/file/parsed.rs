@@ -21,6 +21,8 @@ pub(crate) struct Parsed {
     pub(crate) notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides x and y, each once.
     pub(crate) data: Vec<String>,
+    /// Whether the file gives vertices parameters on surfaces of a model, in places that are known.
+    pub(crate) has_parameters: bool,
 }
 
 /// The remark that elements other than triangles keep their vertices fixed.

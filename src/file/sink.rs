@@ -168,6 +168,12 @@ pub(crate) trait Sink {
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
+    /// Takes notice that nodes have parameters on a surface of the model. Whether these are wanted, two numbers a node.
+    fn parameters(&mut self, _surface: i64) -> bool {
+        false
+    }
+    /// Takes the parameters that were announced last and are wanted.
+    fn parameter_numbers(&mut self, _numbers: PointNumbers) {}
     /// Announces third coordinates or depths as an array of point data.
     fn height_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)

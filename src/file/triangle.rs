@@ -77,6 +77,7 @@ pub(crate) fn parse(
         regions,
         notes,
         data,
+        has_parameters: false,
     })
 }
 

@@ -19,6 +19,17 @@ fn groups_are_a_table() {
 }
 
 #[test]
+fn data_of_vertices_are_told_beside_groups() {
+    let deep = SMS.replace("ND 5 .5 .5 0", "ND 5 .5 .5 -2.5");
+    let folder = Folder::new(&[("in.2dm", &deep)]);
+    let out = folder.line("groups in.2dm").clean().out;
+    assert!(out.ends_with("\ndata of vertices (--interpolate): z\n"), "{out}");
+    let told: serde_json::Value =
+        serde_json::from_str(&folder.line("groups in.2dm --json").clean().out).unwrap();
+    assert_eq!(told["data"], serde_json::json!(["z"]));
+}
+
+#[test]
 fn groups_are_json_where_asked_for() {
     let folder = Folder::new(&[("in.2dm", SMS)]);
     let told: serde_json::Value =

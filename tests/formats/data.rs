@@ -152,6 +152,20 @@ fn node_data_of_gmsh_are_those_of_the_nodes_they_name() {
     assert!(fields[0].set(vec![0.0; 4]).is_err());
 }
 
+/// Full fields of many views of one node each would take many times the file.
+#[test]
+fn node_data_of_very_few_nodes_are_no_field() {
+    let row = |n: u32| format!("{} {} 7 0\n", n + 100, n);
+    let more: String = (0..60).map(row).collect();
+    let text = GMSH.replace("$Nodes\n5\n", &format!("$Nodes\n65\n{more}"));
+    let folder = Folder::new(&[("in.msh", &text)]);
+    let file = folder.read("in.msh");
+    assert_eq!(file.data_names(), ["v"]);
+    let one = text.replace("3\n5\n0\n10 1 2 3\n", "3\n1\n0\n10 1 2 3\n");
+    let folder = Folder::new(&[("in.msh", &one)]);
+    assert!(folder.read("in.msh").data_names().is_empty());
+}
+
 #[test]
 fn what_is_no_real_data_is_refused_by_name() {
     let vtk = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nCELLS 1 4\n\

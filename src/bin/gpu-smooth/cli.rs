@@ -84,7 +84,8 @@ pub(crate) enum Command {
         gpu-smooth quality before.su2 after.su2 --csv\n  \
         gpu-smooth quality part.msh --threshold 'min-angle<20' --threshold 'size-ratio>4'")]
     Quality(QualityArgs),
-    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like
+    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like, and data of
+    /// vertices
     #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted

@@ -20,7 +20,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     for note in choice.notes.iter().chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);
     }
-    let (mine, theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
+    let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
+    mine.add_parameters(&before, &before.mesh().points)?;
+    theirs.add_parameters(&after, &after.mesh().points)?;
     let fields = [mine.fields(), theirs.fields()];
     if let Some(difference) = before.difference_besides(&after, fields) {
         let (place, other) = (&difference.place, &difference.other_place);

@@ -21,6 +21,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
             "file": path.to_string(),
             "format": format.to_string(),
             "groups": list,
+            "data": file.data_names(),
         });
         tell::say(&format!("{value:#}"));
         return Ok(());
@@ -29,6 +30,9 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
     match groups.is_empty() {
         true => tell::say("the file names no groups"),
         false => tell::say(&table(&groups)),
+    }
+    if !file.data_names().is_empty() {
+        tell::say(&format!("data of vertices (--interpolate): {}", file.data_names().join(", ")));
     }
     Ok(())
 }

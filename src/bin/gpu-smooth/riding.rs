@@ -14,7 +14,10 @@ pub(crate) struct RidingArgs {
 
 /// Data that are taken along.
 pub(crate) struct Riding {
+    /// The data, and after them parameters of vertices on surfaces of a model.
     fields: Vec<PointField>,
+    /// How many of them are data.
+    data: usize,
     /// Whether any were asked for.
     asked: bool,
 }
@@ -30,7 +33,7 @@ impl RidingArgs {
     /// Finds the data in a file.
     pub(crate) fn choose(&self, file: &MeshFile) -> Result<Riding, String> {
         if self.interpolate.is_empty() {
-            return Ok(Riding { fields: Vec::new(), asked: false });
+            return Ok(Riding { fields: Vec::new(), data: 0, asked: false });
         }
         // A name may have commas itself.
         let split = |text: &String| match file.data_names().contains(text) {
@@ -48,7 +51,7 @@ impl RidingArgs {
                 field.values().iter().any(|value| Some(value) != first)
             });
         }
-        Ok(Riding { fields, asked: true })
+        Ok(Riding { data: fields.len(), fields, asked: true })
     }
 }
 
@@ -57,10 +60,15 @@ impl Riding {
         &self.fields
     }
 
+    /// The data without parameters.
+    fn data(&self) -> &[PointField] {
+        &self.fields[..self.data]
+    }
+
     /// The names of the data, each once.
     fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
-        for field in &self.fields {
+        for field in self.data() {
             if !names.contains(&field.name()) {
                 names.push(field.name());
             }
@@ -88,12 +96,31 @@ impl Riding {
 
     /// Fails if data are to be taken from a mesh that has to be untangled.
     pub(crate) fn check_untangled(&self) -> Result<(), String> {
-        match self.fields.is_empty() {
+        match self.data().is_empty() {
             true => Ok(()),
             false => Err("--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
                           untangle it without --interpolate, and interpolate in a second run"
                 .into()),
         }
+    }
+
+    /// Adds the parameters of vertices on surfaces of a model, as they are at new places. Returns what was done, if there are
+    /// any.
+    pub(crate) fn add_parameters(
+        &mut self,
+        file: &MeshFile,
+        points: &[[f64; 2]],
+    ) -> Result<Option<String>, String> {
+        if !file.has_parameters() {
+            return Ok(None);
+        }
+        let found = file.plane_parameters(points);
+        let (fields, others) = found.map_err(|error| error.to_string())?;
+        self.fields.extend(fields);
+        let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
+        Ok((others > 0).then(|| {
+            format!("parameters of nodes on {surfaces} that are not plane stay as they are where nodes move")
+        }))
     }
 
     /// Takes the data to the new places. Returns what was done, if anything.
@@ -134,10 +161,10 @@ impl Riding {
     /// are ascending, they have to have the same bits, and nowhere may they be beyond the least and the greatest there were.
     pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
-        if self.fields.len() != other.fields.len() {
+        if self.data != other.data {
             problems.push("it has not the same data".to_owned());
         }
-        for (old, new) in self.fields.iter().zip(&other.fields) {
+        for (old, new) in self.data().iter().zip(other.data()) {
             let (name, each) = (old.name(), old.components().max(1));
             if new.name() != name || new.values().len() != old.values().len() {
                 problems.push(format!("{name} is not the same data"));

@@ -131,9 +131,11 @@ pub(crate) fn carry_out<T>(
     follow.has_smoothed()?;
     let after = smoother.quality(&outcome.points).map_err(told)?;
     let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
+    let parameters = riding.add_parameters(&file, &outcome.points)?;
     let has_moved = outcome.points != mesh.points;
     let left_behind = has_moved.then(|| riding.left_behind(&file)).flatten();
-    for note in interpolated.iter().chain(&left_behind) {
+    let parameters = parameters.filter(|_| has_moved);
+    for note in interpolated.iter().chain(&left_behind).chain(&parameters) {
         follow.remark(note);
     }
     let smoothed = Instant::now();

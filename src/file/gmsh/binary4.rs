@@ -7,7 +7,8 @@ use super::{all_in_blocks, block_fits};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::heights::Heights;
-use crate::file::sink::{Element, Sink};
+use crate::file::numbers::Places;
+use crate::file::sink::{Element, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 
 /// The bytes of a block's header: three `int` and a `size_t`.
@@ -27,16 +28,15 @@ pub(super) fn nodes(
     for block in 0..blocks {
         let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
         let dimension = words.natural(cursor, "the dimension of a node block")?;
-        words.int(); // The entity's own tag.
+        let entity = i64::from(words.int());
         let parametric = words.int() != 0;
-        if parametric && dimension >= 2 {
-            super::note_parameters(sink);
-        }
+        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
         let progress = (done, count, "nodes");
         let tags = &mut Words::take(cursor, order, (size as usize).saturating_mul(8), progress)?;
         let parameters = if parametric { dimension.min(3) as usize } else { 0 };
+        let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for at in 0..size {
             let progress = (done + at, count, "nodes");
             let words = &mut Words::take(cursor, order, 8 * (3 + parameters), progress)?;
@@ -44,6 +44,15 @@ pub(super) fn nodes(
             let [x, y, z] = words.point(cursor, tag)?;
             sink.node(cursor, tag, dimension, cursor.taken(), [x, y]);
             heights.see((cursor.taken() + 16, z));
+            if wanted {
+                own.push(tag);
+                places.extend([24, 32].map(|after| cursor.taken() + after));
+                numbers.extend([words.double(), words.double()]);
+            }
+        }
+        if wanted {
+            let stored = Stored::in_place(Places::List(places), super::form(Some(order)));
+            sink.parameter_numbers(PointNumbers { numbers, nodes: Some(own), stored });
         }
         done += size;
     }

@@ -8,19 +8,27 @@ use crate::file::sink::{PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
 
+/// Data have to be given at one in so many nodes.
+const FEW: u64 = 16;
+
 /// Announces the data of a section after its first line, and reads them if the sink wants them. It leaves the cursor where it
-/// is. Data that are damaged are passed over: the mesh does not depend on them.
+/// is. `nodes` is how many nodes there are, for data of nodes. Data that are damaged are passed over: the mesh does not depend
+/// on them. So are those of very few nodes, as the numbers of all nodes would take many times the file.
 pub(super) fn read(
     cursor: &Cursor<'_>,
-    of_nodes: bool,
+    nodes: Option<u64>,
     order: Option<Order>,
     sink: &mut impl Sink,
 ) {
     let cursor = &mut cursor.clone();
     let Some((name, components, count)) = head(cursor) else { return };
-    let is_wanted = match of_nodes {
-        true => sink.point_array(name, components, true),
-        false => sink.asks_for_data() && sink.cell_array(name, components, true),
+    if nodes.is_some_and(|nodes| count.saturating_mul(FEW) < nodes) {
+        sink.leaves_out("data of few nodes");
+        return;
+    }
+    let is_wanted = match nodes {
+        Some(_) => sink.point_array(name, components, true),
+        None => sink.asks_for_data() && sink.cell_array(name, components, true),
     };
     if is_wanted
         && let Some(numbers) = match order {
@@ -28,9 +36,9 @@ pub(super) fn read(
             Some(order) => binary(cursor, order, components, count),
         }
     {
-        match of_nodes {
-            true => sink.point_numbers(numbers),
-            false => sink.cell_numbers(numbers.numbers, numbers.nodes),
+        match nodes {
+            Some(_) => sink.point_numbers(numbers),
+            None => sink.cell_numbers(numbers.numbers, numbers.nodes),
         }
     }
 }

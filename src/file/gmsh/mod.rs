@@ -77,6 +77,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
+    let mut node_count = 0;
     let mut model = Model::default();
     while cursor.next_row() {
         // Like gmsh, ignore what stands between sections.
@@ -108,6 +109,7 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                     }
                     (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
                 };
+                node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
                 sink.end_nodes(cursor)?;
@@ -143,7 +145,8 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
             }
             b"NodeData" | b"ElementData" => {
                 let order = known(cursor, encoding)?.order;
-                data::read(cursor, name == b"NodeData", order, sink);
+                let nodes = (name == b"NodeData").then_some(node_count);
+                data::read(cursor, nodes, order, sink);
                 skip_section(cursor, name, opened)?;
             }
             name if name.starts_with(b"End") => {
@@ -211,6 +214,12 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
 fn note_parameters(sink: &mut impl Sink) {
     sink.note(PARAMETRIC);
     sink.leaves_out("parameters of nodes on surfaces");
+}
+
+/// Announces that nodes have parameters on a surface. Whether these are wanted.
+fn has_parameters(sink: &mut impl Sink, surface: i64) -> bool {
+    sink.leaves_out("parameters of nodes on surfaces");
+    sink.parameters(surface)
 }
 
 fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {

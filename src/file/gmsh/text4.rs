@@ -4,9 +4,10 @@ use super::kind::{kind_of, node_tags};
 use super::model::Model;
 use super::{Version, ahead, all_in_blocks, block_fits, row};
 use crate::error::ReadError;
-use crate::file::heights::Heights;
+use crate::file::heights::{Heights, TextNumbers};
 use crate::file::sink::{Element, Sink};
 use crate::file::text::Cursor;
+use crate::mesh::Precision;
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns their number.
@@ -24,11 +25,9 @@ pub(super) fn nodes(
     for block in 0..blocks {
         row(cursor, block, blocks, "node blocks")?;
         let dimension = cursor.integer("the dimension of a node block")?;
-        cursor.token(); // The entity's own tag, which may be negative.
+        let entity = cursor.signed("the entity of a node block").unwrap_or(0);
         let parametric = cursor.integer("whether the nodes are parametric")? != 0;
-        if parametric && dimension >= 2 {
-            super::note_parameters(sink);
-        }
+        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
         let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
@@ -41,6 +40,7 @@ pub(super) fn nodes(
             row(cursor, done + at, count, "node tags")?;
             tags.push(node_tag(cursor)?);
         }
+        let before = cursor.clone();
         let mut owners = tags.iter();
         let read = |cursor: &mut Cursor<'_>| point(cursor, "a node");
         let plain = ahead(cursor, size, sink, read, |cursor, sink, ((x_at, at), z)| {
@@ -54,10 +54,27 @@ pub(super) fn nodes(
             sink.node(cursor, tag, dimension, x_at, at);
             heights.see(z);
         }
+        if wanted {
+            parameters(before, &tags, sink)?;
+        }
         done += size;
     }
     all_in_blocks(cursor, done, count, "nodes")?;
     Ok(count)
+}
+
+/// Reads the parameters at the end of the rows of nodes of these tags.
+#[cold]
+fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut impl Sink) -> Result<(), ReadError> {
+    let mut numbers = TextNumbers::default();
+    for (done, _) in (0..).zip(tags) {
+        row(&mut cursor, done, tags.len() as u64, "nodes")?;
+        cursor.tokens(3);
+        numbers.read(&mut cursor)?;
+        numbers.read(&mut cursor)?;
+    }
+    sink.parameter_numbers(numbers.finish(Precision::Double, Some(tags.to_vec())));
+    Ok(())
 }
 
 /// Reads `$Elements` after its first line, in version 4.1 or 4.0, which differ in what comes first of a block. Returns

@@ -70,6 +70,11 @@ impl<'a> Words<'a> {
         self.order.u64(self.next())
     }
 
+    /// A number of double precision.
+    pub(super) fn double(&mut self) -> f64 {
+        self.order.f64(self.next())
+    }
+
     /// Reads x, y and z of a node.
     #[inline]
     pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {

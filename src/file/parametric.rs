@@ -1,0 +1,51 @@
+//! Walks through a file that was read before for parameters of vertices on surfaces of a model.
+
+use crate::error::ReadError;
+use crate::file::field::PointField;
+use crate::file::sink::{Element, PointNumbers, Sink, Walk};
+use crate::file::source::Source;
+use crate::file::tags::TagMap;
+use crate::file::text::Cursor;
+
+/// The parameters of the vertices of each surface, two numbers a vertex, of a file that was read before.
+pub(crate) fn parameters<W: Walk>(source: &Source) -> Result<Vec<PointField>, ReadError> {
+    let mut seeker = Seeker::default();
+    W::walk(source, &mut seeker)?;
+    // There is no error to tell: the file was read before without one.
+    let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+    let field = |(surface, numbers): (i64, PointNumbers)| {
+        let nodes = numbers.nodes.as_deref().unwrap_or_default();
+        let vertices = nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect();
+        let name = format!("parameters on surface {surface}");
+        PointField::new(name, 2, seeker.tags.len(), numbers, Some(vertices))
+    };
+    Ok(seeker.found.into_iter().map(field).collect())
+}
+
+#[derive(Default)]
+struct Seeker {
+    tags: Vec<u64>,
+    surface: i64,
+    found: Vec<(i64, PointNumbers)>,
+}
+
+impl Sink for Seeker {
+    const TAKES_AHEAD: bool = true;
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
+
+    fn parameters(&mut self, surface: i64) -> bool {
+        self.surface = surface;
+        true
+    }
+
+    fn parameter_numbers(&mut self, numbers: PointNumbers) {
+        self.found.push((self.surface, numbers));
+    }
+}
