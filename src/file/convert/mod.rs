@@ -1,4 +1,4 @@
-//! A mesh of one format written in another: a reader's walk makes a description ([`content`]) of it, a row of [`targets`] says
+//! A mesh of one format written in another: a reader's walk makes a description ([`mod@content`]) of it, a row of [`targets`] says
 //! what a format holds of that, and a writer writes it.
 
 /// Appends formatted text to a string.
