@@ -50,7 +50,7 @@
 //! // Once; the device was made with the limits of `Gpu::required_limits`.
 //! let gpu = Gpu::new(device.clone(), queue.clone())?;
 //! let device_mesh = DeviceMesh::new(&gpu, mesh)?;
-//! let place = VertexBuffer { buffer: vertices, offset: 0, stride: 12 };
+//! let place = VertexBuffer::new(vertices, 12);
 //! let bound = device_mesh.bind_vertices(&place)?;
 //! let mut sweeps = Sweeps::new(&device_mesh, &Options::default())?;
 //! let objective = sweeps.bind_objective(numbers, 0)?;

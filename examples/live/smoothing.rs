@@ -65,7 +65,7 @@ impl Smoothing {
             buffer("objectives", objective_bytes, Usage::STORAGE | Usage::COPY_SRC);
         let staging_bytes = vertices.size() + objective_bytes;
         let staging = buffer("staging", staging_bytes, Usage::MAP_READ | Usage::COPY_DST);
-        let place = VertexBuffer { buffer: &vertices, offset: 0, stride: STRIDE };
+        let place = VertexBuffer::new(&vertices, STRIDE);
         let bound = device_mesh.bind_vertices(&place)?;
         let objective = sweeps.bind_objective(&objective_buffer, 0)?;
         Ok(Self {

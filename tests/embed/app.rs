@@ -193,7 +193,7 @@ impl Vertices {
     }
 
     pub(crate) fn place(&self) -> VertexBuffer<'_> {
-        VertexBuffer { buffer: &self.buffer, offset: self.offset, stride: self.stride }
+        VertexBuffer::new(&self.buffer, self.stride).offset(self.offset)
     }
 
     pub(crate) fn bind(&self, device_mesh: &DeviceMesh) -> BoundVertices {

@@ -2,8 +2,8 @@
 
 use gpu_smooth::{Mesh, Options, Sweeps};
 
-use crate::app::{App, Vertices, bad_plate, filler, interior};
-use crate::support::{boundary, f_imr, transformed};
+use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
+use crate::support::{boundary, f_imr, perturb_random, transformed};
 
 /// A mesh with vertices that no triangle uses, in front, in the middle and at the end.
 fn with_unused_vertices() -> Mesh {
@@ -83,9 +83,45 @@ fn an_import_reads_every_layout_alike() {
 }
 
 #[test]
+fn an_origin_and_a_scale_are_those_of_the_buffer() {
+    let mesh = transformed(&bad_plate(500), 0.08, [500_000.0, 4_600_000.0]);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let vertices = Vertices::usual(&app, &mesh);
+    let (origin, scale) = ([500_000.1, 4_600_000.05], 25.0);
+    let place = vertices.place().origin(origin).scale(scale);
+    let bound = device_mesh.bind_vertices(&place).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    app.submit(|encoder| {
+        sweeps.encode(encoder, 2);
+        bound.encode_export(encoder);
+    });
+    let (points, words) = (app.points(&device_mesh), app.read(&vertices.buffer));
+    for &v in mesh.triangles.as_flattened() {
+        for axis in 0..2 {
+            let found = f64::from(f32::from_bits(words[vertices.word(v) + axis]));
+            let expected = (points[v as usize][axis] - origin[axis]) * scale;
+            assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
+        }
+    }
+    // What comes back unchanged keeps all digits. What is moved, by a mesh's 0.01, is moved so.
+    app.submit(|encoder| bound.encode_import(encoder));
+    assert_eq!(app.points(&device_mesh), points);
+    let v = interior(&mesh)[0];
+    let [x, y] = [0, 1].map(|axis| (points[v as usize][axis] - origin[axis] + 0.01) * scale);
+    vertices.put(&app, v, [x, y]);
+    app.submit(|encoder| bound.encode_import(encoder));
+    for (after, before) in app.points(&device_mesh)[v as usize].iter().zip(points[v as usize]) {
+        assert!((after - before - 0.01).abs() < 1e-6, "{after} after {before}");
+    }
+}
+
+#[test]
 fn what_the_application_leaves_alone_keeps_its_full_precision() {
     // Far from the origin, where the floats of the application's buffer resolve a 30th of an edge.
-    let mesh = transformed(&bad_plate(700), 4.0, [300_000.0, -200_000.0]);
+    // Less disturbed than elsewhere: a buffer in which triangles are inverted by rounding is refused.
+    let mesh = perturb_random(&plate(700), 0.3, 7);
+    let mesh = transformed(&mesh, 4.0, [300_000.0, -200_000.0]);
     let app = App::new();
     let [alone, exchanged] = [false, true].map(|exchange| {
         let device_mesh = app.mesh(&mesh);

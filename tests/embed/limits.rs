@@ -153,7 +153,7 @@ fn a_vertex_buffer_too_large_to_bind_is_refused() {
     let device_mesh = app.mesh(&mesh);
     let bytes = 64 * mesh.points.len() as u64;
     let buffer = app.buffer(bytes, wgpu::BufferUsages::STORAGE);
-    let place = VertexBuffer { buffer: &buffer, offset: 0, stride: 64 };
+    let place = VertexBuffer::new(&buffer, 64);
     let error = device_mesh.bind_vertices(&place).err().unwrap();
     let needed = bytes - 56;
     assert_limit(

@@ -7,7 +7,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate};
-use crate::support::{lattice, orientations};
+use crate::support::{lattice, orientations, transformed};
 
 /// What is said to a place for the vertices of a lattice of 36.
 #[track_caller]
@@ -15,7 +15,7 @@ fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(bytes, usage);
-    let place = VertexBuffer { buffer: &buffer, offset, stride };
+    let place = VertexBuffer::new(&buffer, stride).offset(offset);
     let error = device_mesh.bind_vertices(&place).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     let whole = format!("the application's buffer cannot be used: {text}");
@@ -49,7 +49,7 @@ fn a_buffer_just_large_enough_is_not() {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(8 + 12 * 35 + 8, Usage::STORAGE);
-    let place = VertexBuffer { buffer: &buffer, offset: 8, stride: 12 };
+    let place = VertexBuffer::new(&buffer, 12).offset(8);
     app.submit(|encoder| device_mesh.bind_vertices(&place).unwrap().encode_export(encoder));
 }
 
@@ -63,9 +63,39 @@ fn a_misaligned_offset_is_refused() {
 
 #[test]
 fn a_stride_that_fits_no_vertex_is_refused() {
-    for stride in [0, 4, 6, 10, 13, 1 << 34, u64::MAX - 3] {
+    for stride in [0, 4, 6, 10, 13] {
         let text = format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
         assert_place_refused(10_000, Usage::STORAGE, 0, stride, &text);
+    }
+    for stride in [1 << 34, u64::MAX - 3] {
+        let text = format!("the stride is {stride} bytes, which is more than 16 GiB");
+        assert_place_refused(10_000, Usage::STORAGE, 0, stride, &text);
+    }
+}
+
+/// A mesh whose elements are smaller than the digits of an f32 where it stands would come out tangled.
+#[test]
+fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
+    let app = App::new();
+    let lattice = lattice(5, 5);
+    let buffer = app.buffer(1000, Usage::STORAGE);
+    let place = VertexBuffer::new(&buffer, 12);
+    let refused = |mesh: &Mesh, place: VertexBuffer<'_>, part: &str| {
+        let error = app.mesh(mesh).bind_vertices(&place).err().unwrap();
+        assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+        assert!(error.to_string().contains(part), "{error}");
+    };
+    let far = transformed(&lattice, 0.08, [500_000.0, 4_600_000.0]);
+    refused(&far, place, "in single precision: set an origin in the mesh, such as 50000");
+    app.mesh(&far).bind_vertices(&place.origin([500_000.0, 4_600_000.0])).unwrap();
+    for (size, scale) in [(1e39, 1e-39), (1e-50, 1e50)] {
+        let mesh = transformed(&lattice, size, [0.0, 0.0]);
+        refused(&mesh, place, "coordinates leave the range of single precision: set a scale");
+        app.mesh(&mesh).bind_vertices(&place.scale(scale)).unwrap();
+    }
+    refused(&lattice, place.origin([f64::NAN, 0.0]), "the origin is [NaN, 0.0], not a point");
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        refused(&lattice, place.scale(scale), "not a number above 0");
     }
 }
 

@@ -5,6 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
+use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
@@ -13,19 +14,6 @@ use crate::gpu::kernels::uniforms::{Exchange, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-
-/// Where an application keeps its vertices: x and y of vertex i are two f32, the first at byte `offset + i * stride`.
-///
-/// What follows y within the stride, a z or anything else, is neither read nor written.
-#[derive(Clone, Copy, Debug)]
-pub struct VertexBuffer<'a> {
-    /// The buffer, with usage `STORAGE` beside what the application needs.
-    pub buffer: &'a wgpu::Buffer,
-    /// Bytes before the x of vertex 0, a multiple of 4.
-    pub offset: u64,
-    /// Bytes from one vertex to the next, a multiple of 4, at least 8.
-    pub stride: u64,
-}
 
 /// A range of 4-byte words in a buffer, bound from an aligned byte on.
 pub(crate) struct Window<'a> {
@@ -101,15 +89,19 @@ impl BoundVertices {
         numbers: &wgpu::Buffer,
         with: &VertexBuffer<'_>,
     ) -> Result<Self, GpuError> {
-        let VertexBuffer { buffer, offset, stride } = *with;
-        if !stride.is_multiple_of(4) || stride < 8 || stride / 4 > u64::from(u32::MAX) {
+        let VertexBuffer { buffer, offset, stride, .. } = *with;
+        if !stride.is_multiple_of(4) || stride < 8 {
             let problem =
                 format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
             return Err(GpuError::Buffer(problem));
         }
+        if stride / 4 > u64::from(u32::MAX) {
+            let problem = format!("the stride is {stride} bytes, which is more than 16 GiB");
+            return Err(GpuError::Buffer(problem));
+        }
         let bytes = (vertex_count as u64 - 1).saturating_mul(stride).saturating_add(8);
         let window = Window::new(gpu, buffer, offset, bytes)?;
-        let (center, scale) = problem.normalization();
+        let Coordinates { center, scale } = with.coordinates(problem)?;
         let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
         let count = problem.positions().len() as u32;
         let exchange = Exchange {

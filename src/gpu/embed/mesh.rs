@@ -84,7 +84,8 @@ impl DeviceMesh {
     /// can be bound, for frames that overlap.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`,
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`, or if rounding to single
+    /// precision would invert triangles of the mesh as it was uploaded,
     /// [`GpuError::Limit`] if it is larger than what the device binds at once.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;

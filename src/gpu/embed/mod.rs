@@ -4,8 +4,10 @@ mod exchange;
 mod mesh;
 mod objective;
 mod sweeps;
+mod vertex_buffer;
 
-pub use exchange::{BoundVertices, VertexBuffer};
+pub use exchange::BoundVertices;
 pub use mesh::DeviceMesh;
 pub use objective::{BoundObjective, ObjectiveValues};
 pub use sweeps::Sweeps;
+pub use vertex_buffer::VertexBuffer;

@@ -281,7 +281,7 @@ mod tests {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let vertices = VertexBuffer { buffer: &buffer, offset: 0, stride: 8 };
+        let vertices = VertexBuffer::new(&buffer, 8);
         let _bound = (mesh.bind_vertices(&vertices).unwrap(), sweeps.bind_objective(&buffer, 0));
         assert_eq!(made(), prepared);
     }

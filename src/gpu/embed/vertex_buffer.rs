@@ -1,0 +1,110 @@
+//! Where an application keeps its vertices, and in which coordinates.
+
+use glam::DVec2;
+
+use crate::error::GpuError;
+use crate::layout::Problem;
+use crate::topology::predicates::not_positive;
+
+/// Where an application keeps its vertices, and in which coordinates: x and y of vertex i are two f32, the first at byte
+/// `offset + i * stride`. Made by [`new`](Self::new); the rest has defaults.
+///
+/// What follows y within the stride, a z or anything else, is neither read nor written.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexBuffer<'a> {
+    pub(crate) buffer: &'a wgpu::Buffer,
+    pub(crate) stride: u64,
+    pub(crate) offset: u64,
+    origin: [f64; 2],
+    scale: f64,
+}
+
+impl<'a> VertexBuffer<'a> {
+    /// Vertices in `buffer`, which has usage `STORAGE` beside what the application needs. `stride` is the number of bytes
+    /// from one vertex to the next, a multiple of 4, at least 8.
+    pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
+        Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0 }
+    }
+
+    /// Sets the number of bytes before the x of vertex 0, a multiple of 4. 0 by default.
+    pub fn offset(self, offset: u64) -> Self {
+        Self { offset, ..self }
+    }
+
+    /// Sets the point of the mesh, in its unit, that is 0, 0 in the buffer: (0, 0) by default. Coordinates far from it have
+    /// few digits in an f32: a mesh of a town in meters of its country needs an origin in the town.
+    pub fn origin(self, origin: [f64; 2]) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Sets what differences from the origin are multiplied by in the buffer: 1 by default. Above 0.
+    pub fn scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// The coordinates of the buffer.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the origin or the scale is not usable, or if the vertices of a triangle of the problem would
+    /// invert it or make it flat as they are rounded to single precision.
+    pub(crate) fn coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
+        let refuse = |problem: String| Err(GpuError::Buffer(problem));
+        let Self { origin, scale, .. } = *self;
+        if !origin.iter().all(|x| x.is_finite()) {
+            return refuse(format!("the origin is {origin:?}, not a point"));
+        }
+        if !(scale > 0.0 && scale.is_finite()) {
+            return refuse(format!("the scale is {scale}, not a number above 0"));
+        }
+        let (center, size) = problem.normalization();
+        let at =
+            |origin: DVec2| Coordinates { center: (center - origin) * scale, scale: size / scale };
+        let given = at(origin.into());
+        let bad = match given.inverted_by_rounding(problem) {
+            Some(0) => return Ok(given),
+            bad => bad,
+        };
+        let problem_text = match bad {
+            None => "coordinates leave the range of single precision".to_owned(),
+            Some(1) => "1 triangle would be inverted or flat in single precision".to_owned(),
+            Some(bad) => format!("{bad} triangles would be inverted or flat in single precision"),
+        };
+        let [x, y] = center.to_array();
+        let remedy = match (bad, at(center).inverted_by_rounding(problem)) {
+            (None, _) => "set a scale".to_owned(),
+            (_, Some(0)) => format!("set an origin in the mesh, such as {x}, {y}"),
+            _ => "single precision has too few digits for this mesh, wherever the origin is"
+                .to_owned(),
+        };
+        refuse(format!("{problem_text}: {remedy}"))
+    }
+}
+
+/// How normalized positions p stand in a vertex buffer: as `center + p / scale`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coordinates {
+    pub(crate) center: DVec2,
+    pub(crate) scale: f64,
+}
+
+impl Coordinates {
+    /// How many triangles that are counter-clockwise are not once their vertices are rounded to single precision. `None`
+    /// if a number is not finite then, or the scale vanishes.
+    fn inverted_by_rounding(&self, problem: &Problem) -> Option<usize> {
+        let is_usable = |x: f64| (x as f32).is_normal();
+        if !is_usable(self.scale) || !is_usable(1.0 / self.scale) {
+            return None;
+        }
+        let positions: Vec<[f64; 2]> = problem.positions().iter().map(DVec2::to_array).collect();
+        let rounded: Vec<[f64; 2]> = problem
+            .positions()
+            .iter()
+            .map(|&p| (self.center + p / self.scale).as_vec2().as_dvec2().to_array())
+            .collect();
+        if !rounded.as_flattened().iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let bad = |points: &[[f64; 2]]| not_positive(points, problem.triangles()).len();
+        Some(bad(&rounded).saturating_sub(bad(&positions)))
+    }
+}
