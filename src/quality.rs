@@ -166,8 +166,10 @@ impl Edges {
         let edges = [to(p, q), to(p, r), to(q, r)];
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
         let unit = f64::from_bits(size.to_bits() & EXPONENT);
-        let [a, b, c] = edges.map(|edge| edge.map(|x| x / unit));
-        let exact = orientation / unit / unit;
+        // Powers of two: this rounds nothing, and a division takes several times as long.
+        let inverse = 1.0 / unit;
+        let [a, b, c] = edges.map(|edge| edge.map(|x| x * inverse));
+        let exact = orientation * inverse * inverse;
         let rounded = a[0] * b[1] - a[1] * b[0];
         if (exact > 0.0) == (rounded > 0.0) {
             return Self { a, b, c, unit };

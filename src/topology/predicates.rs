@@ -8,13 +8,25 @@ use crate::parallel::map_ranges;
 /// Below this, products in the determinant may have lost bits to underflow: about 2^-960, far above the least number.
 const UNDERFLOW: f64 = 1e-289;
 
+/// Above this share of the sum of its two products, the determinant of a triangle has the right sign however it was
+/// rounded (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's first stage).
+const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
+
 /// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; it is not
 /// zero unless the triangle is flat. NaN or infinite if a coordinate is.
 ///
 /// The sign holds for all coordinates up to 1e100, if those that are not zero are at least 1e-300.
 #[inline]
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
-    let corners = corners.map(|v| points[v as usize]);
+    let [p, q, r] = corners.map(|v| points[v as usize]);
+    let (left, right) = ((p[0] - r[0]) * (q[1] - r[1]), (p[1] - r[1]) * (q[0] - r[0]));
+    let determinant = left - right;
+    // Nearly all triangles of a mesh are decided here, without a call.
+    let least = ROUNDING * (left.abs() + right.abs()) + UNDERFLOW;
+    if determinant.abs() > least { determinant } else { exact_orientation([p, q, r]) }
+}
+
+fn exact_orientation(corners: [[f64; 2]; 3]) -> f64 {
     let orientation = orient(corners);
     // Not so for NaN.
     if orientation.abs() < UNDERFLOW { tiny_orientation(corners) } else { orientation }
@@ -59,22 +71,9 @@ fn unscaled(x: f64, exponent: i32) -> f64 {
     scaled(x, -exponent)
 }
 
-/// Above this share of the sum of its two products, the determinant of a triangle has the right sign however it was
-/// rounded (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's first stage).
-const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
-
 /// Whether a triangle is counter-clockwise. False if a coordinate is NaN or infinite.
 #[inline]
 pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
-    let [p, q, r] = corners.map(|v| points[v as usize]);
-    let (left, right) = ((p[0] - r[0]) * (q[1] - r[1]), (p[1] - r[1]) * (q[0] - r[0]));
-    let determinant = left - right;
-    // Nearly all triangles of a mesh pass here, without a call.
-    let least = ROUNDING * (left.abs() + right.abs()) + UNDERFLOW;
-    (determinant > least && determinant < f64::INFINITY) || is_positive_exactly(points, corners)
-}
-
-fn is_positive_exactly(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     let orientation = orientation(points, corners);
     orientation > 0.0 && orientation < f64::INFINITY
 }
