@@ -103,6 +103,20 @@ fn a_run_is_drawn_before_and_after_on_one_scale() {
 }
 
 #[test]
+fn arrows_are_drawn_on_request_and_for_a_run_only() {
+    let folder = small();
+    let lines = |options: &str| {
+        folder.line(&format!("in out --engine cpu -q --picture p.svg {options}")).clean();
+        folder.text("p.svg").len()
+    };
+    assert!(lines("--picture-arrows") > lines("") + 1000);
+    assert!(folder.line("in out --engine cpu -q --picture p.svg --picture-arrows").code == Some(0));
+    assert!(folder.text("p.svg").contains("way of a vertex"));
+    let line = "quality in --picture p.svg --picture-arrows";
+    assert_holds(&folder.line(line).err, &["--picture-arrows is for a run"]);
+}
+
+#[test]
 fn an_svg_has_every_triangle() {
     let folder = small();
     for ending in ["node", "ele"] {

@@ -29,4 +29,7 @@ pub(crate) struct PictureArgs {
         value_parser = clap::value_parser!(u32).range(400..=8000)
     )]
     pub(crate) picture_size: u32,
+    /// Draw how far the vertices of a run have moved, as arrows in its second half
+    #[arg(long, requires = "picture", help_heading = "Picture")]
+    pub(crate) picture_arrows: bool,
 }

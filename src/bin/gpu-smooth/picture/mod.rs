@@ -1,6 +1,7 @@
 //! `--picture`: a mesh colored by its quality, before and after a run.
 
 mod args;
+mod arrows;
 mod canvas;
 mod color;
 mod font;
@@ -72,12 +73,18 @@ pub(crate) fn write(
 ) -> Result<(), String> {
     let Some(path) = &args.picture else { return Ok(()) };
     let failed = |problem: String| format!("the picture was not written: {problem}");
+    if args.picture_arrows && shots.len() < 2 {
+        return Err(failed(
+            "--picture-arrows is for a run, as arrows begin where vertices were".into(),
+        ));
+    }
     let panels = shots.iter().map(|shot| panel(args, topology, shot));
     let panels =
         panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
     let scene = Scene {
         measure: args.picture_measure,
         triangles: topology.triangles(),
+        with_arrows: args.picture_arrows,
         outlines: Outlines::of(topology, &file.mesh().fixed, file.regions()),
         panels,
     };

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use gpu_smooth::Measure;
 
 use crate::numbers::five;
+use crate::picture::arrows;
 use crate::picture::canvas::{Anchor, Canvas, Point};
 use crate::picture::color::{self, BAD, BLACK, WHITE};
 use crate::picture::layout::{Extent, Frame, Layout, Place};
@@ -25,6 +26,8 @@ pub(crate) struct Panel<'a> {
 pub(crate) struct Scene<'a> {
     pub(crate) measure: Measure,
     pub(crate) triangles: &'a [[u32; 3]],
+    /// Whether the panels after the first show how far vertices have moved since that.
+    pub(crate) with_arrows: bool,
     pub(crate) outlines: Outlines,
     pub(crate) panels: Vec<Panel<'a>>,
 }
@@ -150,6 +153,12 @@ impl Scene<'_> {
         canvas.lines(&placed(&self.outlines.boundary), boundary_width(text), BLACK, 1.0);
         // One in each small square, so that dense ones do not hide what is under them.
         let mut taken = HashSet::new();
+        if self.with_arrows {
+            let before = self.panels[0].points.iter().map(|&point| frame.place(point));
+            let after = panel.points.iter().map(|&point| frame.place(point));
+            let ways = before.zip(after).map(|(from, to)| [from, to]);
+            arrows::draw(ways.filter(|way| shown(way)), text, canvas);
+        }
         let square = |at: Point| at.map(|x| (x / (0.45 * text)) as i32);
         let places = self.outlines.held.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
         places.filter(|&at| taken.insert(square(at))).for_each(|at| held(at, text, canvas));
@@ -213,6 +222,7 @@ impl Scene<'_> {
                 worst as Sign,
                 "worst triangles",
             ),
+            (self.with_arrows, moved as Sign, "way of a vertex"),
         ];
         let signs = signs.into_iter().filter(|sign| sign.0);
         let [mut x, mut y] = [left, top + 0.3 * text];
@@ -254,6 +264,11 @@ fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
             || points.iter().all(|point| point[axis] > corners[1][axis] + text)
     };
     !beyond(0) && !beyond(1)
+}
+
+/// A vertex that has moved.
+fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
+    arrows::draw(std::iter::once([[x - 0.7 * text, y], [x + 0.7 * text, y]]), text, canvas);
 }
 
 /// A vertex that must not move.
