@@ -11,12 +11,5 @@ fn find_gradient(
     }
     let vertex = op.first + index;
     let p = patch_of(vertex);
-    var sum = vec2(0.0);
-    var a = ring_edge(p, p.end - 1u);
-    for (var i = p.start; i < p.end; i++) {
-        let b = ring_edge(p, i);
-        sum += metric_derivatives(Corner(a, b, p.mean_area), 0.0).gradient;
-        a = b;
-    }
-    gradient[vertex] = sum * p.unit;
+    gradient[vertex] = derivatives_around(p).gradient * p.unit;
 }

@@ -12,13 +12,7 @@ fn find_stiffness(
     }
     let vertex = op.first + index;
     let p = patch_of(vertex);
-    var sum = vec3(0.0);
-    var a = ring_edge(p, p.end - 1u);
-    for (var i = p.start; i < p.end; i++) {
-        let b = ring_edge(p, i);
-        sum += metric_derivatives(Corner(a, b, p.mean_area), 0.0).hessian;
-        a = b;
-    }
+    let sum = derivatives_around(p).hessian;
     let mean = 0.5 * (sum.x + sum.z);
     let half = 0.5 * (sum.x - sum.z);
     // The eigenvalues are the mean plus and minus the radius.

@@ -1,4 +1,4 @@
-// Closes the open pair, and bends nothing yet: leaves the partial sums of its products, as pairs of floats.
+// Closes the open pair, and leaves the partial sums of its products, as pairs of floats.
 
 @compute @workgroup_size(WORKGROUP)
 fn close_secant(

@@ -72,7 +72,7 @@ impl MeshSize {
 
     /// The most bytes of device memory that the mesh and sweeps on it take: about 84 for each vertex. A scheme whose last
     /// state is its best takes 68. Not included are corrections from coarser levels, which take some 60 more for each
-    /// vertex. [`u64::MAX`] for a mesh that takes more than that.
+    /// vertex, and another 40 while they are accelerated. [`u64::MAX`] for a mesh that takes more than that.
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }

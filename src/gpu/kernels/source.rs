@@ -50,6 +50,7 @@ const SUM_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/sum_along_correction.wgsl");
 const MOVE_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/move_along_correction.wgsl");
+const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
 const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
 
 const SECANTS: &str = include_str!("../../../shaders/secants/common.wgsl");
@@ -116,11 +117,12 @@ impl Kernel {
             | Kernel::ObjectiveAlongCorrection(metric) => {
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
-                source.push_str(match self {
-                    Kernel::ObjectiveAlongCorrection(_) => OBJECTIVE_ALONG_CORRECTION,
-                    Kernel::Stiffness(_) => STIFFNESS,
-                    _ => GRADIENT,
-                });
+                let parts: &[&str] = match self {
+                    Kernel::ObjectiveAlongCorrection(_) => &[OBJECTIVE_ALONG_CORRECTION],
+                    Kernel::Stiffness(_) => &[AROUND, STIFFNESS],
+                    _ => &[AROUND, GRADIENT],
+                };
+                parts.iter().for_each(|part| source.push_str(part));
             }
             Kernel::CloseSecant => source.push_str(CLOSE_SECANT),
             Kernel::SumSecants => source.push_str(SUM_SECANTS),
