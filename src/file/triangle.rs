@@ -327,29 +327,61 @@ fn segments(
     numbers: &Numbers,
     fixed: &mut Vec<u32>,
 ) -> Result<u64, ReadError> {
-    let cursor = &mut Cursor::new(poly);
-    let listed = vertex_header(cursor)?;
-    // The vertices it lists are the first ones of the mesh, but it may number them from another number on.
-    let mut own = Numbers { first: numbers.first, count: listed };
-    for row in 0..listed {
-        vertex_number(cursor, row, &mut own)?;
-        if row >= numbers.count {
-            let problem = format!("more vertices than the {} of {}", numbers.count, node.name());
-            return Err(cursor.error(problem, "Take files of one mesh"));
-        }
-        fixed.push(row as u32);
+    let mut segments = Segments::new(poly, node, numbers)?;
+    fixed.extend(0..segments.listed as u32);
+    for row in 0..segments.count {
+        fixed.extend(segments.segment(row)?.1);
     }
-    let ends = Numbers { first: own.first, count: numbers.count };
-    header(cursor, "segments")?;
-    let count = cursor.integer("the number of segments")?;
-    for row in 0..count {
-        cursor.row(row, count, "segments")?;
+    Ok(segments.count)
+}
+
+/// The segments of a `.poly`, read row by row.
+pub(crate) struct Segments<'s> {
+    /// In the row of the number of segments, after that number; then in the row of a segment, after its vertices.
+    pub(crate) cursor: Cursor<'s>,
+    /// How many segments there are.
+    pub(crate) count: u64,
+    /// How many vertices the `.poly` lists itself: the first ones of the mesh.
+    listed: u64,
+    node: &'s Source,
+    ends: Numbers,
+}
+
+impl<'s> Segments<'s> {
+    pub(crate) fn new(
+        poly: &'s Source,
+        node: &'s Source,
+        numbers: &Numbers,
+    ) -> Result<Self, ReadError> {
+        let mut cursor = Cursor::new(poly);
+        let listed = vertex_header(&mut cursor)?;
+        // It may number its vertices from another number on than the mesh.
+        let mut own = Numbers { first: numbers.first, count: listed };
+        for row in 0..listed {
+            vertex_number(&mut cursor, row, &mut own)?;
+            if row >= numbers.count {
+                let problem =
+                    format!("more vertices than the {} of {}", numbers.count, node.name());
+                return Err(cursor.error(problem, "Take files of one mesh"));
+            }
+        }
+        let ends = Numbers { first: own.first, count: numbers.count };
+        header(&mut cursor, "segments")?;
+        let count = cursor.integer("the number of segments")?;
+        Ok(Self { cursor, count, listed, node, ends })
+    }
+
+    /// The next segment, in this row of the list: its number, and the zero-based indices of its vertices.
+    pub(crate) fn segment(&mut self, row: u64) -> Result<(u64, [u32; 2]), ReadError> {
+        let Self { cursor, count, node, ends, .. } = self;
+        cursor.row(row, *count, "segments")?;
         let number = cursor.integer("the number of a segment")?;
-        for _ in 0..2 {
-            fixed.push(ends.index(cursor, node, format_args!("segment {number}"))?);
+        let mut vertices = [0; 2];
+        for vertex in &mut vertices {
+            *vertex = ends.index(cursor, node, format_args!("segment {number}"))?;
         }
+        Ok((number, vertices))
     }
-    Ok(count)
 }
 
 /// Moves to the row that tells how long a list is.

@@ -7,7 +7,7 @@ use crate::file::label::Label;
 use crate::file::sink::Kind;
 use crate::file::source::Source;
 use crate::file::text::{Cursor, float};
-use crate::file::triangle::{Numbers, header, vertex_header, vertex_number};
+use crate::file::triangle::{Numbers, Segments, header, vertex_header, vertex_number};
 
 /// The groups of a mesh whose files were read before.
 pub(crate) fn groups(
@@ -90,25 +90,13 @@ fn segments(
     numbers: &Numbers,
     table: &mut GroupTable,
 ) -> Result<(), ReadError> {
-    let cursor = &mut Cursor::new(poly);
-    let mut own = Numbers { first: numbers.first, count: vertex_header(cursor)? };
-    for row in 0..own.count {
-        vertex_number(cursor, row, &mut own)?;
-    }
-    let ends = Numbers { first: own.first, count: numbers.count };
-    header(cursor, "segments")?;
-    let count = cursor.integer("the number of segments")?;
-    if cursor.integer_or(0, "whether segments have markers")? == 0 {
+    let mut segments = Segments::new(poly, node, numbers)?;
+    if segments.cursor.integer_or(0, "whether segments have markers")? == 0 {
         return Ok(());
     }
-    for row in 0..count {
-        cursor.row(row, count, "segments")?;
-        let number = cursor.integer("the number of a segment")?;
-        let mut vertices = [0; 2];
-        for vertex in &mut vertices {
-            *vertex = ends.index(cursor, node, format_args!("segment {number}"))?;
-        }
-        if let Some(label) = cursor.token().and_then(|token| label(token, true)) {
+    for row in 0..segments.count {
+        let (_, vertices) = segments.segment(row)?;
+        if let Some(label) = segments.cursor.token().and_then(|token| label(token, true)) {
             let group = table.number("marker", 1, &label);
             table.add(group, Kind::Line, &vertices);
         }

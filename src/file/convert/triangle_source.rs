@@ -8,7 +8,9 @@ use crate::file::label::Label;
 use crate::file::sink::{Column, Element, Kind, Sink};
 use crate::file::source::Source;
 use crate::file::text::{Cursor, float};
-use crate::file::triangle::{Numbers, attribute_names, header, vertex_header, vertex_number};
+use crate::file::triangle::{
+    Numbers, Segments, attribute_names, header, vertex_header, vertex_number,
+};
 use crate::mesh::Precision;
 
 /// The description of a mesh.
@@ -111,28 +113,18 @@ fn segments(
     numbers: &Numbers,
     sink: &mut Collector,
 ) -> Result<(), ReadError> {
-    let cursor = &mut Cursor::new(poly);
-    let mut own = Numbers { first: numbers.first, count: vertex_header(cursor)? };
-    for row in 0..own.count {
-        vertex_number(cursor, row, &mut own)?;
-    }
-    let ends = Numbers { first: own.first, count: numbers.count };
-    header(cursor, "segments")?;
-    let count = cursor.integer("the number of segments")?;
-    cursor.integer_or(0, "whether segments have markers")?;
+    let mut segments = Segments::new(poly, node, numbers)?;
+    segments.cursor.integer_or(0, "whether segments have markers")?;
     sink.columns(vec![column("marker", true)]);
-    for done in 0..count {
-        cursor.row(done, count, "segments")?;
-        let tag = cursor.integer("the number of a segment")?;
-        let mut nodes = [0; 4];
-        for node_of in &mut nodes[..2] {
-            let index = ends.index(cursor, node, format_args!("segment {tag}"))?;
-            *node_of = u64::from(index) + numbers.first;
-        }
-        let region = [bits(cursor.token()), 0];
-        sink.element(cursor, &Element { tag, kind: Kind::Line, region, nodes })?;
+    for row in 0..segments.count {
+        let (tag, vertices) = segments.segment(row)?;
+        let [a, b] = vertices.map(|vertex| u64::from(vertex) + numbers.first);
+        let region = [bits(segments.cursor.token()), 0];
+        let element = Element { tag, kind: Kind::Line, region, nodes: [a, b, 0, 0] };
+        sink.element(&segments.cursor, &element)?;
     }
     // Holes and regions are of use to the mesh generator only.
+    let cursor = &mut segments.cursor;
     if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {
         sink.leaves_out("holes of the .poly");
     }

@@ -1,9 +1,9 @@
-//! The sections of version 4.1 in binary: blocks, one per entity of the model.
+//! The sections of version 4.1 in binary, and the elements of 4.0: blocks, one per entity of the model.
 
 use super::kind::kind_of;
 use super::model::Model;
 use super::words::Words;
-use super::{all_in_blocks, block_fits};
+use super::{Version, all_in_blocks, block_fits};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::heights::Heights;
@@ -11,8 +11,8 @@ use crate::file::numbers::Places;
 use crate::file::sink::{Element, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 
-/// The bytes of a block's header: three `int` and a `size_t`.
-const BLOCK_HEADER: usize = 20;
+/// The bytes of a block's header: three `int` and a `size_t`, or an `unsigned long` in 4.0.
+pub(super) const BLOCK_HEADER: usize = 20;
 
 /// Reads `$Nodes` after its first line. Returns their number.
 pub(super) fn nodes(
@@ -21,7 +21,7 @@ pub(super) fn nodes(
     heights: &mut Heights,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
-    let [blocks, count] = counts(cursor, order)?;
+    let [blocks, count] = counts(cursor, Version::V4, order)?;
     cursor.check_vertex_count(count)?;
     sink.expect_nodes(cursor.capacity(count, 32));
     let mut done = 0;
@@ -60,32 +60,44 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Reads `$Elements` after its first line. Returns their number.
+/// Reads `$Elements` of version 4.0 or 4.1 after its first line. Returns their number.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
-    order: Order,
+    (version, order): (Version, Order),
     model: &Model,
     sink: &mut impl Sink,
 ) -> Result<u64, ReadError> {
-    let [blocks, count] = counts(cursor, order)?;
-    sink.expect_elements(cursor.capacity(count, 32));
+    let [blocks, count] = counts(cursor, version, order)?;
+    let tag_bytes = if version == Version::V40 { 4 } else { 8 };
+    sink.expect_elements(cursor.capacity(count, 4 * tag_bytes));
     let mut done = 0;
     for block in 0..blocks {
         let words =
             &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
-        words.int(); // The entity's dimension.
-        let region = [i64::from(words.int()), 0];
+        // The tag of the entity and its dimension, which 4.1 has the other way round.
+        let [first, second] = [words.int(), words.int()];
+        let entity = if version == Version::V40 { first } else { second };
+        let region = [i64::from(entity), 0];
         let kind = words.natural(cursor, "the type of an element block")?;
         let kind = kind_of(cursor, kind)?;
         sink.within(&model.groups_of(kind, region[0]));
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
-        let row = 8 * (1 + kind.nodes());
+        let row = tag_bytes * (1 + kind.nodes());
         for at in 0..size {
             let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
-            let tag = words.size();
             let mut nodes = [0; 4];
-            nodes[..kind.nodes()].fill_with(|| words.size());
+            let tag = if version == Version::V40 {
+                let tag = words.natural(cursor, "an element tag")?;
+                for node in &mut nodes[..kind.nodes()] {
+                    *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
+                }
+                tag
+            } else {
+                let tag = words.size();
+                nodes[..kind.nodes()].fill_with(|| words.size());
+                tag
+            };
             sink.element(cursor, &Element { tag, kind, region, nodes })?;
         }
         done += size;
@@ -95,8 +107,13 @@ pub(super) fn elements(
 }
 
 /// How many blocks a section has, and how many nodes or elements are in all of them.
-fn counts(cursor: &mut Cursor<'_>, order: Order) -> Result<[u64; 2], ReadError> {
-    // The lowest and the highest tag follow.
-    let words = &mut Words::take(cursor, order, 32, (0, 1, "counts"))?;
+pub(super) fn counts(
+    cursor: &mut Cursor<'_>,
+    version: Version,
+    order: Order,
+) -> Result<[u64; 2], ReadError> {
+    // In 4.1 the lowest and the highest tag follow.
+    let bytes = if version == Version::V40 { 16 } else { 32 };
+    let words = &mut Words::take(cursor, order, bytes, (0, 1, "counts"))?;
     Ok([words.size(), words.size()])
 }

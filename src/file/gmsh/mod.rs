@@ -128,8 +128,9 @@ fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
                         text4::elements(cursor, version, &model, sink)?
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
-                    (Version::V4, Some(order)) => binary4::elements(cursor, order, &model, sink)?,
-                    (Version::V40, Some(order)) => binary40::elements(cursor, order, &model, sink)?,
+                    (Version::V40 | Version::V4, Some(order)) => {
+                        binary4::elements(cursor, (version, order), &model, sink)?
+                    }
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
             }
