@@ -94,6 +94,19 @@ fn the_table_is_told_as_csv_and_json_too() {
 }
 
 #[test]
+fn strict_makes_it_an_error_that_a_run_falls_short() {
+    let folder = several();
+    let call = |options: &str| {
+        folder.line(&format!("b.msh c.msh --out-dir out --engine cpu -q --strict {options}"))
+    };
+    call("").clean();
+    let short = call("--max-sweeps 1");
+    assert_eq!(short.code, Some(1));
+    assert_holds(&short.err, &["2 of 2 runs neither converged nor reached their goal; --strict"]);
+    assert_eq!(names(&folder, "out"), ["b.msh", "c.msh"]);
+}
+
+#[test]
 fn a_call_is_taken_up_again() {
     let folder = several();
     let line = "a.1.node b.msh c.msh --out-dir out --engine cpu --resume";

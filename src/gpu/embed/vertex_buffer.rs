@@ -95,7 +95,6 @@ impl Coordinates {
         if !is_usable(self.scale) || !is_usable(1.0 / self.scale) {
             return None;
         }
-        let positions: Vec<[f64; 2]> = problem.positions().iter().map(DVec2::to_array).collect();
         let rounded: Vec<[f64; 2]> = problem
             .positions()
             .iter()
@@ -105,6 +104,11 @@ impl Coordinates {
             return None;
         }
         let bad = |points: &[[f64; 2]]| not_positive(points, problem.triangles()).len();
-        Some(bad(&rounded).saturating_sub(bad(&positions)))
+        let inverted = bad(&rounded);
+        if inverted == 0 {
+            return Some(0);
+        }
+        let positions: Vec<[f64; 2]> = problem.positions().iter().map(DVec2::to_array).collect();
+        Some(inverted.saturating_sub(bad(&positions)))
     }
 }
