@@ -16,7 +16,8 @@ fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_else(|| panic!("{value} is not a text"))
 }
 
-const METRICS: [&str; 6] = ["edge", "area", "rms", "imr", "ar", "shape-size"];
+const METRICS: [&str; 9] =
+    ["edge", "area", "rms", "imr", "ar", "shape-size", "soft-size", "tmop-80", "tmop-94"];
 
 #[test]
 fn report_holds_the_documented_keys() {
