@@ -39,6 +39,7 @@ fn report_holds_the_documented_keys() {
                 "remaining",
                 "levels_left_out",
                 "best_sweep",
+                "change",
                 "stop",
                 "returned",
                 "before",
@@ -65,6 +66,14 @@ fn report_holds_the_documented_keys() {
         );
         assert_eq!((text(&report["stop"]), &report["returned"]), ("converged", &Value::from(0)));
         assert_eq!(report["best_sweep"], report["sweeps"]);
+
+        assert_keys(&report["change"], &["moved", "size", "least_altitude"]);
+        for spread in ["moved", "size"] {
+            let spread = &report["change"][spread];
+            assert_keys(spread, &["median", "most_of_twenty", "most"]);
+            let [half, most] = ["median", "most"].map(|key| spread[key].as_f64().unwrap());
+            assert!(0.0 < half && half <= most, "{spread}");
+        }
 
         for state in ["before", "after"] {
             let quality = &report[state];

@@ -213,6 +213,9 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
     (0..).zip(&outcome.history).map(one).collect()
 }
 
+/// Changes of size by more than this factor at one vertex in twenty are worth a word.
+const LARGE_CHANGE: f64 = 1.25;
+
 impl Report {
     /// The metric that judges.
     pub(crate) fn base(&self) -> &str {
@@ -328,8 +331,12 @@ impl Report {
             change if change < 99.5 => format!("{change:.0} %"),
             _ => format!("{factor:.1} times"),
         };
+        let keeps = match self.target.is_none() && size.most_of_twenty > LARGE_CHANGE {
+            true => "; --target keep-size keeps sizes",
+            false => "",
+        };
         format!(
-            "19 of 20 vertices moved {:.2} edges at most (half {:.2}, the farthest {:.2}), and sizes there changed by {} (half {}, the most {})",
+            "19 of 20 vertices moved {:.2} edges at most (half {:.2}, the farthest {:.2}), and sizes there changed by {} (half {}, the most {}){keeps}",
             moved.most_of_twenty,
             moved.median,
             moved.most,
