@@ -58,9 +58,9 @@
 //! // In each frame, for a mesh whose boundary or vertices the application moves.
 //! let mut encoder = device.create_command_encoder(&Default::default());
 //! bound.encode_import(&mut encoder);
-//! sweeps.encode(&mut encoder, 5);
+//! sweeps.encode_sweeps(&mut encoder, 5);
 //! bound.encode_export(&mut encoder);
-//! objective.encode(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
+//! objective.encode_objective(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
 //! draw(&mut encoder, vertices);
 //! queue.submit([encoder.finish()]);
 //! # Ok(())

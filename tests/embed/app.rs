@@ -133,7 +133,7 @@ impl App {
         let buffer =
             self.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
         let bound = sweeps.bind_objective(&buffer, 0).unwrap();
-        self.submit(|encoder| bound.encode(encoder));
+        self.submit(|encoder| bound.encode_objective(encoder));
         bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.read(&buffer)))
     }
 }

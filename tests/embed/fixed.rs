@@ -30,7 +30,7 @@ impl Held {
     /// Which vertices three sweeps move.
     fn moved(&mut self) -> Vec<u32> {
         let before = self.points();
-        self.app.submit(|encoder| self.sweeps.encode(encoder, 3));
+        self.app.submit(|encoder| self.sweeps.encode_sweeps(encoder, 3));
         let after = self.points();
         (0..).zip(before.iter().zip(&after)).filter(|(_, (b, a))| a != b).map(|(v, _)| v).collect()
     }
@@ -80,7 +80,7 @@ fn set_fixed_takes_effect_in_what_is_submitted_after_it() {
     let free = interior(&held.mesh);
     let before = held.points();
     let mut encoder = held.app.encoder();
-    held.sweeps.encode(&mut encoder, 2);
+    held.sweeps.encode_sweeps(&mut encoder, 2);
     held.hold(&free);
     held.app.gpu.queue().submit([encoder.finish()]);
     assert_eq!(held.points(), before);
@@ -116,7 +116,7 @@ fn a_fixed_vertex_still_goes_where_the_application_puts_it() {
     vertices.put(&held.app, v, [x + 1e-3, y]);
     held.app.submit(|encoder| {
         vertices.bind(&held.device_mesh).encode_import(encoder);
-        held.sweeps.encode(encoder, 3);
+        held.sweeps.encode_sweeps(encoder, 3);
     });
     let [now, _] = held.points()[v as usize];
     assert!((now - f64::from((x + 1e-3) as f32)).abs() < 1e-12);

@@ -110,7 +110,7 @@ fn a_device_with_exactly_the_required_limits_smooths() {
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let vertices = Vertices::new(&app, &mesh, 0, 8);
     app.submit(|encoder| {
-        sweeps.encode(encoder, 10);
+        sweeps.encode_sweeps(encoder, 10);
         vertices.bind(&device_mesh).encode_export(encoder);
     });
     let points = app.points(&device_mesh);
@@ -141,7 +141,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
-    app.submit(|encoder| sweeps.encode(encoder, 5));
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
 }

@@ -100,13 +100,13 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let published = app.buffer(64, usage);
         let bound = vertices.bind(&device_mesh);
         let objective = sweeps.bind_objective(&published, 0).unwrap();
-        app.submit(|encoder| sweeps.encode(encoder, 2));
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
             // Most of wgpu looks as if it still worked.
             bound.encode_import(encoder);
-            sweeps.encode(encoder, 2);
-            objective.encode(encoder);
+            sweeps.encode_sweeps(encoder, 2);
+            objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
         let _ = device_mesh.set_fixed(&[]);
@@ -130,9 +130,9 @@ fn a_new_device_goes_on_from_the_last_positions() {
             let app = App::new();
             let device_mesh = app.mesh(&mesh);
             let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-            app.submit(|encoder| sweeps.encode(encoder, 3));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             mesh.points = app.points(&device_mesh);
-            app.submit(|encoder| sweeps.encode(encoder, 3));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             app.device().destroy();
             assert_lost(&device_mesh.read_points().unwrap_err());
         }
@@ -141,7 +141,7 @@ fn a_new_device_goes_on_from_the_last_positions() {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-        app.submit(|encoder| sweeps.encode(encoder, 20));
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 20));
         let points = app.points(&device_mesh);
         assert!(f_imr(&Mesh { points, ..mesh.clone() }) < saved);
     });

@@ -84,7 +84,7 @@ fn an_application_sees_no_parts() {
         vertices.put(&app, 0, [-0.125, -0.25]);
         app.submit(|encoder| {
             bound.encode_import(encoder);
-            sweeps.encode(encoder, 10);
+            sweeps.encode_sweeps(encoder, 10);
             bound.encode_export(encoder);
         });
         let f = app.objective(&sweeps);

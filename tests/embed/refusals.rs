@@ -154,7 +154,7 @@ fn what_is_wrong_with_an_encoder_the_application_hears_when_it_finishes_it() {
     let vertices = Vertices::usual(&app, &mesh).bind(&device_mesh);
     let mut encoder = other.encoder();
     vertices.encode_import(&mut encoder);
-    sweeps.encode(&mut encoder, 2);
+    sweeps.encode_sweeps(&mut encoder, 2);
     assert!(other.take_uncaptured().is_empty());
     let _ = encoder.finish();
     assert_eq!(other.take_uncaptured().len(), 1);

@@ -17,7 +17,7 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Metric;
 
-/// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The application
+/// What [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command buffer. The application
 /// casts the bytes that it reads back to this struct, or declares it in its shaders:
 ///
 /// ```wgsl
@@ -87,7 +87,7 @@ impl BoundObjective {
 
     /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
     /// [`ObjectiveValues`].
-    pub fn encode(&self, encoder: &mut impl Encoder) {
+    pub fn encode_objective(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth objective");
         self.dispatches.encode_evaluation(&mut passes);
         passes.run(&self.publish, None, |pass| {

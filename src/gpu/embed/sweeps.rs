@@ -44,7 +44,7 @@ impl Sweeps {
     }
 
     /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it.
-    pub fn encode(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
+    pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth sweeps");
         for _ in 0..sweeps {
             self.done = self.done.saturating_add(1);

@@ -27,7 +27,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// let mut encoder = gpu.device().create_command_encoder(&Default::default());
 /// let mut timed = timestamps.time(&mut encoder);
 /// vertices.encode_import(&mut timed);
-/// sweeps.encode(&mut timed, 5);
+/// sweeps.encode_sweeps(&mut timed, 5);
 /// vertices.encode_export(&mut timed);
 /// let spans = timed.resolve()?;
 /// gpu.queue().submit([encoder.finish()]);
