@@ -360,9 +360,13 @@ pub enum GpuError {
     /// The device is out of memory.
     #[error("the device is out of memory: {0}")]
     OutOfMemory(String),
-    /// A buffer of the application does not have the size, usage or layout that is needed.
+    /// A buffer of the application does not have the size, usage or layout that is needed, was destroyed, or is of another
+    /// device.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
+    /// The queue is not the queue of the device that it was given with.
+    #[error("the queue is not that of the device: both must come from one call of request_device")]
+    Queue,
     /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),

@@ -22,6 +22,19 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
     }
 }
 
+/// As [`scoped`], for calls that take a buffer of the application: what is refused is then the buffer.
+pub(crate) fn scoped_to_buffer<T>(
+    device: &wgpu::Device,
+    calls: impl FnOnce() -> T,
+) -> Result<T, GpuError> {
+    scoped(device, calls).map_err(|error| match error {
+        GpuError::Refused(text) => {
+            GpuError::Buffer(format!("it was destroyed, or is of another device: {text}"))
+        }
+        other => other,
+    })
+}
+
 /// Whether the device is lost, found by trial: a lost device makes a buffer that cannot be mapped, and reports nothing
 /// to the error scopes.
 fn is_lost(device: &wgpu::Device) -> bool {

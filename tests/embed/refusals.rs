@@ -2,7 +2,7 @@
 //! application's error handler; [`App`] looks at that when it is dropped.
 
 use gpu_smooth::{
-    DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
+    DeviceMesh, Gpu, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -128,7 +128,7 @@ fn a_destroyed_buffer_is_refused() {
     let vertices = Vertices::usual(&app, &mesh);
     vertices.buffer.destroy();
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     assert!(error.to_string().contains("destroyed"), "{error}");
 }
 
@@ -140,9 +140,28 @@ fn what_belongs_to_another_device_is_refused() {
     let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let vertices = Vertices::usual(&other, &mesh);
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     let error = sweeps.bind_objective(&vertices.buffer, 0).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+}
+
+/// wgpu tells the faults of such a queue to the handler of the queue's own device, which no error scope of the other
+/// catches.
+#[test]
+fn a_queue_of_another_device_is_refused() {
+    let (app, other) = (App::new(), App::new());
+    let refused = |app: &App, other: &App| {
+        let error = Gpu::new(app.device().clone(), other.gpu.queue().clone()).err().unwrap();
+        assert!(matches!(error, GpuError::Queue), "{error:?}");
+    };
+    refused(&app, &other);
+    // One that has done work, and one that has not.
+    let mesh = bad_plate(300);
+    app.points(&app.mesh(&mesh));
+    refused(&app, &other);
+    refused(&other, &app);
+    app.another_gpu();
+    other.another_gpu();
 }
 
 #[test]

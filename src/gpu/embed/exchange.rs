@@ -12,7 +12,7 @@ use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel};
 use crate::gpu::kernels::uniforms::{Exchange, pair};
 use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 
 /// A range of 4-byte words in a buffer, bound from an aligned byte on.
@@ -114,7 +114,7 @@ impl BoundVertices {
             inverse_scale: (1.0 / scale) as f32,
             padding: [0; 2],
         };
-        let bind_group = scoped(&gpu.device, || {
+        let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
             let (positions, beyond) = mesh.bind_positions();
             let uniform = uniform.as_entire_binding();
@@ -134,7 +134,9 @@ impl BoundVertices {
     ///
     /// A vertex whose floats are those of the last export has not been moved by the application and
     /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
-    /// where it was. The application may have inverted triangles; sweeps then invert no others and improve the rest.
+    /// where it was. Any other floats are taken as moved by the application: where several buffers show one mesh, import
+    /// only the one that was exported to last. Two buffers that take turns, each imported and exported in its own frames,
+    /// would take the mesh back to where it was two frames ago. The application may have inverted triangles; sweeps then invert no others and improve the rest.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }

@@ -14,7 +14,7 @@ use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::Publish;
 use crate::gpu::run::Dispatches;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::scoped_to_buffer;
 use crate::metric::Metric;
 
 /// What [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command buffer. The application
@@ -75,7 +75,7 @@ impl BoundObjective {
             padding: [0; 2],
             ideal_squared,
         };
-        let bind_group = scoped(&gpu.device, || {
+        let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
             let control = dispatches.control.as_entire_binding();
             let resources = [uniform.as_entire_binding(), control, window.binding()];

@@ -43,7 +43,8 @@ impl Sweeps {
         Ok(Self { gpu: mesh.gpu.clone(), dispatches, triangles, done: 0 })
     }
 
-    /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it.
+    /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it,
+    /// whether or not that encoder was submitted: alternate metrics and over-relaxation count the sweeps that were encoded.
     pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth sweeps");
         for _ in 0..sweeps {

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::error::GpuError;
+use crate::gpu::device::size::ALIGNMENT;
 use crate::layout::Problem;
 use crate::topology::predicates::not_positive;
 
@@ -40,6 +41,16 @@ impl<'a> VertexBuffer<'a> {
     /// Sets what differences from the origin are multiplied by in the buffer: 1 by default. Above 0.
     pub fn scale(self, scale: f64) -> Self {
         Self { scale, ..self }
+    }
+
+    /// The `max_storage_buffer_binding_size` that a device needs to bind the coordinates of this many vertices, for
+    /// [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). Of a buffer in which many meshes stand one after the
+    /// other, only the part of this mesh is bound, so `offset` hardly counts. [`u64::MAX`] where no device can bind it.
+    pub fn binding_size(vertices: usize, stride: u64, offset: u64) -> u64 {
+        // A binding starts at a multiple of the device's alignment, 256 bytes at most.
+        (vertices.saturating_sub(1) as u64)
+            .saturating_mul(stride)
+            .saturating_add(8 + offset % ALIGNMENT)
     }
 
     /// The coordinates of the buffer.
