@@ -67,7 +67,8 @@
 //! # }
 //! ```
 //!
-//! - [`Topology::move_clamped`] moves vertices that a user drags and stops before a triangle inverts.
+//! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
+//!   [`Topology::move_clamped`] does so with positions on the host.
 //! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
 //! - [`Timestamps`] measure how long each kernel takes.
 //! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
@@ -125,8 +126,8 @@ pub use file::{
     abandon_writes,
 };
 pub use gpu::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
-    VertexBuffer,
+    BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps,
+    Timestamps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};

@@ -3,8 +3,8 @@
 use std::sync::{Arc, LazyLock, Mutex};
 
 use gpu_smooth::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, ObjectiveValues,
-    SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
+    BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize,
+    ObjectiveValues, SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
 };
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;
@@ -234,5 +234,6 @@ const _: () = {
     moves_between_threads::<Sweeps>();
     moves_between_threads::<BoundVertices>();
     moves_between_threads::<BoundObjective>();
+    moves_between_threads::<BoundMove>();
     moves_between_threads::<Timestamps>();
 };

@@ -7,6 +7,7 @@
 mod support;
 
 mod app;
+mod clamped;
 mod exchange;
 mod fixed;
 mod futures;

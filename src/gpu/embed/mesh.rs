@@ -7,13 +7,15 @@ use crate::error::{MeshError, SmoothError};
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::Waiting;
-use crate::gpu::embed::{BoundVertices, VertexBuffer};
+use crate::gpu::embed::clamped_move::Moves;
+use crate::gpu::embed::{BoundMove, BoundVertices, VertexBuffer};
 use crate::gpu::kernels::uniforms::{HELD, join};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::Mesh;
+use crate::run::multilevel::NONE;
 
 /// A mesh on the device. Its triangles stay the same; its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the
 /// application through [`BoundVertices::encode_import`]. Several meshes can be on a device at once.
@@ -27,6 +29,8 @@ pub struct DeviceMesh {
     /// The application's number of each vertex.
     numbers: wgpu::Buffer,
     vertex_count: usize,
+    /// The number on the device of each vertex of the application, or [`NONE`].
+    places: Vec<u32>,
     /// The vertices that no triangle uses: they are not on the device.
     unused: Vec<(u32, [f64; 2])>,
 }
@@ -49,8 +53,12 @@ impl DeviceMesh {
         let vertex_count = mesh.points.len();
         let unused = (0..).zip(&mesh.points).filter(|&(v, _)| topology.star(v).is_empty());
         let unused = unused.map(|(v, &point)| (v, point)).collect();
-        let device_mesh =
-            Self { gpu: gpu.clone(), problem, buffers, numbers, vertex_count, unused };
+        let mut places = vec![NONE; vertex_count];
+        for (place, &v) in (0..).zip(problem.vertices()) {
+            places[v as usize] = place;
+        }
+        let gpu = gpu.clone();
+        let device_mesh = Self { gpu, problem, buffers, numbers, vertex_count, places, unused };
         device_mesh.set_fixed(&mesh.fixed)?;
         Ok(device_mesh)
     }
@@ -90,6 +98,51 @@ impl DeviceMesh {
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
         BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
+    }
+
+    /// Binds vertices that the application moves toward targets, as far as the triangles allow: for handles, holes and
+    /// boundaries that a user drags. Target i, of `vertices[i]`, is vertex i of the buffer `targets`, in the coordinates
+    /// that its origin and scale say. When the command buffer of a frame runs, the share of the ways that was gone is
+    /// written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
+    ///
+    /// To be called when a drag begins; as it goes on, the application writes the targets and encodes
+    /// [`BoundMove::encode_move`]. Fixed vertices and those of the boundary can be moved too. If a vertex is listed twice,
+    /// its last target counts. A vertex of no triangle is not on the device, and no target moves it.
+    ///
+    /// No triangle gets an inverse mean ratio above `worst_imr`. One of about 8 leaves room for sweeps, and for the
+    /// rounding of vertex buffers; above 100,000 it counts as 100,000, which single precision surely tells from flat.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have, [`MeshError::BoundNotANumber`] if
+    /// `worst_imr` is NaN, [`GpuError::Buffer`] if a buffer is too small, misaligned or was made without `STORAGE`, if both
+    /// are the same, or if the origin or the scale is not usable.
+    pub fn bind_move(
+        &self,
+        vertices: &[u32],
+        targets: &VertexBuffer<'_>,
+        worst_imr: f64,
+        share: (&wgpu::Buffer, u64),
+    ) -> Result<BoundMove, SmoothError> {
+        if worst_imr.is_nan() {
+            return Err(MeshError::BoundNotANumber.into());
+        }
+        let mut ways = Vec::with_capacity(vertices.len());
+        for (target, &vertex) in (0..).zip(vertices) {
+            match self.place_of(vertex)? {
+                NONE => {}
+                place => ways.push([place, target]),
+            }
+        }
+        let Self { gpu, problem, buffers, .. } = self;
+        let moves = Moves { ways, listed: vertices.len(), worst_imr };
+        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share)?)
+    }
+
+    /// The number on the device of a vertex of the application, or [`NONE`].
+    fn place_of(&self, vertex: u32) -> Result<u32, MeshError> {
+        let vertices = self.vertex_count;
+        let place = self.places.get(vertex as usize).copied();
+        place.ok_or(MeshError::IndexOutOfRange { triangle: None, vertex, vertices })
     }
 
     /// Reads the positions back, in the order and unit of the mesh; blocks until the device has done all that was

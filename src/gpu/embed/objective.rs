@@ -8,7 +8,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::embed::exchange::Window;
+use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};

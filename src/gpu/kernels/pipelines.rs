@@ -34,6 +34,7 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
         ],
         Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
         Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
+        Interface::Move => &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
         Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
@@ -229,6 +230,7 @@ mod tests {
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
+        kernels.extend([Kernel::FindShare, Kernel::MoveVertices]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

@@ -20,6 +20,10 @@ pub enum Kernel {
     Export,
     /// Writes objectives to an application's buffer.
     Publish,
+    /// Finds how far an application's moves can go before a triangle gives way.
+    FindShare,
+    /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
+    MoveVertices,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
     /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
@@ -65,6 +69,8 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
+    /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
+    Move,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
     Fine,
     /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
@@ -78,10 +84,11 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
+        Interface::Move,
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
@@ -93,9 +100,11 @@ impl Interface {
     /// without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
-            Interface::Run | Interface::Exchange | Interface::Fine | Interface::Secants => {
-                positions
-            }
+            Interface::Run
+            | Interface::Exchange
+            | Interface::Move
+            | Interface::Fine
+            | Interface::Secants => positions,
             Interface::Publish
             | Interface::Transfer
             | Interface::Coarse
@@ -132,6 +141,7 @@ impl Kernel {
         let mut kernels: Vec<_> = sweeps.collect();
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
+        kernels.extend([Kernel::FindShare, Kernel::MoveVertices]);
         kernels
     }
 
@@ -170,6 +180,8 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
+            Kernel::FindShare => "find_share",
+            Kernel::MoveVertices => "move_vertices",
             Kernel::Gradient(_) => "find_gradient",
             Kernel::SmoothGradient => "smooth_gradient",
             Kernel::Restrict => "restrict_gradient",
@@ -195,6 +207,7 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
+            Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
             Kernel::CheckArithmetic => Interface::Arithmetic,
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run

@@ -7,9 +7,9 @@ use crate::metric::Metric;
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`, `sum_along_correction` and `publish`.
+/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction` and `publish`.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Invocations of the `finish` and `sum_along_correction` kernels.
+/// Invocations of the `finish`, `find_share` and `sum_along_correction` kernels.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
 /// The values kept of an evaluation: the sum of q² - ideal² for every metric, the number of inverted triangles, and the
@@ -113,6 +113,21 @@ pub(crate) struct Exchange {
     pub(crate) scale: f32,
     pub(crate) inverse_scale: f32,
     pub(crate) padding: [u32; 2],
+}
+
+/// `Movement` in shaders/clamp/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Movement {
+    pub(crate) zero: u32,
+    pub(crate) vertices: u32,
+    pub(crate) triangles: u32,
+    pub(crate) worst_imr: f32,
+    pub(crate) offset: u32,
+    pub(crate) stride: u32,
+    pub(crate) share: u32,
+    pub(crate) scale: f32,
+    pub(crate) center: [f32; 4],
 }
 
 /// `Publish` in shaders/publish.wgsl.
@@ -242,6 +257,10 @@ mod tests {
         mirrors!(
             &Kernel::Import,
             Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
+        );
+        mirrors!(
+            &Kernel::FindShare,
+            Movement { zero, vertices, triangles, worst_imr, offset, stride, share, scale, center }
         );
         let check = &Kernel::CheckArithmetic;
         mirrors!(check, ArithmeticInput { a, b });

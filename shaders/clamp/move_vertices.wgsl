@@ -1,0 +1,17 @@
+// Moves vertices by the share of their ways that find_share.wgsl has found.
+
+@compute @workgroup_size(WORKGROUP)
+fn move_vertices(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let way = invocation(id, groups);
+    if way >= movement.vertices {
+        return;
+    }
+    let share = shares[movement.share];
+    if share > 0.0 {
+        let vertex = ways[way].x;
+        set_position(vertex, gone(way, position(vertex), share));
+    }
+}
