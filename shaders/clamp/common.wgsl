@@ -25,6 +25,8 @@ struct Movement {
 @group(0) @binding(3) var<storage, read> ways: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> targets: array<f32>;
 @group(0) @binding(5) var<storage, read_write> shares: array<f32>;
+// How often a vertex was moved, and how often the host changed what may move.
+@group(0) @binding(6) var<storage, read_write> changes: array<atomic<u32>, 2>;
 
 fn runtime_zero() -> u32 {
     return movement.zero;

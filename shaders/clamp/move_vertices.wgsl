@@ -12,6 +12,11 @@ fn move_vertices(
     let share = shares[movement.share];
     if share > 0.0 {
         let vertex = ways[way].x;
-        set_position(vertex, gone(way, position(vertex), share));
+        let from_ = position(vertex);
+        let to = gone(way, from_, share);
+        if any(to != from_) {
+            set_position(vertex, to);
+            atomicAdd(&changes[0], 1u);
+        }
     }
 }

@@ -12,6 +12,7 @@ mod exchange;
 mod fixed;
 mod futures;
 mod inverted;
+mod judged;
 mod limits;
 mod lost;
 mod objective;

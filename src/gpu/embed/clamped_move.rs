@@ -124,6 +124,7 @@ impl BoundMove {
                 ways.as_entire_binding(),
                 window.binding(),
                 share.binding(),
+                mesh.changes.buffer.as_entire_binding(),
             ];
             resources.extend(beyond);
             gpu.pipelines.bind(&gpu.device, Interface::Move, positions, &resources)

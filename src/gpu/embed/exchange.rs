@@ -53,8 +53,9 @@ impl BoundVertices {
             let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
             let (positions, beyond) = mesh.bind_positions();
             let uniform = uniform.as_entire_binding();
-            let mut resources =
-                vec![uniform, positions, numbers.as_entire_binding(), window.binding()];
+            let numbers = numbers.as_entire_binding();
+            let changes = mesh.changes.buffer.as_entire_binding();
+            let mut resources = vec![uniform, positions, numbers, window.binding(), changes];
             resources.extend(beyond);
             let positions = mesh.parts.positions();
             gpu.pipelines.bind(&gpu.device, Interface::Exchange, positions, &resources)

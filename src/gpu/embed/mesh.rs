@@ -85,7 +85,8 @@ impl DeviceMesh {
         }
         let Gpu { device, queue, .. } = &self.gpu;
         let starts = bytemuck::cast_slice(&starts);
-        Ok(scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?)
+        scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?;
+        Ok(self.buffers.changes.count(&self.gpu)?)
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers

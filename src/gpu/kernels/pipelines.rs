@@ -32,9 +32,12 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
             ReadWrite,
             ReadWrite,
         ],
-        Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
-        Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
-        Interface::Move => &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite, ReadWrite],
+        Interface::Publish => &[UNIFORM, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Reopen => &[ReadWrite, ReadOnly],
+        Interface::Move => {
+            &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite, ReadWrite]
+        }
         Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
@@ -230,7 +233,7 @@ mod tests {
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
-        kernels.extend([Kernel::FindShare, Kernel::MoveVertices]);
+        kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

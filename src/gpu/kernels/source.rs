@@ -30,6 +30,9 @@ const EXCHANGE: &str = include_str!("../../../shaders/exchange.wgsl");
 const IMPORT: &str = include_str!("../../../shaders/import.wgsl");
 const EXPORT: &str = include_str!("../../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
+const JUDGED: &str = include_str!("../../../shaders/judged/common.wgsl");
+const REOPEN: &str = include_str!("../../../shaders/judged/reopen.wgsl");
+const RESUME: &str = include_str!("../../../shaders/judged/resume.wgsl");
 const MOVEMENT: &str = include_str!("../../../shaders/clamp/common.wgsl");
 const FIND_SHARE: &str = include_str!("../../../shaders/clamp/find_share.wgsl");
 const MOVE_VERTICES: &str = include_str!("../../../shaders/clamp/move_vertices.wgsl");
@@ -78,9 +81,10 @@ impl Kernel {
         let mut source = constants();
         let (parts, bindings): (&[&str], _) = match self.interface() {
             Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
-            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 4))),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 5))),
             Interface::Publish => (&[CONTROL], None),
-            Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 6))),
+            Interface::Reopen => (&[CONTROL, JUDGED], None),
+            Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
@@ -116,6 +120,8 @@ impl Kernel {
             Kernel::Import => source.push_str(IMPORT),
             Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
+            Kernel::Reopen => source.push_str(REOPEN),
+            Kernel::Resume => source.push_str(RESUME),
             Kernel::FindShare => source.push_str(FIND_SHARE),
             Kernel::MoveVertices => source.push_str(MOVE_VERTICES),
             Kernel::Gradient(metric)

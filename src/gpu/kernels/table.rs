@@ -20,6 +20,10 @@ pub enum Kernel {
     Export,
     /// Writes objectives to an application's buffer.
     Publish,
+    /// Begins judged sweeps anew where an application has changed the mesh.
+    Reopen,
+    /// Lets judged sweeps go on after [`Reopen`](Self::Reopen) and the evaluation that follows it.
+    Resume,
     /// Finds how far an application's moves can go before a triangle gives way.
     FindShare,
     /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
@@ -69,6 +73,8 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
+    /// The control of judged sweeps, and the changes of a mesh: `shaders/judged/common.wgsl`.
+    Reopen,
     /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
     Move,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
@@ -84,10 +90,11 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
+        Interface::Reopen,
         Interface::Move,
         Interface::Fine,
         Interface::Transfer,
@@ -106,6 +113,7 @@ impl Interface {
             | Interface::Fine
             | Interface::Secants => positions,
             Interface::Publish
+            | Interface::Reopen
             | Interface::Transfer
             | Interface::Coarse
             | Interface::Arithmetic => Positions::Whole,
@@ -141,7 +149,7 @@ impl Kernel {
         let mut kernels: Vec<_> = sweeps.collect();
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
-        kernels.extend([Kernel::FindShare, Kernel::MoveVertices]);
+        kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
         kernels
     }
 
@@ -180,6 +188,8 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
+            Kernel::Reopen => "reopen",
+            Kernel::Resume => "resume",
             Kernel::FindShare => "find_share",
             Kernel::MoveVertices => "move_vertices",
             Kernel::Gradient(_) => "find_gradient",
@@ -207,6 +217,7 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
+            Kernel::Reopen | Kernel::Resume => Interface::Reopen,
             Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
             Kernel::CheckArithmetic => Interface::Arithmetic,
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {

@@ -7,7 +7,8 @@ use crate::metric::Metric;
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction` and `publish`.
+/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction`, `publish`, `reopen` and
+/// `resume`.
 pub(crate) const WORKGROUP: u32 = 64;
 /// Invocations of the `finish`, `find_share` and `sum_along_correction` kernels.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
@@ -97,7 +98,8 @@ pub(crate) struct Control {
     pub(crate) improved: u32,
     pub(crate) best_sweep: u32,
     pub(crate) best_sum: [f32; 2],
-    pub(crate) padding: [u32; 2],
+    pub(crate) changes: u32,
+    pub(crate) padding: u32,
     pub(crate) history: [[[f32; 2]; SLOTS]; HISTORY as usize],
 }
 
@@ -136,7 +138,8 @@ pub(crate) struct Movement {
 pub(crate) struct Publish {
     pub(crate) offset: u32,
     pub(crate) triangles: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) judged: u32,
+    pub(crate) padding: u32,
     pub(crate) ideal_squared: [[f32; 4]; SLOTS.div_ceil(4)],
 }
 
@@ -251,8 +254,11 @@ mod tests {
         );
         let secants = &Kernel::OpenSecant;
         mirrors!(secants, SecantOp { free, newer, older, pairs, partials, is_after });
-        for kernel in [run, &Kernel::Publish] {
-            mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
+        for kernel in [run, &Kernel::Publish, &Kernel::Reopen] {
+            mirrors!(
+                kernel,
+                Control { done, evaluated, improved, best_sweep, best_sum, changes, history }
+            );
         }
         mirrors!(
             &Kernel::Import,
@@ -268,7 +274,7 @@ mod tests {
             check,
             ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
         );
-        mirrors!(&Kernel::Publish, Publish { offset, triangles, ideal_squared });
+        mirrors!(&Kernel::Publish, Publish { offset, triangles, judged, ideal_squared });
     }
 
     #[test]
