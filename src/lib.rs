@@ -69,6 +69,8 @@
 //!
 //! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
 //!   [`Topology::move_clamped`] does so with positions on the host.
+//! - [`Sweeps::until_converged`] ends sweeps by themselves, on the device; a [`Budget`] chooses how many a frame has time for.
+//! - A [`Readback`] reads objectives or vertices in each frame and never waits.
 //! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
 //! - [`Timestamps`] measure how long each kernel takes.
 //! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
@@ -126,8 +128,8 @@ pub use file::{
     abandon_writes,
 };
 pub use gpu::{
-    BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps,
-    Timestamps, VertexBuffer,
+    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, MeshSize, ObjectiveValues,
+    Readback, Sweeps, Timestamps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};

@@ -7,6 +7,7 @@
 mod support;
 
 mod app;
+mod budget;
 mod clamped;
 mod exchange;
 mod fixed;
@@ -17,6 +18,7 @@ mod limits;
 mod lost;
 mod objective;
 mod parts;
+mod readback;
 mod refusals;
 mod sweeps;
 mod timestamps;

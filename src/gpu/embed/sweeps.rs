@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::Gpu;
 use crate::gpu::embed::objective::Run;
-use crate::gpu::embed::{BoundObjective, DeviceMesh};
+use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh};
 use crate::gpu::encode::{Encoder, Passes};
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
@@ -24,6 +24,9 @@ pub struct Sweeps {
     judged: Option<Judged>,
     done: u32,
 }
+
+/// The label of the pass of sweeps.
+const LABEL: &str = "gpu-smooth sweeps";
 
 /// What sweeps that end by themselves take besides.
 struct Judged {
@@ -86,18 +89,40 @@ impl Sweeps {
     /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it, whether or not that encoder was
     /// submitted: alternate metrics and over-relaxation count the sweeps that were encoded.
     pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
-        let mut passes = encoder.passes("gpu-smooth sweeps");
+        self.encode(&mut encoder.passes(LABEL), sweeps);
+    }
+
+    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget is
+    /// [timed](Budget::timed_by) by the device.
+    pub fn encode_within(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        budget: &mut Budget,
+    ) -> u32 {
+        budget.collect();
+        let sweeps = budget.sweeps();
+        match &mut budget.clock {
+            None => self.encode_sweeps(encoder, sweeps),
+            Some(clock) => {
+                self.encode(&mut Passes::clocked(encoder, LABEL, clock.writes()), sweeps);
+                clock.encode(encoder, &self.run.dispatches.control, sweeps);
+            }
+        }
+        sweeps
+    }
+
+    fn encode(&mut self, passes: &mut Passes<'_>, sweeps: u32) {
         let Self { run: Run { dispatches, .. }, judged, .. } = self;
         if let Some(judged) = judged.as_ref().filter(|_| sweeps > 0) {
-            judged.encode(&mut passes, &judged.reopen);
-            dispatches.encode_evaluation(&mut passes);
-            judged.encode(&mut passes, &judged.resume);
+            judged.encode(passes, &judged.reopen);
+            dispatches.encode_evaluation(passes);
+            judged.encode(passes, &judged.resume);
         }
         for _ in 0..sweeps {
             self.done = self.done.saturating_add(1);
-            dispatches.encode_sweep(&mut passes, &dispatches.plan.step(self.done));
+            dispatches.encode_sweep(passes, &dispatches.plan.step(self.done));
             if judged.is_some() {
-                dispatches.encode_evaluation(&mut passes);
+                dispatches.encode_evaluation(passes);
             }
         }
     }

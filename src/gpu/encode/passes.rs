@@ -46,6 +46,19 @@ enum State<'e> {
 }
 
 impl<'e> Passes<'e> {
+    /// All kernels in one pass, which is timed as a whole.
+    pub(crate) fn clocked(
+        encoder: &'e mut wgpu::CommandEncoder,
+        label: &'static str,
+        timestamp_writes: wgpu::ComputePassTimestampWrites<'_>,
+    ) -> Self {
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: Some(timestamp_writes),
+        });
+        Self(State::One { pass, set: None })
+    }
+
     pub(crate) fn timed(
         encoder: &'e mut wgpu::CommandEncoder,
         timestamps: &'e mut Timestamps,
