@@ -101,7 +101,7 @@ impl Smoothing {
 
     /// Lets the sweeps move all vertices but these and those that the mesh itself fixes.
     pub(crate) fn hold(&mut self, held: &[u32]) -> Result<()> {
-        self.device_mesh.set_fixed(&[&self.mesh.fixed, held].concat())?;
+        self.device_mesh.set_pinned(held)?;
         self.sweeps.restart();
         Ok(())
     }

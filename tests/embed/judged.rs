@@ -108,7 +108,7 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     assert_ne!(frames.points(), settled);
 
     // One that it holds, or lets go.
-    frames.device_mesh.set_fixed(&[v]).unwrap();
+    frames.device_mesh.pin(&[v]).unwrap();
     assert_eq!(frames.app.objective(&frames.sweeps).stop(), None);
     assert_eq!(frames.frame(2).sweeps, 2);
     assert!(frames.end().has_converged());

@@ -109,7 +109,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
-        let _ = device_mesh.set_fixed(&[]);
+        let _ = device_mesh.pin(&[1]);
         assert_lost(&device_mesh.read_points().unwrap_err());
         match DeviceMesh::new(&app.gpu, &mesh) {
             Err(error) => assert_lost(&gpu_error(error)),

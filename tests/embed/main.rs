@@ -10,7 +10,7 @@ mod app;
 mod budget;
 mod clamped;
 mod exchange;
-mod fixed;
+
 mod futures;
 mod inverted;
 mod judged;
@@ -18,6 +18,7 @@ mod limits;
 mod lost;
 mod objective;
 mod parts;
+mod pins;
 mod readback;
 mod refusals;
 mod sweeps;

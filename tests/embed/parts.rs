@@ -76,7 +76,7 @@ fn an_application_sees_no_parts() {
     let found = devices(&mesh).map(|app| {
         let device_mesh = app.mesh(&mesh);
         let held: Vec<u32> = (0..mesh.points.len() as u32).step_by(17).collect();
-        device_mesh.set_fixed(&held).unwrap();
+        device_mesh.pin(&held).unwrap();
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::new(&app, &mesh, 0, 8);
         let bound = vertices.bind(&device_mesh);

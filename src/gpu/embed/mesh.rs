@@ -1,5 +1,7 @@
 //! A mesh that stays on an application's device.
 
+use std::collections::BTreeSet;
+
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -8,8 +10,9 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::clamped_move::Moves;
-use crate::gpu::embed::{BoundMove, BoundVertices, VertexBuffer};
-use crate::gpu::kernels::uniforms::{HELD, join};
+use crate::gpu::embed::pins::Pins;
+use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, VertexBuffer};
+use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
@@ -31,6 +34,7 @@ pub struct DeviceMesh {
     vertex_count: usize,
     /// The number on the device of each vertex of the application, or [`NONE`].
     places: Vec<u32>,
+    pins: Pins,
     /// The vertices that no triangle uses: they are not on the device.
     unused: Vec<(u32, [f64; 2])>,
 }
@@ -38,7 +42,7 @@ pub struct DeviceMesh {
 impl DeviceMesh {
     /// Prepares a mesh and uploads it. Blocks while it colors the vertices.
     ///
-    /// The vertices of [`Mesh::fixed`] stay until [`set_fixed`](Self::set_fixed) says otherwise.
+    /// The vertices of [`Mesh::fixed`] always stay, as those of the boundary do. [`pin`](Self::pin) holds others for a while.
     ///
     /// # Errors
     /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, [`SmoothError::Gpu`] with
@@ -57,36 +61,75 @@ impl DeviceMesh {
         for (place, &v) in (0..).zip(problem.vertices()) {
             places[v as usize] = place;
         }
+        let free = problem.free_count() as u32;
+        let mut fixed = BTreeSet::new();
+        for &vertex in &mesh.fixed {
+            let (triangle, vertices) = (None, vertex_count);
+            let place = places.get(vertex as usize).copied();
+            let place = place.ok_or(MeshError::IndexOutOfRange { triangle, vertex, vertices })?;
+            fixed.extend(Some(place).filter(|&place| place < free));
+        }
+        let pins = Pins::new(gpu, &problem, &buffers, fixed)?;
         let gpu = gpu.clone();
-        let device_mesh = Self { gpu, problem, buffers, numbers, vertex_count, places, unused };
-        device_mesh.set_fixed(&mesh.fixed)?;
-        Ok(device_mesh)
+        Ok(Self { gpu, problem, buffers, numbers, vertex_count, places, pins, unused })
     }
 
-    /// Fixes these vertices (zero-based) and frees all others, those of [`Mesh::fixed`] too if they are not listed again.
-    /// Boundary vertices always stay, listed or not. Takes effect in what is submitted after the call.
+    /// Pins vertices (zero-based): sweeps leave them where they are, beside those of [`Mesh::fixed`] and of the boundary,
+    /// which always stay. Takes effect in what is submitted after the call. Only what changes is sent to the device.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have.
-    pub fn set_fixed(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let mut fixed = vec![false; self.vertex_count];
-        for &vertex in vertices {
-            let Some(flag) = fixed.get_mut(vertex as usize) else {
-                let vertices = self.vertex_count;
-                return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
-            };
-            *flag = true;
-        }
-        let mut starts = self.problem.ring_start().to_vec();
-        // One start for each free vertex; the entry after them is the end of the last ring.
-        let free = self.problem.free_count();
-        for (start, &vertex) in starts[..free].iter_mut().zip(self.problem.vertices()) {
-            *start |= if fixed[vertex as usize] { HELD } else { 0 };
-        }
-        let Gpu { device, queue, .. } = &self.gpu;
-        let starts = bytemuck::cast_slice(&starts);
-        scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?;
-        Ok(self.buffers.changes.count(&self.gpu)?)
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is pinned then.
+    pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let places = self.free_places(vertices)?;
+        self.change_pins(|pinned| places.into_iter().filter(|&p| pinned.insert(p)).collect())
+    }
+
+    /// Lets go of vertices that were pinned. Those of [`Mesh::fixed`] and of the boundary stay all the same. Takes effect in
+    /// what is submitted after the call.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is let go then.
+    pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let places = self.free_places(vertices)?;
+        self.change_pins(|pinned| places.into_iter().filter(|p| pinned.remove(p)).collect())
+    }
+
+    /// Pins these vertices and lets go of all others that were pinned. Takes effect in what is submitted after the call.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing changes then.
+    pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let wanted: BTreeSet<u32> = self.free_places(vertices)?.into_iter().collect();
+        self.change_pins(|pinned| {
+            let changed = pinned.symmetric_difference(&wanted).copied().collect();
+            *pinned = wanted;
+            changed
+        })
+    }
+
+    fn change_pins(
+        &self,
+        change: impl FnOnce(&mut BTreeSet<u32>) -> Vec<u32>,
+    ) -> Result<(), SmoothError> {
+        Ok(self.pins.change(&self.gpu, &self.problem, &self.buffers, change)?)
+    }
+
+    /// Binds a mask that holds vertices, in a buffer of the application: a u32 for each vertex of the mesh, from byte
+    /// `offset` on, not 0 for a vertex that is to stay. Kernels of the application may write it.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`, [`GpuError::Limit`] if the
+    /// mask is larger than what the device binds at once.
+    pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
+        let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
+        BoundMask::new(gpu, (problem, *vertex_count), buffers, numbers, pins, (buffer, offset))
+    }
+
+    /// The numbers on the device of those of the vertices that could be moved by sweeps.
+    fn free_places(&self, vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
+        let free = self.problem.free_count() as u32;
+        let places: Result<Vec<u32>, _> = vertices.iter().map(|&v| self.place_of(v)).collect();
+        Ok(places?.into_iter().filter(|&place| place < free).collect())
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers

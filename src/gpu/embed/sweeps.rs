@@ -56,7 +56,7 @@ impl Sweeps {
     /// time. [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells. The goal of `options` has no effect.
     ///
     /// They begin anew when the application changes the mesh: where an import finds a vertex that was moved, after a move
-    /// that was not in vain, after [`DeviceMesh::set_fixed`] and [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count. Each sweep is followed by an
+    /// that was not in vain, after [`DeviceMesh::pin`] and the like, a mask that has changed, and [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count. Each sweep is followed by an
     /// evaluation of f, which takes about a sixth of its time.
     ///
     /// # Errors

@@ -24,6 +24,8 @@ pub enum Kernel {
     Reopen,
     /// Lets judged sweeps go on after [`Reopen`](Self::Reopen) and the evaluation that follows it.
     Resume,
+    /// Holds vertices by a mask of the application.
+    HoldByMask,
     /// Finds how far an application's moves can go before a triangle gives way.
     FindShare,
     /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
@@ -75,6 +77,8 @@ pub enum Interface {
     Publish,
     /// The control of judged sweeps, and the changes of a mesh: `shaders/judged/common.wgsl`.
     Reopen,
+    /// Which vertices are held, and a mask of the application: `shaders/mask.wgsl`.
+    Mask,
     /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
     Move,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
@@ -90,11 +94,12 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 11] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
         Interface::Reopen,
+        Interface::Mask,
         Interface::Move,
         Interface::Fine,
         Interface::Transfer,
@@ -114,6 +119,7 @@ impl Interface {
             | Interface::Secants => positions,
             Interface::Publish
             | Interface::Reopen
+            | Interface::Mask
             | Interface::Transfer
             | Interface::Coarse
             | Interface::Arithmetic => Positions::Whole,
@@ -150,6 +156,7 @@ impl Kernel {
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
         kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
+        kernels.push(Kernel::HoldByMask);
         kernels
     }
 
@@ -190,6 +197,7 @@ impl Kernel {
             Kernel::Publish => "publish",
             Kernel::Reopen => "reopen",
             Kernel::Resume => "resume",
+            Kernel::HoldByMask => "hold_by_mask",
             Kernel::FindShare => "find_share",
             Kernel::MoveVertices => "move_vertices",
             Kernel::Gradient(_) => "find_gradient",
@@ -217,6 +225,7 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
+            Kernel::HoldByMask => Interface::Mask,
             Kernel::Reopen | Kernel::Resume => Interface::Reopen,
             Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
             Kernel::CheckArithmetic => Interface::Arithmetic,

@@ -117,6 +117,15 @@ pub(crate) struct Exchange {
     pub(crate) padding: [u32; 2],
 }
 
+/// `Mask` in shaders/mask.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Mask {
+    pub(crate) vertices: u32,
+    pub(crate) offset: u32,
+    pub(crate) padding: [u32; 2],
+}
+
 /// `Movement` in shaders/clamp/common.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -264,6 +273,7 @@ mod tests {
             &Kernel::Import,
             Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
         );
+        mirrors!(&Kernel::HoldByMask, Mask { vertices, offset });
         mirrors!(
             &Kernel::FindShare,
             Movement { zero, vertices, triangles, worst_imr, offset, stride, share, scale, center }
