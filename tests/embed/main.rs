@@ -18,6 +18,7 @@ mod limits;
 mod lost;
 mod objective;
 mod parts;
+mod passes;
 mod pins;
 mod readback;
 mod refusals;

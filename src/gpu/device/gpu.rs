@@ -53,6 +53,26 @@ impl Gpu {
         Self::with(device, queue, summary, Arc::default())
     }
 
+    /// Compiles kernels with a pipeline cache of the application, which makes them start faster the next time. The
+    /// application makes it of its device, which has the feature `PIPELINE_CACHE` where the driver has caches (on Vulkan),
+    /// and saves its data ([`wgpu::PipelineCache::get_data`]). To be called before anything else: what is compiled already
+    /// is compiled again.
+    ///
+    /// ```no_run
+    /// # use gpu_smooth::{wgpu, Gpu, GpuError, Options, SmoothError};
+    /// # fn f(device: wgpu::Device, queue: wgpu::Queue, cache: wgpu::PipelineCache) -> Result<(), SmoothError> {
+    /// let gpu = Gpu::new(device, queue)?.with_pipeline_cache(cache.clone());
+    /// gpu.prepare(&Options::default())?;
+    /// if let Some(data) = cache.get_data() {
+    ///     // Write it to a file of wgpu::util::pipeline_cache_key(&adapter.get_info()).
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn with_pipeline_cache(self, cache: wgpu::PipelineCache) -> Self {
+        Self { pipelines: Arc::new(Pipelines::with_cache(cache)), ..self }
+    }
+
     pub(super) fn with(
         device: wgpu::Device,
         queue: wgpu::Queue,

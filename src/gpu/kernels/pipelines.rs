@@ -113,6 +113,8 @@ pub(crate) struct Pipeline {
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; Interface::ALL.len()],
     made: Mutex<HashMap<(Kernel, Positions), wgpu::ComputePipeline>>,
+    /// A cache of the application's.
+    cache: Option<wgpu::PipelineCache>,
 }
 
 /// The layout of one [`Interface`].
@@ -148,6 +150,11 @@ impl Layout {
 }
 
 impl Pipelines {
+    /// No pipelines yet, and a cache that they are compiled with.
+    pub(crate) fn with_cache(cache: wgpu::PipelineCache) -> Self {
+        Self { cache: Some(cache), ..Self::default() }
+    }
+
     /// To be called in an error scope.
     fn layout(&self, device: &wgpu::Device, interface: Interface, positions: Positions) -> &Layout {
         let positions = interface.sees(positions);
@@ -213,7 +220,7 @@ impl Pipelines {
             module: &module,
             entry_point: Some(kernel.entry_point()),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
+            cache: self.cache.as_ref(),
         })
     }
 }
