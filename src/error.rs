@@ -367,6 +367,11 @@ pub enum GpuError {
     /// The queue is not the queue of the device that it was given with.
     #[error("the queue is not that of the device: both must come from one call of request_device")]
     Queue,
+    /// The call would block the thread, which a page in a browser cannot do.
+    #[error(
+        "a browser cannot wait in a blocking call: use the call of this name that ends in _async"
+    )]
+    WouldBlock,
     /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),

@@ -2,7 +2,15 @@
 
 use crate::error::GpuError;
 
+/// Runs wgpu calls. A browser answers what it reports of them later, and a page cannot wait for that: there it goes to the
+/// device's handler of uncaptured errors.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn scoped<T>(_: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
+    Ok(calls())
+}
+
 /// Runs wgpu calls and turns whatever wgpu reports of them into an error.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -37,6 +45,7 @@ pub(crate) fn scoped_to_buffer<T>(
 
 /// Whether the device is lost, found by trial: a lost device makes a buffer that cannot be mapped, and reports nothing
 /// to the error scopes.
+#[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);

@@ -17,7 +17,8 @@ pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};
 pub use properties::Properties;
 pub use scheme::Scheme;
-pub(crate) use table::{
-    AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric, with_formulas,
-};
+pub(crate) use table::{AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric};
+// Other processors have one kind of lanes.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) use table::with_formulas;
 pub use table::{Metric, UnknownMetric};

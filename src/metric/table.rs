@@ -127,6 +127,7 @@ macro_rules! with_formulas {
         }
     };
 }
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) use with_formulas;
 
 /// The functions of a metric that engines compute.

@@ -8,7 +8,7 @@ use crate::error::GpuError;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::readback::{Waiting, blocking};
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::pins::Pins;
 use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, VertexBuffer};
@@ -195,7 +195,7 @@ impl DeviceMesh {
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
     pub fn read_points(&self) -> Result<Vec<[f64; 2]>, GpuError> {
-        pollster::block_on(self.wait_for_points(Waiting::Block))
+        blocking(self.wait_for_points(Waiting::Block))
     }
 
     /// As [`read_points`](Self::read_points), without blocking: completes once the application has polled the device.

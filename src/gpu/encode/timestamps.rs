@@ -5,7 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::readback::{self, Waiting, blocking};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::scoped;
 
@@ -142,7 +142,7 @@ impl Spans {
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
     pub fn read(self) -> Result<Vec<Span>, GpuError> {
-        pollster::block_on(self.wait(Waiting::Block))
+        blocking(self.wait(Waiting::Block))
     }
 
     /// As [`read`](Self::read), without blocking: completes once the application has polled the device.
