@@ -76,7 +76,8 @@
 //! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
 //! - [`Smoother::run_async`] does a whole run, with its stop rule, without blocking the thread.
 //!
-//! `examples/embed` and `examples/moving_boundary` are complete applications.
+//! `docs/embedding.md` is the whole story: a frame, devices, precision, drags, pins, budgets, readbacks, other meshes and lost
+//! devices. `examples/embed`, `examples/moving_boundary` and `examples/outside` are complete applications.
 //!
 //! # Limits
 //!
@@ -114,6 +115,11 @@ pub mod validity {
 pub mod output {
     pub use crate::file::{check, replace, same_file};
 }
+
+/// Has the code of the chapter compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/embedding.md")]
+mod embedding {}
 
 /// For benchmarks, experiments and this library's own tests. It changes without notice.
 #[doc(hidden)]
