@@ -5,6 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
+use crate::gpu::device::size::check_limit;
 use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
@@ -97,6 +98,11 @@ impl BoundMove {
         let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
         let mut corners = moves.corners(problem);
         let count = moves.ways.len() as u32;
+        let most = gpu.device.limits().max_storage_buffer_binding_size;
+        let what =
+            || format!("the buffer of the {} triangles around moved vertices", corners.len());
+        let bytes = corners.len() as u64 * size_of::<[u32; 6]>() as u64;
+        check_limit("max_storage_buffer_binding_size", most, &what, bytes)?;
         let movement = Movement {
             zero: 0,
             vertices: count,

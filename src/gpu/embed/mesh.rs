@@ -159,7 +159,8 @@ impl DeviceMesh {
     /// # Errors
     /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have, [`MeshError::BoundNotANumber`] if
     /// `worst_imr` is NaN, [`GpuError::Buffer`] if a buffer is too small, misaligned or was made without `STORAGE`, if both
-    /// are the same, or if the origin or the scale is not usable.
+    /// are the same, or if the origin or the scale is not usable; [`GpuError::Limit`] if the vertices have more triangles
+    /// than the device binds at once, with 24 bytes for each.
     pub fn bind_move(
         &self,
         vertices: &[u32],
