@@ -134,8 +134,8 @@ pub use file::{
     abandon_writes,
 };
 pub use gpu::{
-    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, MeshSize,
-    ObjectiveValues, Readback, Sweeps, Timestamps, VertexBuffer,
+    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
+    MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};

@@ -25,7 +25,7 @@ fn kernels() -> Vec<Kernel> {
     kernels.extend([Kernel::CloseSecant, Kernel::SumSecants, Kernel::BendGradient]);
     kernels.extend([Kernel::MultiplyCorrection, Kernel::OpenSecant]);
     kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
-    kernels.push(Kernel::HoldByMask);
+    kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
     for &metric in Metric::ALL {
         kernels.extend([Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)]);
         kernels.push(Kernel::Stiffness(metric));
@@ -61,7 +61,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 2 * (23 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 2 * (24 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]

@@ -17,8 +17,8 @@ pub(crate) mod scope;
 pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{
-    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues,
-    Readback, Sweeps, VertexBuffer,
+    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, LastValid,
+    ObjectiveValues, Readback, Sweeps, VertexBuffer,
 };
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};

@@ -14,6 +14,7 @@ mod exchange;
 mod futures;
 mod inverted;
 mod judged;
+mod last_valid;
 mod limits;
 mod lost;
 mod objective;

@@ -96,6 +96,7 @@ fn an_application_sees_no_parts() {
         let drag = device_mesh.bind_move(&moved, &place, 1e4, (&share, 0)).unwrap();
         // A corner of the plate, taken along by an import.
         vertices.put(&app, 0, [-0.125, -0.25]);
+        let last_valid = device_mesh.keep_last_valid().unwrap();
         let all: Vec<u32> = (0..mesh.points.len() as u32).collect();
         if let Err(error) = device_mesh.bind_move(&all, &place, 1e4, (&share, 0)) {
             let text = "triangles around moved vertices needs";
@@ -107,8 +108,18 @@ fn an_application_sees_no_parts() {
             mask.encode_mask(encoder);
             drag.encode_move(encoder);
             sweeps.encode_sweeps(encoder, 10);
+            last_valid.encode_restore_last_valid(encoder);
             bound.encode_export(encoder);
         });
+        let before = app.points(&device_mesh);
+        // One vertex out of the plate, and back.
+        vertices.put(&app, 300, [9.0, 9.0]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            last_valid.encode_restore_last_valid(encoder);
+            bound.encode_export(encoder);
+        });
+        assert!(app.points(&device_mesh) == before);
         let f = app.objective(&sweeps);
         let share = f32::from_bits(app.read(&share)[0]);
         assert!(share > 0.0 && share < 1.0, "{share}");

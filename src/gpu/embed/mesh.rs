@@ -11,7 +11,7 @@ use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::{Waiting, blocking};
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::pins::Pins;
-use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, VertexBuffer};
+use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, LastValid, VertexBuffer};
 use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
@@ -123,6 +123,15 @@ impl DeviceMesh {
     pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
         let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
         BoundMask::new(gpu, (problem, *vertex_count), buffers, numbers, pins, (buffer, offset))
+    }
+
+    /// Keeps the positions of the mesh as long as it is valid, so that a frame in which the application has inverted
+    /// triangles can be taken back. Takes 16 bytes on the device for each vertex.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn keep_last_valid(&self) -> Result<LastValid, GpuError> {
+        LastValid::new(&self.gpu, &self.problem, &self.buffers)
     }
 
     /// The numbers on the device of those of the vertices that could be moved by sweeps.

@@ -3,6 +3,7 @@
 mod budget;
 mod clamped_move;
 mod exchange;
+mod last_valid;
 mod mesh;
 mod objective;
 mod pins;
@@ -14,6 +15,7 @@ mod window;
 pub use budget::Budget;
 pub use clamped_move::BoundMove;
 pub use exchange::BoundVertices;
+pub use last_valid::LastValid;
 pub use mesh::DeviceMesh;
 pub use objective::{BoundObjective, ObjectiveValues};
 pub use pins::BoundMask;

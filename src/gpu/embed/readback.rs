@@ -180,9 +180,14 @@ impl<T: Pod> Readback<T> {
             if self.arrived.is_none_or(|number| number < copy.number) {
                 let view = copy.staging.get_mapped_range(..).map_err(|_| lost())?;
                 self.latest.clear();
-                self.latest.extend(
-                    view.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned::<T>),
-                );
+                match bytemuck::try_cast_slice(&view) {
+                    Ok(values) => self.latest.extend_from_slice(values),
+                    // A value whose alignment is larger than that of mapped memory.
+                    Err(_) => {
+                        let values = view.chunks_exact(size_of::<T>());
+                        self.latest.extend(values.map(bytemuck::pod_read_unaligned::<T>));
+                    }
+                }
                 self.arrived = Some(copy.number);
             }
             copy.staging.unmap();

@@ -35,6 +35,7 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
         Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite, ReadWrite],
         Interface::Publish => &[UNIFORM, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
         Interface::Reopen => &[ReadWrite, ReadOnly],
+        Interface::Restore => &[UNIFORM, ReadWrite, ReadWrite, ReadOnly, ReadWrite],
         Interface::Mask => &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
         Interface::Move => {
             &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite, ReadWrite]
@@ -242,7 +243,7 @@ mod tests {
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
         kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
-        kernels.push(Kernel::HoldByMask);
+        kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

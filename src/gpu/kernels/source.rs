@@ -33,6 +33,7 @@ const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
 const JUDGED: &str = include_str!("../../../shaders/judged/common.wgsl");
 const REOPEN: &str = include_str!("../../../shaders/judged/reopen.wgsl");
 const RESUME: &str = include_str!("../../../shaders/judged/resume.wgsl");
+const RESTORE: &str = include_str!("../../../shaders/restore.wgsl");
 const MASK: &str = include_str!("../../../shaders/mask.wgsl");
 const MOVEMENT: &str = include_str!("../../../shaders/clamp/common.wgsl");
 const FIND_SHARE: &str = include_str!("../../../shaders/clamp/find_share.wgsl");
@@ -86,6 +87,7 @@ impl Kernel {
             Interface::Publish => (&[CONTROL], None),
             Interface::Reopen => (&[CONTROL, JUDGED], None),
             Interface::Mask => (&[], None),
+            Interface::Restore => (&[CONTROL, PAIRS], Some((1, 5))),
             Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
@@ -124,6 +126,7 @@ impl Kernel {
             Kernel::Publish => source.push_str(PUBLISH),
             Kernel::Reopen => source.push_str(REOPEN),
             Kernel::Resume => source.push_str(RESUME),
+            Kernel::RestoreLastValid => source.push_str(RESTORE),
             Kernel::HoldByMask => source.push_str(MASK),
             Kernel::FindShare => source.push_str(FIND_SHARE),
             Kernel::MoveVertices => source.push_str(MOVE_VERTICES),

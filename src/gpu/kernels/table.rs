@@ -24,6 +24,8 @@ pub enum Kernel {
     Reopen,
     /// Lets judged sweeps go on after [`Reopen`](Self::Reopen) and the evaluation that follows it.
     Resume,
+    /// Keeps the positions of a valid mesh, and puts them back where it is not.
+    RestoreLastValid,
     /// Holds vertices by a mask of the application.
     HoldByMask,
     /// Finds how far an application's moves can go before a triangle gives way.
@@ -77,6 +79,8 @@ pub enum Interface {
     Publish,
     /// The control of judged sweeps, and the changes of a mesh: `shaders/judged/common.wgsl`.
     Reopen,
+    /// A mesh, and its positions when it was valid: `shaders/restore.wgsl`.
+    Restore,
     /// Which vertices are held, and a mask of the application: `shaders/mask.wgsl`.
     Mask,
     /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
@@ -94,11 +98,12 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 12] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
         Interface::Reopen,
+        Interface::Restore,
         Interface::Mask,
         Interface::Move,
         Interface::Fine,
@@ -115,6 +120,7 @@ impl Interface {
             Interface::Run
             | Interface::Exchange
             | Interface::Move
+            | Interface::Restore
             | Interface::Fine
             | Interface::Secants => positions,
             Interface::Publish
@@ -156,7 +162,7 @@ impl Kernel {
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
         kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
-        kernels.push(Kernel::HoldByMask);
+        kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
         kernels
     }
 
@@ -197,6 +203,7 @@ impl Kernel {
             Kernel::Publish => "publish",
             Kernel::Reopen => "reopen",
             Kernel::Resume => "resume",
+            Kernel::RestoreLastValid => "restore_last_valid",
             Kernel::HoldByMask => "hold_by_mask",
             Kernel::FindShare => "find_share",
             Kernel::MoveVertices => "move_vertices",
@@ -226,6 +233,7 @@ impl Kernel {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
             Kernel::HoldByMask => Interface::Mask,
+            Kernel::RestoreLastValid => Interface::Restore,
             Kernel::Reopen | Kernel::Resume => Interface::Reopen,
             Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
             Kernel::CheckArithmetic => Interface::Arithmetic,

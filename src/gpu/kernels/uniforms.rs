@@ -117,6 +117,16 @@ pub(crate) struct Exchange {
     pub(crate) padding: [u32; 2],
 }
 
+/// `Restore` in shaders/restore.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Restore {
+    pub(crate) zero: u32,
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) padding: u32,
+}
+
 /// `Mask` in shaders/mask.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -273,6 +283,7 @@ mod tests {
             &Kernel::Import,
             Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
         );
+        mirrors!(&Kernel::RestoreLastValid, Restore { zero, first, count });
         mirrors!(&Kernel::HoldByMask, Mask { vertices, offset });
         mirrors!(
             &Kernel::FindShare,
