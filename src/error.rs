@@ -295,6 +295,7 @@ pub enum SmoothError {
 
 /// The GPU engine cannot start, or failed during a run.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// There is no adapter, or none with the wanted name.
     #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]

@@ -13,6 +13,7 @@ mod kernels;
 mod mesh;
 mod run;
 pub(crate) mod scope;
+mod shown;
 
 pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};

@@ -1,16 +1,14 @@
 //! A mesh that stays on an application's device.
 
-use std::collections::BTreeSet;
-
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::{Waiting, blocking};
+use crate::gpu::device::{Gpu, MeshSize};
 use crate::gpu::embed::clamped_move::Moves;
-use crate::gpu::embed::pins::Pins;
+use crate::gpu::embed::pins::{Change, Pins};
 use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, LastValid, VertexBuffer};
 use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
@@ -62,14 +60,14 @@ impl DeviceMesh {
             places[v as usize] = place;
         }
         let free = problem.free_count() as u32;
-        let mut fixed = BTreeSet::new();
+        let mut fixed = Vec::new();
         for &vertex in &mesh.fixed {
             let (triangle, vertices) = (None, vertex_count);
             let place = places.get(vertex as usize).copied();
             let place = place.ok_or(MeshError::IndexOutOfRange { triangle, vertex, vertices })?;
             fixed.extend(Some(place).filter(|&place| place < free));
         }
-        let pins = Pins::new(gpu, &problem, &buffers, fixed)?;
+        let pins = Pins::new(gpu, &problem, &buffers, &fixed)?;
         let gpu = gpu.clone();
         Ok(Self { gpu, problem, buffers, numbers, vertex_count, places, pins, unused })
     }
@@ -81,7 +79,7 @@ impl DeviceMesh {
     /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is pinned then.
     pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
-        self.change_pins(|pinned| places.into_iter().filter(|&p| pinned.insert(p)).collect())
+        self.change_pins(Change::Pin(&places))
     }
 
     /// Lets go of vertices that were pinned. Those of [`Mesh::fixed`] and of the boundary stay all the same. Takes effect in
@@ -91,7 +89,7 @@ impl DeviceMesh {
     /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is let go then.
     pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
-        self.change_pins(|pinned| places.into_iter().filter(|p| pinned.remove(p)).collect())
+        self.change_pins(Change::Unpin(&places))
     }
 
     /// Pins these vertices and lets go of all others that were pinned. Takes effect in what is submitted after the call.
@@ -99,18 +97,11 @@ impl DeviceMesh {
     /// # Errors
     /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing changes then.
     pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let wanted: BTreeSet<u32> = self.free_places(vertices)?.into_iter().collect();
-        self.change_pins(|pinned| {
-            let changed = pinned.symmetric_difference(&wanted).copied().collect();
-            *pinned = wanted;
-            changed
-        })
+        let places = self.free_places(vertices)?;
+        self.change_pins(Change::PinThese(&places))
     }
 
-    fn change_pins(
-        &self,
-        change: impl FnOnce(&mut BTreeSet<u32>) -> Vec<u32>,
-    ) -> Result<(), SmoothError> {
+    fn change_pins(&self, change: Change<'_>) -> Result<(), SmoothError> {
         Ok(self.pins.change(&self.gpu, &self.problem, &self.buffers, change)?)
     }
 
@@ -139,6 +130,11 @@ impl DeviceMesh {
         let free = self.problem.free_count() as u32;
         let places: Result<Vec<u32>, _> = vertices.iter().map(|&v| self.place_of(v)).collect();
         Ok(places?.into_iter().filter(|&place| place < free).collect())
+    }
+
+    /// Number of vertices, those of no triangle too, and of triangles.
+    pub fn size(&self) -> MeshSize {
+        MeshSize { vertices: self.vertex_count, triangles: self.problem.triangles().len() }
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers

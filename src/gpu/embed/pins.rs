@@ -1,6 +1,5 @@
 //! Vertices that are held where they are: on the host's word, or by a mask of the application.
 
-use std::collections::BTreeSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use wgpu::BufferUsages as Usage;
@@ -20,12 +19,15 @@ use crate::layout::Problem;
 
 /// Which vertices the host holds. They are named by their numbers on the device.
 pub(crate) struct Pins {
-    /// Vertices of [`Mesh::fixed`](crate::Mesh::fixed), which always stay.
-    fixed: BTreeSet<u32>,
-    pinned: Mutex<BTreeSet<u32>>,
+    /// Of each vertex that is free or held: [`FIXED`], [`PINNED`].
+    flags: Mutex<Vec<u8>>,
     /// On the device, a bit for each vertex that is fixed or pinned.
     bits: wgpu::Buffer,
 }
+
+/// A vertex of [`Mesh::fixed`](crate::Mesh::fixed), which always stays.
+const FIXED: u8 = 1;
+const PINNED: u8 = 2;
 
 /// Places between two changes that are sent with them: a write of its own costs more.
 const GAP: u32 = 64;
@@ -38,38 +40,62 @@ impl Pins {
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
-        fixed: BTreeSet<u32>,
+        fixed: &[u32],
     ) -> Result<Self, GpuError> {
         let words = problem.free_count().div_ceil(32).max(1);
         let bits = scoped(&gpu.device, || {
             zeroed(gpu, "pins", 4 * words as u64, Usage::STORAGE | Usage::COPY_DST)
         })?;
-        let pins = Self { fixed, pinned: Mutex::default(), bits };
-        let all: Vec<u32> = pins.fixed.iter().copied().collect();
-        pins.send(gpu, problem, mesh, &BTreeSet::new(), &all)?;
+        let mut flags = vec![0; problem.free_count()];
+        fixed.iter().for_each(|&place| flags[place as usize] = FIXED);
+        let pins = Self { flags: Mutex::default(), bits };
+        pins.send(gpu, problem, mesh, &flags, &with(&flags, FIXED))?;
+        *pins.flags() = flags;
         Ok(pins)
     }
 
-    fn pinned(&self) -> MutexGuard<'_, BTreeSet<u32>> {
-        self.pinned.lock().unwrap_or_else(PoisonError::into_inner)
+    fn flags(&self) -> MutexGuard<'_, Vec<u8>> {
+        self.flags.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Changes which vertices are pinned, and sends what is different to the device.
+    /// Pins vertices and lets go of others, and sends what is different to the device.
     pub(crate) fn change(
         &self,
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
-        change: impl FnOnce(&mut BTreeSet<u32>) -> Vec<u32>,
+        change: Change<'_>,
     ) -> Result<(), GpuError> {
-        let mut pinned = self.pinned();
-        let mut changed = change(&mut pinned);
-        changed.retain(|place| !self.fixed.contains(place));
+        let mut flags = self.flags();
+        let mut changed = Vec::new();
+        let mut set = |flags: &mut [u8], places: &[u32], wanted: u8| {
+            for &place in places {
+                let flag = &mut flags[place as usize];
+                if *flag & PINNED != wanted {
+                    *flag ^= PINNED;
+                    changed.push(place);
+                }
+            }
+        };
+        match change {
+            Change::Pin(places) => set(&mut flags, places, PINNED),
+            Change::Unpin(places) => set(&mut flags, places, 0),
+            Change::PinThese(places) => {
+                let before = with(&flags, PINNED);
+                set(&mut flags, &before, 0);
+                set(&mut flags, places, PINNED);
+            }
+        }
+        // A vertex that was let go of and pinned again is listed twice.
+        changed.sort_unstable();
+        let once = changed.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+        let changed: Vec<u32> = once.map(|same| same[0]).collect();
+        let changed: Vec<u32> =
+            changed.into_iter().filter(|&place| flags[place as usize] & FIXED == 0).collect();
         if changed.is_empty() {
             return Ok(());
         }
-        changed.sort_unstable();
-        self.send(gpu, problem, mesh, &pinned, &changed)?;
+        self.send(gpu, problem, mesh, &flags, &changed)?;
         mesh.changes.count(gpu)
     }
 
@@ -79,24 +105,20 @@ impl Pins {
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
-        pinned: &BTreeSet<u32>,
+        flags: &[u8],
         changed: &[u32],
     ) -> Result<(), GpuError> {
-        let free = problem.free_count() as u32;
-        let is_held = |place: u32| self.fixed.contains(&place) || pinned.contains(&place);
-        let start = |place: u32| {
-            problem.ring_start()[place as usize] | if is_held(place) { HELD } else { 0 }
-        };
-        let bits = |word: u32| {
-            let bit = |i: u32| u32::from(is_held(32 * word + i)) << i;
-            (0..32).fold(0, |bits, i| bits | bit(i))
-        };
+        let is_held = |place: usize| flags.get(place).is_some_and(|&flags| flags != 0);
+        let start =
+            |place: usize| problem.ring_start()[place] | if is_held(place) { HELD } else { 0 };
+        let bits =
+            |word: usize| (0..32).fold(0, |bits, i| bits | u32::from(is_held(32 * word + i)) << i);
         scoped(&gpu.device, || {
-            let write = |buffer: &wgpu::Buffer, first: u32, words: &[u32]| {
-                gpu.queue.write_buffer(buffer, 4 * u64::from(first), bytemuck::cast_slice(words));
+            let write = |buffer: &wgpu::Buffer, first: usize, words: &[u32]| {
+                gpu.queue.write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(words));
             };
             for (first, last) in ranges(changed) {
-                let last = last.min(free - 1);
+                let (first, last) = (first as usize, last as usize);
                 let starts: Vec<u32> = (first..=last).map(start).collect();
                 write(&mesh.ring_start, first, &starts);
                 let words: Vec<u32> = (first / 32..=last / 32).map(bits).collect();
@@ -104,6 +126,20 @@ impl Pins {
             }
         })
     }
+}
+
+/// A change of which vertices are pinned, named by their numbers on the device.
+pub(crate) enum Change<'a> {
+    Pin(&'a [u32]),
+    Unpin(&'a [u32]),
+    /// These and no others.
+    PinThese(&'a [u32]),
+}
+
+/// The places that have a flag, in ascending order.
+fn with(flags: &[u8], flag: u8) -> Vec<u32> {
+    let has = |&(_, flags): &(u32, &u8)| flags & flag != 0;
+    (0..).zip(flags).filter(has).map(|(place, _)| place).collect()
 }
 
 /// The ranges, ends included, in which these places are sent.

@@ -11,6 +11,7 @@ use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
+use crate::metric::Scheme;
 use crate::run::Options;
 
 /// A scheme bound to a mesh on the device. Encodes sweeps into the application's command encoder; never submits and never
@@ -52,8 +53,8 @@ impl Sweeps {
     }
 
     /// As [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once f is within
-    /// [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing and take next to no
-    /// time. [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells. The goal of `options` has no effect.
+    /// [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing. (A GPU spends
+    /// next to no time on them; a software driver, which starts every kernel all the same, a fifth of that of others.) [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells. The goal of `options` has no effect.
     ///
     /// They begin anew when the application changes the mesh: where an import finds a vertex that was moved, after a move
     /// that was not in vain, after [`DeviceMesh::pin`] and the like, a mask that has changed, and [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count. Each sweep is followed by an
@@ -125,6 +126,11 @@ impl Sweeps {
                 dispatches.encode_evaluation(passes);
             }
         }
+    }
+
+    /// The scheme that is swept by.
+    pub fn scheme(&self) -> &Scheme {
+        &self.run.dispatches.plan.scheme
     }
 
     /// Starts the scheme anew, with plain sweeps before over-relaxed ones. To be called when the application has moved
