@@ -13,7 +13,6 @@ mod kernels;
 mod mesh;
 mod run;
 pub(crate) mod scope;
-mod shown;
 
 pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};

@@ -1,6 +1,6 @@
 //! The adapters of this machine.
 
-use crate::gpu::device::readback::blocking;
+use crate::gpu::device::blocking::blocking;
 
 /// What an adapter is called and how wgpu drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]

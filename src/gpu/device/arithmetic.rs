@@ -5,8 +5,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::{filled, zeroed};
-use crate::gpu::device::readback::{self, Waiting, blocking};
+use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::{
     ArithmeticInput, ArithmeticResult, Params, WORKGROUP, pair, unpair,

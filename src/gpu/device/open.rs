@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters, ranked_adapters_async};
-use crate::gpu::device::readback::{Waiting, blocking};
+use crate::gpu::device::blocking::blocking;
+use crate::gpu::device::readback::Waiting;
 
 impl Gpu {
     /// Opens the best adapter, or the best whose name contains `name` (whatever the case). Discrete GPUs come before

@@ -1,8 +1,6 @@
 //! Reading buffers back to the host. Buffers are mapped for reading nowhere else.
 
 use std::marker::PhantomData;
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
 
 use bytemuck::Pod;
 use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
@@ -18,20 +16,6 @@ pub(crate) enum Waiting {
     Block,
     /// The application, as it does for its own work; the future completes after one of its polls.
     Await,
-}
-
-/// The result of a future, for which the thread is blocked if need be. What a browser would have to wait for is refused.
-pub(crate) fn blocking<T>(
-    future: impl Future<Output = Result<T, GpuError>>,
-) -> Result<T, GpuError> {
-    if cfg!(target_arch = "wasm32") {
-        let mut context = Context::from_waker(Waker::noop());
-        return match pin!(future).poll(&mut context) {
-            Poll::Ready(result) => result,
-            Poll::Pending => Err(GpuError::WouldBlock),
-        };
-    }
-    pollster::block_on(future)
 }
 
 /// Copies `count` values from the start of `source` to the host, after everything submitted so far.

@@ -4,8 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::error::{MeshError, SmoothError};
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::device::readback::{Waiting, blocking};
+use crate::gpu::device::readback::Waiting;
 use crate::gpu::device::{Gpu, MeshSize};
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::pins::{Change, Pins};

@@ -8,6 +8,7 @@ mod mesh;
 mod objective;
 mod pins;
 mod readback;
+mod shown;
 mod sweeps;
 mod vertex_buffer;
 mod window;

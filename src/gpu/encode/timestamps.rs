@@ -4,8 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::zeroed;
-use crate::gpu::device::readback::{self, Waiting, blocking};
+use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::scoped;
 

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
+use crate::gpu::device::{Gpu, MeshSize};
 use crate::gpu::embed::{BoundMask, BoundMove, BoundObjective, BoundVertices};
 use crate::gpu::embed::{DeviceMesh, LastValid, Sweeps};
 use crate::gpu::encode::{Spans, Timestamps};
-use crate::gpu::{Gpu, MeshSize};
 
 impl fmt::Debug for Gpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -43,7 +43,8 @@ by_name!(BoundMask, BoundMove, BoundObjective, BoundVertices, LastValid, Spans, 
 
 #[cfg(test)]
 mod tests {
-    use crate::gpu::{DeviceMesh, Gpu, Sweeps};
+    use crate::gpu::device::Gpu;
+    use crate::gpu::embed::{DeviceMesh, Sweeps};
     use crate::{Mesh, Options};
 
     #[test]
