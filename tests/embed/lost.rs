@@ -7,7 +7,7 @@ use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
 use gpu_smooth::{
-    Backend, DeviceMesh, GpuError, Mesh, Options, Progress, Readback, Smoother, Sweeps,
+    Backend, DeviceMesh, Gpu, GpuError, Mesh, Options, Progress, Readback, Smoother, Sweeps,
     VertexBuffer, wgpu,
 };
 
@@ -120,6 +120,9 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
+        let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
+        // Its queue is its own all the same.
+        assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
         let _ = device_mesh.pin(&[1]);
         judged.restart();
         let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 48)).map(drop);

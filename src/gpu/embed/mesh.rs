@@ -156,7 +156,8 @@ impl DeviceMesh {
     /// written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
     ///
     /// To be called when a drag begins; as it goes on, the application writes the targets and encodes
-    /// [`BoundMove::encode_move`]. Fixed vertices and those of the boundary can be moved too. If a vertex is listed twice,
+    /// [`BoundMove::encode_move`]. Fixed vertices and those of the boundary can be moved too. Sweeps move a free
+    /// vertex on from where it was dragged, unless it is [pinned](Self::pin). If a vertex is listed twice,
     /// its last target counts. A vertex of no triangle is not on the device, and no target moves it.
     ///
     /// No triangle gets an inverse mean ratio above `worst_imr`. One of about 8 leaves room for sweeps, and for the
