@@ -8,7 +8,7 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
-        let t = Corner(a, b, p.mean_area);
+        let t = shown(Corner(a, b, p.mean_area), map_around(p, i));
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
@@ -58,17 +58,24 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
-        let t = Corner(a, b, p.mean_area);
+        let map = map_around(p, i);
+        let t = shown(Corner(a, b, p.mean_area), map);
         if GUARDED {
             limit = max(limit, inverse_mean_ratio(t));
         }
-        let d = metric_derivatives(t, width);
+        let d = pulled_back(metric_derivatives(t, width), map);
         value += d.value;
         gradient += d.gradient;
         hessian += d.hessian;
         a = b;
     }
-    let down = descent(gradient, hessian);
+    let inverse = inverse_of(p.own * p.map_unit);
+    // The floor of eigenvalues is for triangles that are nearly equilateral: as the map of the vertex shows them.
+    let sum = pulled_back(Derivatives(value, gradient, hessian), inverse);
+    var down = descent(sum.gradient, sum.hessian);
+    if MAPPED {
+        down = vec3(mapped(inverse, down.xy), down.z);
+    }
     if down.z >= 0.0 {
         return vec2(0.0);
     }

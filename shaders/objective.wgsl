@@ -21,10 +21,11 @@ fn objective(
         worst = partial_sums[TRACKED * stride + id.x].x;
     }
     for (var t = id.x; t < part.count; t += stride) {
-        let p = position(triangles[3u * t]);
-        let a = edge(p, position(triangles[3u * t + 1u]));
-        let b = edge(p, position(triangles[3u * t + 2u]));
-        let corner = Corner(a, b, params.mean_area);
+        let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+        let p = position(corners.x);
+        let a = edge(p, position(corners.y));
+        let b = edge(p, position(corners.z));
+        let corner = shown(Corner(a, b, params.mean_area), map_of(corners));
         let values = tracked_values(corner);
         for (var i = 0u; i < TRACKED; i++) {
             sums[i] = pair_accumulate(sums[i], values[i]);

@@ -7,6 +7,9 @@ struct Patch {
     at: vec4<f32>,
     unit: f32,
     mean_area: vec2<f32>,
+    // The target map of the vertex, and what brings it near one.
+    own: vec3<f32>,
+    map_unit: f32,
 }
 
 fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
@@ -29,8 +32,24 @@ fn patch_of(vertex: u32) -> Patch {
     p.end = ring_place(ring_start[vertex + 1u]);
     p.at = position(vertex);
     p.unit = unit_of(edge(p.at, position(ring[p.start])));
-    p.mean_area = params.mean_area * p.unit * p.unit;
+    p.own = target_of(vertex);
+    p.map_unit = 1.0;
+    if MAPPED {
+        p.map_unit = unit_of(p.own.xz);
+    }
+    let scale = p.unit * p.map_unit;
+    p.mean_area = params.mean_area * scale * scale;
     return p;
+}
+
+// The map of the triangle before the neighbor i, near one.
+fn map_around(p: Patch, i: u32) -> vec3<f32> {
+    if !MAPPED {
+        return p.own;
+    }
+    let before = select(i - 1u, p.end - 1u, i == p.start);
+    let sum = p.own + target_of(ring[before]) + target_of(ring[i]);
+    return sum * (p.map_unit / 3.0);
 }
 
 // The least distance of the vertex from the line through a ring edge.

@@ -19,6 +19,8 @@ struct Params {
     tolerance: f32,
     // A pair: the mean area rounded to single precision, and what that left out.
     mean_area: vec2<f32>,
+    // Where target maps begin in the positions.
+    targets: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

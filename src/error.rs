@@ -211,6 +211,14 @@ pub enum MeshError {
         /// The name of the metric that judges the run.
         metric: &'static str,
     },
+    /// What is wanted at a vertex makes no sense as a target; see [`Targets`](crate::Targets).
+    #[error("vertex {vertex} has no target: {problem}")]
+    Target {
+        /// The first such vertex.
+        vertex: usize,
+        /// What is wrong there.
+        problem: &'static str,
+    },
     /// A list of positions does not have exactly one for each vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {

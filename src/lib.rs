@@ -103,6 +103,7 @@ mod quality;
 mod run;
 pub mod select;
 mod smoother;
+mod targets;
 mod topology;
 mod untangle;
 
@@ -131,14 +132,16 @@ pub use error::{
 };
 pub use file::{
     AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
-    abandon_writes,
+    Solution, abandon_writes,
 };
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
     MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
-pub use measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics, UnknownMeasure};
+pub use measure::{
+    Better, Change, Definition, Measure, Measured, QUANTILES, Spread, Statistics, UnknownMeasure,
+};
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use quality::Quality;
@@ -147,6 +150,7 @@ pub use run::{
     Stop,
 };
 pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
+pub use targets::{Surface, Targets};
 pub use topology::{Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

@@ -3,6 +3,7 @@
 use crate::error::MeshError;
 use crate::metric::{Corner, Metric};
 use crate::parallel::map_parts;
+use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
@@ -69,10 +70,26 @@ impl Quality {
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
     pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Result<Self, MeshError> {
+        Self::on(Surface::Plane, points, topology)
+    }
+
+    /// Measures the triangles of `topology` where `points` are coordinates of a surface: lengths and angles are those on
+    /// the surface at the middle of each triangle.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn on(
+        surface: Surface,
+        points: &[[f64; 2]],
+        topology: &Topology<'_>,
+    ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
         // Absolute areas: where large triangles are inverted, signed ones may cancel.
-        let area = |t: &[u32; 3]| 0.5 * predicates::orientation(points, t).abs();
+        let area = |t: &[u32; 3]| {
+            let [x, y] = surface.lengths_in(points, t);
+            0.5 * predicates::orientation(points, t).abs() * x * y
+        };
         let areas =
             map_parts(triangles.chunks(1024), |_, chunk| chunk.iter().map(area).sum::<f64>());
         let mean_area = areas.iter().sum::<f64>() / triangles.len() as f64;
@@ -80,7 +97,8 @@ impl Quality {
         let tallies = map_parts(triangles.chunks(1024), |chunk, part| {
             let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
                 let movable = corners.iter().any(|&v| topology.free()[v as usize]);
-                tally.and(&one(points, corners, mean_area, chunk * 1024 + t, movable))
+                let lengths = surface.lengths_in(points, corners);
+                tally.and(&one(points, corners, lengths, mean_area, chunk * 1024 + t, movable))
             };
             part.iter().enumerate().fold(Tally::EMPTY, add)
         });
@@ -111,13 +129,14 @@ impl Quality {
 fn one(
     points: &[[f64; 2]],
     corners: &[u32; 3],
+    lengths: [f64; 2],
     mean_area: f64,
     triangle: usize,
     movable: bool,
 ) -> Tally {
     let orientation = predicates::orientation(points, corners);
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
-    let Edges { a, b, c, unit } = Edges::of(points, corners, orientation);
+    let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
     // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
     let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
@@ -158,11 +177,14 @@ struct Edges {
 }
 
 impl Edges {
-    /// The edges of a triangle whose exact orientation is known.
-    fn of(points: &[[f64; 2]], corners: &[u32; 3], orientation: f64) -> Self {
+    /// The edges of a triangle whose exact orientation is known, with the lengths of a unit of each coordinate.
+    fn of(points: &[[f64; 2]], corners: &[u32; 3], lengths: [f64; 2], orientation: f64) -> Self {
         const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
         let [p, q, r] = corners.map(|v| points[v as usize]);
-        let to = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+        let to = |from: [f64; 2], to: [f64; 2]| {
+            [(to[0] - from[0]) * lengths[0], (to[1] - from[1]) * lengths[1]]
+        };
+        let orientation = orientation * lengths[0] * lengths[1];
         let edges = [to(p, q), to(p, r), to(q, r)];
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
         let unit = f64::from_bits(size.to_bits() & EXPONENT);

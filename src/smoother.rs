@@ -18,9 +18,10 @@ use crate::metric::Scheme;
 use crate::quality::Quality;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    Desired, Goal, JITTER, Method, NOISE, Objectives, Observer, Options, Phase, Plan, Sharpness,
-    Stop, Strategy, drive, shape_guard,
+    Derivatives, Desired, Goal, JITTER, Method, NOISE, Objectives, Observer, Options, Phase, Plan,
+    Sharpness, Stop, Strategy, drive, shape_guard,
 };
+use crate::targets::Targets;
 use crate::topology::{Topology, certify};
 
 /// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
@@ -109,6 +110,30 @@ impl<'a> Smoother<'a> {
         Ok(Self { mesh, topology, problem, prepare: start.elapsed() })
     }
 
+    /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
+    /// vertex of the mesh. f is then that of the triangles as their targets show them.
+    ///
+    /// # Errors
+    /// [`MeshError::ValueCount`] if there is not one target for each vertex.
+    pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
+        let (given, expected) = (targets.maps().len(), self.mesh.points.len());
+        if given != expected {
+            return Err(MeshError::ValueCount { expected, given });
+        }
+        self.problem.set_targets(targets.maps());
+        Ok(())
+    }
+
+    /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
+    /// [`Self::set_targets`].
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
+        self.topology.check_count(points)?;
+        Ok(self.objective(metric, &self.problem.normalized(points, Vec::new())))
+    }
+
     /// The mesh's windings, boundary and free vertices.
     pub fn topology(&self) -> &Topology<'a> {
         &self.topology
@@ -193,6 +218,11 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check()?;
+        if self.problem.targets().is_some() && options.derivatives != Derivatives::Analytic {
+            let (option, value) = ("derivatives", "finite differences".to_owned());
+            let remedy = "with targets take exact ones";
+            return Err(SmoothError::Option { option, value, remedy });
+        }
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
             gpu.arithmetic_checked(waiting).await?;

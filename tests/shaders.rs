@@ -47,10 +47,10 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// The modules of each kernel, for meshes bound whole and for large ones.
+/// The modules of each kernel: for meshes bound whole, for large ones, and for those with targets.
 fn modules() -> impl Iterator<Item = (Kernel, Module)> {
     let both = |kernel: Kernel| {
-        [kernel.wgsl(), kernel.wgsl_for_large_meshes()].map(|wgsl| {
+        [kernel.wgsl(), kernel.wgsl_for_large_meshes(), kernel.wgsl_for_targets()].map(|wgsl| {
             let (module, _) =
                 validated(&wgsl).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
             (kernel.clone(), module)

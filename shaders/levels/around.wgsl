@@ -5,7 +5,8 @@ fn derivatives_around(p: Patch) -> Derivatives {
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
-        let one = metric_derivatives(Corner(a, b, p.mean_area), 0.0);
+        let map = map_around(p, i);
+        let one = pulled_back(metric_derivatives(shown(Corner(a, b, p.mean_area), map), 0.0), map);
         sum.gradient += one.gradient;
         sum.hessian += one.hessian;
         a = b;

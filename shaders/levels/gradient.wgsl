@@ -1,4 +1,4 @@
-// The gradient of the sum of q² at each free vertex.
+// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_gradient(
@@ -11,5 +11,9 @@ fn find_gradient(
     }
     let vertex = op.first + index;
     let p = patch_of(vertex);
-    gradient[vertex] = derivatives_around(p).gradient * p.unit;
+    var sum = derivatives_around(p).gradient;
+    if MAPPED {
+        sum = mapped(inverse_of(shape_of(vertex)), sum);
+    }
+    gradient[vertex] = sum * p.unit;
 }

@@ -9,5 +9,5 @@ fn move_along_correction(
     if v >= op.rows {
         return;
     }
-    set_position(v, advanced(position(v), opaque2(op.a * direction[v])));
+    set_position(v, advanced(position(v), move_of(v)));
 }

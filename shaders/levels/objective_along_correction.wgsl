@@ -2,12 +2,12 @@
 // there, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
 // which sum_along_correction.wgsl adds up. Further parts of the triangles continue the sums of the parts before.
 
-// How far a vertex moves: the same float as in move_along_correction.wgsl.
+// How far a vertex moves.
 fn displacement(v: u32) -> vec2<f32> {
     if v >= op.free {
         return vec2(0.0);
     }
-    return opaque2(op.a * direction[v]);
+    return move_of(v);
 }
 
 // An edge after its vertices have moved. A correction may carry both much farther than the edge is long.
@@ -49,12 +49,14 @@ fn objective_along_correction(
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
         let d = displacement(corners.x);
-        let here = Corner(a, b, params.mean_area);
-        let there = Corner(
+        let map = map_of(corners);
+        let here = shown(Corner(a, b, params.mean_area), map);
+        let moved = Corner(
             moved_edge(a, d, displacement(corners.y)),
             moved_edge(b, d, displacement(corners.z)),
             params.mean_area,
         );
+        let there = shown(moved, map);
         sums[0] = pair_accumulate(sums[0], metric_excess(here));
         if is_broken(here, there) {
             sums[2].x += 1.0;

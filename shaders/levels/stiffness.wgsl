@@ -1,5 +1,5 @@
 // The root of the stiffness at each free vertex, in both components of `gradient`: of the mean absolute eigenvalue of the
-// Hessian of the sum of q² with respect to the vertex, over the number of its neighbors.
+// Hessian of the sum of q² with respect to the vertex, as the shape of its target map shows it, over the number of its neighbors.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_stiffness(
@@ -12,7 +12,7 @@ fn find_stiffness(
     }
     let vertex = op.first + index;
     let p = patch_of(vertex);
-    let sum = derivatives_around(p).hessian;
+    let sum = pulled_back(derivatives_around(p), inverse_of(shape_of(vertex))).hessian;
     let mean = 0.5 * (sum.x + sum.z);
     let half = 0.5 * (sum.x - sum.z);
     // The eigenvalues are the mean plus and minus the radius.

@@ -10,7 +10,10 @@ fn close_secant(
     for (var v = id.x; v < op.free; v += stride) {
         let at = position(v);
         let g = gradient[v];
-        let moved = edge(vec4(steps[op.newer + v], low_starts[v]), at);
+        var moved = edge(vec4(steps[op.newer + v], low_starts[v]), at);
+        if MAPPED {
+            moved = mapped(shape_of(v), moved);
+        }
         let change = g + changes[op.newer + v];
         steps[op.newer + v] = moved;
         changes[op.newer + v] = change;

@@ -9,8 +9,8 @@ use crate::run::line_search;
 
 /// The objectives of four patches with their derivatives, by forward differences.
 #[inline(always)]
-pub(crate) fn derivatives<S: Simd>(
-    patches: &Patches<'_, S>,
+pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
+    patches: &Patches<'_, S, MAPPED>,
     formulas: impl Formulas,
     at: Points<S>,
     sharpness: u32,
@@ -27,7 +27,10 @@ pub(crate) fn derivatives<S: Simd>(
 
 /// The least distance of each vertex from a line through an edge of its one-ring.
 #[inline(always)]
-fn least_height<S: Simd>(patches: &Patches<'_, S>, at: Points<S>) -> Lanes<S> {
+fn least_height<S: Simd, const MAPPED: bool>(
+    patches: &Patches<'_, S, MAPPED>,
+    at: Points<S>,
+) -> Lanes<S> {
     let mut least = at[0].constant(f64::INFINITY);
     for i in 0..patches.degree() {
         let c = patches.corner(i, at);

@@ -11,8 +11,8 @@ use crate::cpu::secants::{Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
-use crate::metric::Metric;
-use crate::parallel::for_each_chunk;
+use crate::metric::{Metric, TargetMap};
+use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, History, Objectives, Plan, Proposal, Step};
 
@@ -87,6 +87,17 @@ impl<'a> CpuEngine<'a> {
     }
 }
 
+/// Vectors at the free vertices, multiplied by the inverse shapes of their target maps. So the levels see moves and
+/// gradients as targets show them, which makes neighbors in a layer of stretched triangles as near across as along it.
+fn as_shown(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
+    let targets = problem.targets().unwrap_or_default();
+    collect(vectors.len(), |v| {
+        let map = TargetMap(targets[v].map(f64::from));
+        let shown = map.inverse().shape().apply(vectors[v].as_dvec2().to_array());
+        DVec2::from(shown).as_vec2()
+    })
+}
+
 impl Engine for CpuEngine<'_> {
     async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
         self.sweep_now(step);
@@ -145,6 +156,10 @@ impl Engine for CpuEngine<'_> {
         // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
         let levels = |vector: &[Vec2]| match &self.hierarchy {
+            Some(hierarchy) if problem.is_stretched() => {
+                let correction = vcycle::correction(hierarchy, problem, &as_shown(problem, vector));
+                as_shown(problem, &correction)
+            }
             Some(hierarchy) => vcycle::correction(hierarchy, problem, vector),
             None => vec![Vec2::ZERO; vector.len()],
         };

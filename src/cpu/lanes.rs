@@ -8,31 +8,52 @@ use fearless_simd::{f64x4, mask64x4};
 
 use crate::metric::Real;
 
-/// Evaluates an expression with `$f` bound to the formulas of a metric and `$simd` to the best instructions that the code
-/// is compiled for. On x86 these are those of AVX2, for each metric by itself. Processors without them get code that
-/// any can run, compiled once for all metrics but EDGE: each copy of a sweep takes seconds to compile.
+/// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instructions that the code is
+/// compiled for, and the constant `$mapped` to whether triangles are to be seen through target maps.
+///
+/// Each copy of a sweep takes seconds to compile. So there is one for each usual metric on meshes without targets, with
+/// AVX2 on x86, and one for all else. It looks the metric up for each triangle, and sees a mesh without targets
+/// through maps that change nothing.
 macro_rules! with_lanes {
-    ($metric:expr, $simd:ident, $f:ident => $body:expr) => {{
-        let level = fearless_simd::Level::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match level.as_avx2() {
-            Some($simd) => $crate::metric::with_each_metric!($metric, $f => {
-                fearless_simd::Simd::vectorize(
+    ($problem:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
+        'done: {
+            let level = fearless_simd::Level::new();
+            if $problem.targets().is_none() {
+                #[allow(dead_code)]
+                const $mapped: bool = false;
+                #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+                if let Some($simd) = level.as_avx2() {
+                    $crate::metric::with_each_metric!($metric, $f => break 'done (
+                        fearless_simd::Simd::vectorize(
+                            $simd,
+                            #[inline(always)]
+                            || $body,
+                        )
+                    ))
+                }
+                #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+                $crate::metric::with_each_metric!($metric, $f => break 'done (
+                    fearless_simd::dispatch!(level, $simd => $body)
+                ))
+            }
+            const $mapped: bool = true;
+            let $f = $metric.formulas();
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            match level.as_avx2() {
+                Some($simd) => fearless_simd::Simd::vectorize(
                     $simd,
                     #[inline(always)]
                     || $body,
-                )
-            }),
-            None => $crate::metric::with_formulas!($metric, $f => {
-                let $simd = fearless_simd::Fallback::new();
-                $body
-            }),
-        }
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        $crate::metric::with_each_metric!($metric, $f => {
+                ),
+                None => {
+                    let $simd = fearless_simd::Fallback::new();
+                    $body
+                }
+            }
+            #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
             fearless_simd::dispatch!(level, $simd => $body)
-        })
-    }};
+        }
+    };
 }
 pub(crate) use with_lanes;
 
@@ -67,4 +88,13 @@ impl<S: Simd> Real for Lanes<S> {
     fn max(self, other: Self) -> Self {
         SimdFloat::max(self, other)
     }
+    #[inline(always)]
+    fn apart<R>(self, function: impl FnOnce() -> R) -> R {
+        apart(self.simd, function)
+    }
+}
+
+#[inline(never)]
+fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
+    simd.vectorize(function)
 }

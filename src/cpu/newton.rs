@@ -10,9 +10,9 @@ use crate::run::{Derivatives, Step, line_search};
 
 /// Visits four vertices at `at`. Returns their new positions.
 #[inline(always)]
-pub(crate) fn visit<S: Simd>(
+pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
-    patches: &Patches<S>,
+    patches: &Patches<S, MAPPED>,
     mut at: Points<S>,
     step: &Step,
 ) -> Points<S> {
@@ -32,7 +32,11 @@ pub(crate) fn visit<S: Simd>(
 
 /// The vertices whose step was so short that their visit ends.
 #[inline(always)]
-fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mask<S> {
+fn settled<S: Simd, const MAPPED: bool>(
+    patches: &Patches<S, MAPPED>,
+    from: Points<S>,
+    to: Points<S>,
+) -> Mask<S> {
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
     let least = line_search::SETTLED * line_search::SETTLED;
     (x * x + y * y).simd_lt(patches.squared_edge(from) * least)
@@ -41,21 +45,29 @@ fn settled<S: Simd>(patches: &Patches<S>, from: Points<S>, to: Points<S>) -> Mas
 /// One Newton step with its line search, for the vertices in `going`. Returns the new positions, and
 /// which vertices took a step.
 #[inline(always)]
-fn newton_step<S: Simd>(
+fn newton_step<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
-    patches: &Patches<S>,
+    patches: &Patches<S, MAPPED>,
     at: Points<S>,
     going: Mask<S>,
     step: &Step,
 ) -> (Points<S>, Mask<S>) {
     let (metric, properties) = (formulas.metric(), formulas.metric().properties());
     let sum = match step.derivatives {
-        Derivatives::Analytic => patches.derivatives(formulas, at, step.sharpness),
-        Derivatives::FiniteDifference => {
+        Derivatives::FiniteDifference if !MAPPED => {
             differences::derivatives(patches, formulas, at, step.sharpness)
         }
+        _ => patches.derivatives(formulas, at, step.sharpness),
     };
-    let ([dx, dy], slope, descends) = descent(&sum, properties.eigenvalue_floor);
+    let floor = properties.eigenvalue_floor;
+    let ([dx, dy], slope, descends) = match patches.inverse_map() {
+        Some(inverse) if MAPPED => {
+            // The floor is for triangles that are nearly equilateral: as the target map shows them.
+            let (direction, slope, descends) = descent(&inverse.pull_back(sum), floor);
+            (inverse.apply(direction), slope, descends)
+        }
+        _ => descent(&sum, floor),
+    };
     let squares = sum.value + patches.degree() as f64 * metric.ideal_squared();
     let most = sum.value + squares * line_search::SLACK;
     let wanted = slope * line_search::SUFFICIENT_DECREASE;

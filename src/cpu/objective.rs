@@ -4,9 +4,9 @@ use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
-use crate::cpu::patch::points;
+use crate::cpu::patch::{of_corners, points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas, Metric};
+use crate::metric::{Corner, Formulas, Metric, TargetMap};
 use crate::parallel::map_parts;
 
 /// Number of triangles of one task.
@@ -16,8 +16,8 @@ const CHUNK: usize = 1024;
 /// number of threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(metric, simd, formulas => {
-            excess(simd, formulas, problem.mean_area(), positions, chunk)
+        with_lanes!(problem, metric, simd, formulas, MAPPED => {
+            excess::<_, MAPPED>(simd, formulas, problem, positions, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -41,8 +41,8 @@ pub(crate) fn mean_excess_along(
     guard: f64,
 ) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(metric, simd, formulas => {
-            excess_along(simd, formulas, problem.mean_area(), along, guard, chunk)
+        with_lanes!(problem, metric, simd, formulas, MAPPED => {
+            excess_along::<_, MAPPED>(simd, formulas, problem, along, guard, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -52,10 +52,10 @@ pub(crate) fn mean_excess_along(
 
 /// The sum of q² - ideal² over some triangles at moved positions. `None` as in [`mean_excess_along`].
 #[inline(always)]
-fn excess_along<S: Simd>(
+fn excess_along<S: Simd, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
-    mean_area: f64,
+    problem: &Problem,
     along: &Along<'_>,
     guard: f64,
     triangles: &[[u32; 3]],
@@ -63,18 +63,20 @@ fn excess_along<S: Simd>(
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     let mut borne = Mask::splat(simd, true);
-    for [t, u, v, w] in fours {
+    for four in fours {
+        let [t, u, v, w] = four;
+        let map = if MAPPED { Some(map_of(simd, problem, four)) } else { None };
         let (p, moved_p) = along.points(simd, [t[0], u[0], v[0], w[0]]);
         let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
         let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
-        let now = corner(moved_p, moved_q, moved_r, mean_area);
+        let now = corner([moved_p, moved_q, moved_r], problem, &map);
         borne &= now.doubled_area().simd_gt(0.0);
         if guard.is_finite() {
             let (sum, area) = formulas.inverse_mean_ratio(&now);
             let mut kept = sum.simd_le(area * guard);
             if !kept.all_true() {
                 let (sum_before, area_before) =
-                    formulas.inverse_mean_ratio(&corner(p, q, r, mean_area));
+                    formulas.inverse_mean_ratio(&corner([p, q, r], problem, &map));
                 kept |= (sum * area_before).simd_le(sum_before * area);
             }
             borne &= kept;
@@ -83,11 +85,9 @@ fn excess_along<S: Simd>(
     }
     let mut last = 0.0;
     for t in rest {
-        let corner =
-            |[p, q, r]: [DVec2; 3]| Corner { a: (q - p).into(), b: (r - p).into(), mean_area };
-        let before = t.map(|v| along.positions[v as usize]);
-        let now = t.map(|v| along.positions[v as usize] + along.step(v) * along.length);
-        let (before, now) = (corner(before), corner(now));
+        let position = |v: u32| along.positions[v as usize];
+        let before = problem.corner(t, position);
+        let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
         let shape = now.inverse_mean_ratio();
         let kept = shape <= guard || shape <= before.inverse_mean_ratio();
         borne &= Mask::splat(simd, now.doubled_area() > 0.0 && kept);
@@ -96,9 +96,33 @@ fn excess_along<S: Simd>(
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
 
+/// The target maps of four triangles.
 #[inline(always)]
-fn corner<S: Simd>(p: Points<S>, q: Points<S>, r: Points<S>, mean_area: f64) -> Corner<Lanes<S>> {
-    Corner { a: [q[0] - p[0], q[1] - p[1]], b: [r[0] - p[0], r[1] - p[1]], mean_area }
+fn map_of<S: Simd>(
+    simd: S,
+    problem: &Problem,
+    [t, u, v, w]: &[[u32; 3]; LANES],
+) -> TargetMap<Lanes<S>> {
+    TargetMap::mean([
+        of_corners(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
+        of_corners(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
+        of_corners(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
+    ])
+}
+
+/// Four triangles as their target maps show them.
+#[inline(always)]
+fn corner<S: Simd>(
+    [p, q, r]: [Points<S>; 3],
+    problem: &Problem,
+    map: &Option<TargetMap<Lanes<S>>>,
+) -> Corner<Lanes<S>> {
+    let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+    let corner = Corner { a, b, mean_area: problem.mean_area() };
+    match map {
+        None => corner,
+        Some(map) => map.show(&corner),
+    }
 }
 
 impl Along<'_> {
@@ -122,25 +146,26 @@ impl Along<'_> {
 
 /// The sum of q² - ideal² over some triangles.
 #[inline(always)]
-fn excess<S: Simd>(
+fn excess<S: Simd, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
-    mean_area: f64,
+    problem: &Problem,
     positions: &[DVec2],
     triangles: &[[u32; 3]],
 ) -> f64 {
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
-    for [t, u, v, w] in fours {
+    for four in fours {
+        let [t, u, v, w] = four;
+        let map = if MAPPED { Some(map_of(simd, problem, four)) } else { None };
         let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        sum += formulas.excess(&corner(p, q, r, mean_area));
+        sum += formulas.excess(&corner([p, q, r], problem, &map));
     }
     let mut last = 0.0;
     for t in rest {
-        let [p, q, r] = t.map(|v| positions[v as usize]);
-        last += formulas.excess(&Corner { a: (q - p).into(), b: (r - p).into(), mean_area });
+        last += formulas.excess(&problem.corner(t, |v| positions[v as usize]));
     }
     (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
 }

@@ -5,28 +5,44 @@ use glam::DVec2;
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas};
-use crate::metric::{Dual, Real};
+use crate::metric::{Corner, Dual, Formulas, Real, TargetMap};
 
-/// The one-rings of four free vertices with the same number of neighbors.
+/// The one-rings of four free vertices with the same number of neighbors, seen through target maps if it is `MAPPED`.
 #[derive(Clone, Copy)]
-pub(crate) struct Patches<'a, S: Simd> {
+pub(crate) struct Patches<'a, S: Simd, const MAPPED: bool> {
     /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
     ring: &'a [Points<S>],
-    /// Mean area of the mesh's triangles.
+    /// The target map of each triangle, if the mesh is seen through them.
+    maps: &'a [TargetMap<Lanes<S>>],
+    /// The inverse of the target map of each vertex itself, if the mesh has targets.
+    inverse_map: Option<TargetMap<Lanes<S>>>,
+    /// Mean area of the mesh's triangles, as its target maps show them.
     mean_area: f64,
 }
 
-impl<'a, S: Simd> Patches<'a, S> {
-    /// Reads the positions around `vertices` into `ring`.
+/// Memory for [`Patches`].
+pub(crate) struct Room<S: Simd> {
+    ring: Vec<Points<S>>,
+    maps: Vec<TargetMap<Lanes<S>>>,
+}
+
+impl<S: Simd> Room<S> {
+    pub(crate) fn new() -> Self {
+        Self { ring: Vec::with_capacity(16), maps: Vec::new() }
+    }
+}
+
+impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
+    /// Reads what is around `vertices` into `room`.
     #[inline(always)]
     pub(crate) fn gather(
         simd: S,
         problem: &Problem,
         positions: &[DVec2],
         vertices: [u32; LANES],
-        ring: &'a mut Vec<Points<S>>,
+        room: &'a mut Room<S>,
     ) -> Self {
+        let Room { ring, maps } = room;
         let [a, b, c, d] = vertices;
         let a = problem.ring_of(a);
         let degree = a.len();
@@ -38,12 +54,33 @@ impl<'a, S: Simd> Patches<'a, S> {
             ring.push(points(simd, positions, [a[i], b[i], c[i], d[i]]));
         }
         ring.push(ring[0]);
-        Self { ring, mean_area: problem.mean_area() }
+        let mut inverse_map = None;
+        if MAPPED {
+            let targets = problem.targets();
+            let own = of_corners(simd, targets, vertices);
+            let mut before = of_corners(simd, targets, [a[0], b[0], c[0], d[0]]);
+            let first = before;
+            maps.clear();
+            for i in 1..degree {
+                let next = of_corners(simd, targets, [a[i], b[i], c[i], d[i]]);
+                maps.push(TargetMap::mean([own, before, next]));
+                before = next;
+            }
+            maps.push(TargetMap::mean([own, before, first]));
+            inverse_map = Some(TargetMap(own).inverse());
+        }
+        Self { ring, maps, inverse_map, mean_area: problem.mean_area() }
     }
 
     /// The number of neighbors of each vertex.
     pub(crate) fn degree(&self) -> usize {
         self.ring.len() - 1
+    }
+
+    /// The inverse of the target map of each vertex, if the mesh has targets.
+    #[inline(always)]
+    pub(crate) fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
+        &self.inverse_map
     }
 
     /// The squared length of one edge at each vertex.
@@ -53,12 +90,13 @@ impl<'a, S: Simd> Patches<'a, S> {
         x * x + y * y
     }
 
-    /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`.
+    /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`, as its target map shows it.
     #[inline(always)]
     pub(crate) fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);
         let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
-        Corner { a, b, mean_area: self.mean_area }
+        let corner = Corner { a, b, mean_area: self.mean_area };
+        if MAPPED { self.maps[i].show(&corner) } else { corner }
     }
 
     /// The objectives of the patches with their derivatives.
@@ -73,7 +111,8 @@ impl<'a, S: Simd> Patches<'a, S> {
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            sum = sum + formulas.expansion(&corner, sharpness);
+            let shown = formulas.expansion(&corner, sharpness);
+            sum = sum + if MAPPED { self.maps[i].pull_back(shown) } else { shown };
         }
         sum
     }
@@ -117,6 +156,28 @@ impl<'a, S: Simd> Patches<'a, S> {
         }
         (sum, feasible)
     }
+}
+
+/// The target maps of some vertices, one in each lane; the identity in a mesh without targets.
+#[inline(always)]
+pub(crate) fn of_corners<S: Simd>(
+    simd: S,
+    targets: Option<&[[f32; 3]]>,
+    vertices: [u32; LANES],
+) -> [Lanes<S>; 3] {
+    let Some(targets) = targets else {
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        return [one, zero, one];
+    };
+    let [a, b, c, d] = vertices;
+    let (a, b) = (targets[a as usize], targets[b as usize]);
+    let (c, d) = (targets[c as usize], targets[d as usize]);
+    let lanes = [0, 1, 2].map(|i| [a[i], b[i], c[i], d[i]].map(f64::from));
+    [
+        Lanes::simd_from(simd, lanes[0]),
+        Lanes::simd_from(simd, lanes[1]),
+        Lanes::simd_from(simd, lanes[2]),
+    ]
 }
 
 /// The positions of some vertices, one in each lane.

@@ -3,9 +3,9 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::lanes::{LANES, Lanes, Points, with_lanes};
+use crate::cpu::lanes::{LANES, Lanes, with_lanes};
 use crate::cpu::newton;
-use crate::cpu::patch::{self, Patches};
+use crate::cpu::patch::{self, Patches, Room};
 use crate::layout::Problem;
 use crate::metric::{Dual, Formulas, Metric, Real};
 use crate::parallel::for_each_chunk;
@@ -78,7 +78,7 @@ pub(crate) fn gradient(
 }
 
 /// The square root of the stiffness at each free vertex: the mean of the absolute eigenvalues of the Hessian of Σ q² with
-/// respect to the vertex, over the number of its neighbors.
+/// respect to the vertex, as the shape of its target map shows it, over the number of its neighbors.
 pub(crate) fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
@@ -148,8 +148,8 @@ fn visit<T: Found>(
 ) {
     for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        with_lanes!(step.metric, simd, formulas => {
-            visit_all(simd, formulas, problem, positions, first, step, sought, found);
+        with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
+            visit_all::<_, _, MAPPED>(simd, formulas, problem, positions, first, step, sought, found);
         });
     });
 }
@@ -157,7 +157,7 @@ fn visit<T: Found>(
 /// Visits the vertices from `first` on, and writes their new positions, or what is `sought`, to `found`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn visit_all<S: Simd, T: Found>(
+fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
     problem: &Problem,
@@ -167,7 +167,7 @@ fn visit_all<S: Simd, T: Found>(
     sought: Sought,
     found: &mut [T],
 ) {
-    let mut ring: Vec<Points<S>> = Vec::with_capacity(16);
+    let mut room = Room::new();
     let mut done = 0;
     while done < found.len() {
         let v = (first + done) as u32;
@@ -180,7 +180,7 @@ fn visit_all<S: Simd, T: Found>(
         // Lanes that are left over visit the last vertex again.
         let last = v + count - 1;
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
-        let patches = Patches::gather(simd, problem, positions, vertices, &mut ring);
+        let patches = Patches::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut room);
         let at = patch::points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
             true => newton::visit(formulas, &patches, at, step),
@@ -188,7 +188,13 @@ fn visit_all<S: Simd, T: Found>(
                 let sum = patches.derivatives(formulas, at, step.sharpness);
                 match sought {
                     Sought::Gradient => sum.gradient,
-                    Sought::StiffnessRoot => [stiffness_root(&sum, degree); 2],
+                    Sought::StiffnessRoot => {
+                        let sum = match patches.inverse_map() {
+                            Some(inverse) if MAPPED => inverse.shape().pull_back(sum),
+                            _ => sum,
+                        };
+                        [stiffness_root(&sum, degree); 2]
+                    }
                 }
             }
         };

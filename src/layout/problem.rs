@@ -8,8 +8,10 @@ use glam::DVec2;
 use crate::layout::curve::{along_curve, bounds};
 use crate::layout::{Coloring, UNCOLORED};
 use crate::mesh::Mesh;
+use crate::metric::{Corner, TargetMap};
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
 use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
+use crate::targets::Tensor;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
@@ -34,6 +36,8 @@ pub struct Problem {
     ring_start: Vec<u32>,
     ring: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// The target map of each vertex, if the mesh has targets. Of single precision, so that both engines have the same.
+    targets: Option<Vec<[f32; 3]>>,
     mean_area: f64,
     vertices: Vec<u32>,
     center: DVec2,
@@ -84,7 +88,37 @@ impl Problem {
             mean if mean > 0.0 => mean,
             _ => exact_mean,
         };
-        Self { positions, colors, ring_start, ring, triangles, mean_area, vertices, center, scale }
+        let targets = None;
+        Self {
+            positions,
+            colors,
+            ring_start,
+            ring,
+            triangles,
+            targets,
+            mean_area,
+            vertices,
+            center,
+            scale,
+        }
+    }
+
+    /// Gives the mesh targets: a target map for each of its vertices, in any unit. Maps are scaled together such that the
+    /// mean area of the triangles, as they show them, is 1.
+    pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
+        let map = |v: u32| maps[v as usize].0;
+        let area = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|v| self.positions[v as usize]);
+            let map = TargetMap::mean(t.map(|v| map(self.vertices[v as usize])));
+            let [a, b] = [q - p, r - p].map(|edge| map.apply(edge.to_array()));
+            0.5 * (a[0] * b[1] - a[1] * b[0])
+        };
+        let scale = (sum(&self.triangles, area) / self.triangles.len() as f64).sqrt().recip();
+        let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
+        self.targets = Some(collect(self.vertices.len(), |i| scaled(self.vertices[i])));
+        let shown =
+            |t: &[u32; 3]| 0.5 * self.corner(t, |v| self.positions[v as usize]).doubled_area();
+        self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
     }
 
     /// Normalized position of each vertex.
@@ -124,7 +158,29 @@ impl Problem {
         &self.triangles
     }
 
-    /// Mean area of all triangles, in normalized units.
+    /// The target map of each vertex, in the order of the positions, if the mesh has targets.
+    #[inline(always)]
+    pub(crate) fn targets(&self) -> Option<&[[f32; 3]]> {
+        self.targets.as_deref()
+    }
+
+    /// Whether targets are longer in one direction than in another.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.targets().is_some_and(|maps| maps.iter().any(|&[xx, xy, yy]| xx != yy || xy != 0.0))
+    }
+
+    /// A triangle as a metric sees it: as its target map shows it, if the mesh has targets.
+    #[inline(always)]
+    pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
+        let [p, q, r] = t.map(position);
+        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: self.mean_area };
+        match &self.targets {
+            None => corner,
+            Some(maps) => TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))).show(&corner),
+        }
+    }
+
+    /// Mean area of all triangles, in normalized units; as target maps show them, if the mesh has targets.
     pub fn mean_area(&self) -> f64 {
         self.mean_area
     }

@@ -1,5 +1,6 @@
 //! Quality measures: a table with a row for each, computed for the triangles of a mesh, with statistics over them.
 
+mod change;
 mod measured;
 mod moments;
 mod ranks;
@@ -10,6 +11,7 @@ mod table;
 mod triangle;
 mod vertices;
 
+pub use change::{Change, Spread};
 pub use measured::Measured;
 pub use statistics::{QUANTILES, Statistics};
 pub use table::{Better, Definition, Measure, UnknownMeasure};

@@ -30,6 +30,12 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
+    /// Calls a function of such numbers; those of SIMD vectors as code of its own, compiled for their instructions, so that
+    /// what calls it stays small enough to be compiled in seconds.
+    #[inline(always)]
+    fn apart<R>(self, function: impl FnOnce() -> R) -> R {
+        function()
+    }
 }
 
 impl Real for f64 {

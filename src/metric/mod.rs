@@ -11,14 +11,16 @@ mod properties;
 mod rms;
 mod scheme;
 mod shape_size;
+mod soft_size;
 mod table;
+mod target;
+mod tmop_80;
+mod tmop_94;
 
 pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};
 pub use properties::Properties;
 pub use scheme::Scheme;
-pub(crate) use table::{AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric};
-// Other processors have one kind of lanes.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) use table::with_formulas;
+pub(crate) use table::{Formulas, OfEdges, OfInvariants, with_each_metric};
 pub use table::{Metric, UnknownMetric};
+pub(crate) use target::TargetMap;

@@ -83,7 +83,8 @@ mod tests {
         let error = "edge+foo".parse::<Scheme>().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no metric is called 'foo'; there are edge, area, rms, imr, ar, shape-size"
+            "no metric is called 'foo'; there are edge, area, rms, imr, ar, shape-size, \
+             soft-size, tmop-80, tmop-94"
         );
         assert!("".parse::<Scheme>().is_err());
         assert!("imr+".parse::<Scheme>().is_err());

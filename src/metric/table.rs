@@ -6,33 +6,42 @@
 use crate::metric::corner::{Corner, Invariants, Slopes};
 use crate::metric::dual::{Dual, Real};
 use crate::metric::properties::Properties;
-use crate::metric::{ar, area, edge, imr, rms, shape_size};
+use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
 
-/// Generates the enum, the table and the formulas from one row per metric.
+/// Generates the enum, the table and the formulas from one row per metric. The rare metrics in braces take less time to
+/// compile and more to sweep.
 macro_rules! metrics {
     (
         $(#[$edge_doc:meta])*
         $edge:ident = $edge_file:ident of edges;
         $($(#[$doc:meta])* $variant:ident = $file:ident of invariants;)*
+        => {
+            $($(#[$rare_doc:meta])* $rare:ident = $rare_file:ident of invariants;)*
+        }
     ) => {
         /// A quality metric q of a triangle. Smaller is better. The source of each is in
         /// [`Properties::citation`](crate::Properties::citation).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum Metric { $(#[$edge_doc])* $edge, $($(#[$doc])* $variant,)* }
+        pub enum Metric {
+            $(#[$edge_doc])* $edge,
+            $($(#[$doc])* $variant,)*
+            $($(#[$rare_doc])* $rare,)*
+        }
 
         /// A metric that is a function of a triangle's [`Invariants`].
         #[derive(Clone, Copy, Debug)]
-        pub(crate) enum OfInvariants { $($variant,)* }
+        pub(crate) enum OfInvariants { $($variant,)* $($rare,)* }
 
         impl Metric {
             /// Every metric: those of the paper in the order of its Table 1, then others.
-            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)*];
+            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
 
             /// The metric's constants.
             pub const fn properties(self) -> &'static Properties {
                 match self {
                     Metric::$edge => &$edge_file::PROPERTIES,
                     $(Metric::$variant => &$file::PROPERTIES,)*
+                    $(Metric::$rare => &$rare_file::PROPERTIES,)*
                 }
             }
 
@@ -42,11 +51,13 @@ macro_rules! metrics {
                 match self {
                     Metric::$edge => AnyFormulas::Edges(OfEdges),
                     $(Metric::$variant => AnyFormulas::Invariants(OfInvariants::$variant),)*
+                    $(Metric::$rare => AnyFormulas::Invariants(OfInvariants::$rare),)*
                 }
             }
         }
 
-        /// As [`with_formulas`], but compiled for each metric by itself: faster, and dearer to compile. `$f` is a constant,
+        /// Evaluates an expression, compiled for each usual metric by itself, with `$f` bound to its [`Formulas`]; nothing for
+        /// a rare metric. `$f` is a constant,
         /// so that a closure in the expression knows the metric as it is compiled; a variable it would capture.
         macro_rules! with_each_metric {
             ($metric:expr, $f:ident => $body:expr) => {
@@ -61,6 +72,7 @@ macro_rules! metrics {
                         const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::$variant;
                         $body
                     })*
+                    $($crate::metric::Metric::$rare)|* => {}
                 }
             };
         }
@@ -69,19 +81,25 @@ macro_rules! metrics {
         impl OfInvariants {
             #[inline(always)]
             fn of(self) -> Metric {
-                match self { $(Self::$variant => Metric::$variant,)* }
+                match self { $(Self::$variant => Metric::$variant,)* $(Self::$rare => Metric::$rare,)* }
             }
 
             /// q² - ideal².
             #[inline(always)]
             fn value<T: Real>(self, t: &Invariants<T>) -> T {
-                match self { $(Self::$variant => $file::value(t),)* }
+                match self {
+                    $(Self::$variant => $file::value(t),)*
+                    $(Self::$rare => $rare_file::value(t),)*
+                }
             }
 
             /// q² - ideal² with its derivatives by the invariants.
             #[inline(always)]
             fn slopes<T: Real>(self, t: &Invariants<T>) -> Slopes<T> {
-                match self { $(Self::$variant => $file::slopes(t),)* }
+                match self {
+                    $(Self::$variant => $file::slopes(t),)*
+                    $(Self::$rare => $rare_file::slopes(t),)*
+                }
             }
         }
     };
@@ -103,6 +121,17 @@ metrics! {
     /// SHAPE-SIZE, |T - T⁻ᵗ| for T = A W⁻¹, with A the edges of the triangle and W those of the equilateral one of mean
     /// area (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 7).
     ShapeSize = shape_size of invariants;
+    => {
+    /// SOFT-SIZE, √(μ₂ + 0.4 μ₅₆): of shape first, |T|² / 2τ - 1, and size second, (τ - 1)² / 2τ, for T as in SHAPE-SIZE
+    /// and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metrics 2 and 56).
+    SoftSize = soft_size of invariants;
+    /// TMOP-80, √((1 - γ) μ₂ + γ μ₇₇) with γ = 1/2: of shape, |T|² / 2τ - 1, and size, (τ - 1/τ)² / 2, in equal parts, for
+    /// T as in SHAPE-SIZE and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 80).
+    Tmop80 = tmop_80 of invariants;
+    /// TMOP-94, √(μ₂ + 1.5 μ₅₆): of shape, |T|² / 2τ - 1, and size, (τ - 1)² / 2τ, for T as in SHAPE-SIZE and τ = det T
+    /// (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 94).
+    Tmop94 = tmop_94 of invariants;
+    }
 }
 
 /// The metric EDGE, a function of the lengths of a triangle's edges.
@@ -116,19 +145,6 @@ pub(crate) enum AnyFormulas {
     Edges(OfEdges),
     Invariants(OfInvariants),
 }
-
-/// Evaluates an expression with `$f` bound to the [`Formulas`] of a metric. The expression is compiled for each variant
-/// of [`AnyFormulas`], and looks up the metric of the invariants as it runs.
-macro_rules! with_formulas {
-    ($metric:expr, $f:ident => $body:expr) => {
-        match $metric.formulas() {
-            $crate::metric::AnyFormulas::Edges($f) => $body,
-            $crate::metric::AnyFormulas::Invariants($f) => $body,
-        }
-    };
-}
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) use with_formulas;
 
 /// The functions of a metric that engines compute.
 pub(crate) trait Formulas: Copy + Sync {
@@ -205,6 +221,55 @@ impl Formulas for OfInvariants {
     }
 }
 
+/// Looks the metric up for each triangle.
+impl Formulas for AnyFormulas {
+    #[inline(always)]
+    fn metric(self) -> Metric {
+        match self {
+            AnyFormulas::Edges(f) => f.metric(),
+            AnyFormulas::Invariants(f) => f.metric(),
+        }
+    }
+
+    #[inline(always)]
+    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T) {
+        OfEdges.inverse_mean_ratio(corner)
+    }
+
+    #[inline(always)]
+    fn excess<T: Real>(self, corner: &Corner<T>) -> T {
+        corner.a[0].apart(
+            #[inline(always)]
+            || match self {
+                AnyFormulas::Edges(f) => f.excess(corner),
+                AnyFormulas::Invariants(f) => f.excess(corner),
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
+        corner.a[0].apart(
+            #[inline(always)]
+            || match self {
+                AnyFormulas::Edges(f) => f.model(corner, sharpness),
+                AnyFormulas::Invariants(f) => f.model(corner, sharpness),
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
+        corner.a[0].apart(
+            #[inline(always)]
+            || match self {
+                AnyFormulas::Edges(f) => f.expansion(corner, sharpness),
+                AnyFormulas::Invariants(f) => f.expansion(corner, sharpness),
+            },
+        )
+    }
+}
+
 impl Metric {
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
@@ -224,19 +289,19 @@ impl Metric {
 
     /// q² - ideal². Sums of it keep their digits on good meshes.
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {
-        with_formulas!(self, f => f.excess(corner))
+        self.formulas().excess(corner)
     }
 
     /// The function that Newton's method minimizes: [`Self::excess`], except for EDGE, which is
     /// not smooth. For EDGE it is a p-norm with exponent k = 2^`sharpness`, minus 1.
     pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
-        with_formulas!(self, f => f.model(corner, sharpness))
+        self.formulas().model(corner, sharpness)
     }
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start from,
     /// by the hand-written derivatives that the CPU engine uses.
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
-        with_formulas!(self, f => f.expansion(corner, sharpness))
+        self.formulas().expansion(corner, sharpness)
     }
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of

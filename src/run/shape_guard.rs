@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{Corner, Scheme};
+use crate::metric::Scheme;
 use crate::parallel::map_parts;
 
 /// The shape guard of a run: the largest inverse mean ratio among the triangles with a free vertex. No step may leave a
@@ -18,9 +18,7 @@ pub(crate) fn shape_guard(problem: &Problem, positions: &[DVec2], scheme: &Schem
         if t.iter().all(|&v| v >= free) {
             return 1.0;
         }
-        let [p, q, r] = t.map(|v| positions[v as usize]);
-        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
-        corner.inverse_mean_ratio()
+        problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
     };
     let worst = map_parts(problem.triangles().chunks(4096), |_, chunk| {
         chunk.iter().map(ratio).fold(1.0, f64::max)

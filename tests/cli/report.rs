@@ -16,7 +16,8 @@ fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_else(|| panic!("{value} is not a text"))
 }
 
-const METRICS: [&str; 6] = ["edge", "area", "rms", "imr", "ar", "shape-size"];
+const METRICS: [&str; 9] =
+    ["edge", "area", "rms", "imr", "ar", "shape-size", "soft-size", "tmop-80", "tmop-94"];
 
 #[test]
 fn report_holds_the_documented_keys() {
@@ -38,6 +39,7 @@ fn report_holds_the_documented_keys() {
                 "remaining",
                 "levels_left_out",
                 "best_sweep",
+                "change",
                 "stop",
                 "returned",
                 "before",
@@ -64,6 +66,14 @@ fn report_holds_the_documented_keys() {
         );
         assert_eq!((text(&report["stop"]), &report["returned"]), ("converged", &Value::from(0)));
         assert_eq!(report["best_sweep"], report["sweeps"]);
+
+        assert_keys(&report["change"], &["moved", "size", "least_altitude"]);
+        for spread in ["moved", "size"] {
+            let spread = &report["change"][spread];
+            assert_keys(spread, &["median", "most_of_twenty", "most"]);
+            let [half, most] = ["median", "most"].map(|key| spread[key].as_f64().unwrap());
+            assert!(0.0 < half && half <= most, "{spread}");
+        }
 
         for state in ["before", "after"] {
             let quality = &report[state];

@@ -107,7 +107,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let words = app.buffer(8 * mesh.points.len() as u64, usage);
         let mask = device_mesh.bind_mask(&words, 0).unwrap();
         let targets = VertexBuffer::new(&words, 8);
-        let drag = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 48)).unwrap();
+        let drag = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
@@ -125,7 +125,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
         let _ = device_mesh.pin(&[1]);
         judged.restart();
-        let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 48)).map(drop);
+        let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).map(drop);
         let _ = device_mesh.bind_mask(&words, 0).map(drop);
         let _ = Readback::<f32>::new(&app.gpu, &published, 0, 1).map(drop);
         assert_lost(&device_mesh.read_points().unwrap_err());

@@ -13,11 +13,11 @@ use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
 use crate::support::lattice;
 
 /// What the small device binds at once.
-const BOUND: u64 = 65 << 8;
+const BOUND: u64 = 89 << 8;
 
 /// A mesh whose positions take two bindings of the small device, its rings and triangles three.
 fn mesh() -> Mesh {
-    bad_plate(1600)
+    bad_plate(2400)
 }
 
 fn size(mesh: &Mesh) -> MeshSize {
@@ -132,11 +132,11 @@ fn an_application_sees_no_parts() {
 #[test]
 fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
     // Positions of this one would take three bindings.
-    let large = lattice(46, 46);
+    let large = lattice(53, 53);
     let [_, app] = devices(&mesh());
     let error = app.gpu.check_size(size(&large)).unwrap_err();
     let text = format!(
-        "the buffer of vertex positions (2209 vertices) needs 17672, \
+        "the buffer of vertex positions (2916 vertices) needs 23328, \
          but the device's max_storage_buffer_binding_size is {BOUND}"
     );
     assert_eq!(error.to_string(), text);

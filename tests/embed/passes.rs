@@ -1,6 +1,6 @@
 //! Encoding into a compute pass that the application has begun.
 
-use gpu_smooth::{Options, Sweeps, VertexBuffer, wgpu};
+use gpu_smooth::{ObjectiveValues, Options, Sweeps, VertexBuffer, wgpu};
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior};
@@ -49,7 +49,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let targets = app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&[x + 1e-3, y]));
         let place = VertexBuffer::new(&targets, 8);
-        let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 44)).unwrap();
+        let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 60)).unwrap();
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
         // The application's own kernel before and after: the targets are doubled, and the vertices exported.
@@ -84,7 +84,8 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
             }
         });
         let words = app.read(&numbers);
-        assert_eq!((words[9], words[11]), (3, 1.0f32.to_bits()), "three sweeps, and all the way");
+        let at = std::mem::offset_of!(ObjectiveValues, sweeps) / 4;
+        assert_eq!((words[at], words[15]), (3, 1.0f32.to_bits()), "three sweeps, and all the way");
         let exported = app.read(&vertices.buffer);
         let at = vertices.word(v);
         let [x, _] = app.points(&device_mesh)[v as usize];

@@ -74,6 +74,20 @@ fn quality_is_that_of_the_formula_in_lengths_and_area() {
                 let (norm, det) = (squares / (12f64.sqrt() * t.mean_area), area / t.mean_area);
                 (norm * (1.0 + 1.0 / (det * det)) - 4.0).sqrt()
             }
+            // μ₂ = |T|² / 2τ - 1, μ₅₆ = (τ + 1/τ) / 2 - 1 and μ₇₇ = (τ - 1/τ)² / 2.
+            Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
+                let det = area / t.mean_area;
+                let shape = squares / (12f64.sqrt() * t.mean_area) / (2.0 * det) - 1.0;
+                let (linear, square) =
+                    (0.5 * (det + 1.0 / det) - 1.0, (det - 1.0 / det).powi(2) / 2.0);
+                match metric {
+                    Metric::Tmop80 => 0.5 * (shape + square),
+                    Metric::Tmop94 => shape + 1.5 * linear,
+                    _ => shape + 0.4 * linear,
+                }
+                .max(0.0)
+                .sqrt()
+            }
         };
         let got = metric.quality(t);
         // Heron's area is as good as the lengths allow: their rounding times the shape.

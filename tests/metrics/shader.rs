@@ -139,6 +139,21 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
                 conditions: [1.0 + a * b / doubled; 3],
             }
         }
+        Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
+            let mean = 2.0 * t.mean_area;
+            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
+            // Derivatives by the squared norm and by the determinant, of both parts, and how fast these change.
+            let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
+            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
+            let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);
+            let bend =
+                by_norm * 2.0 / mean + of_norm * of_det / (tau * tau) + second * of_det * of_det;
+            let value = norm / tau + tau * tau + 1.0 / (tau * tau);
+            Scales {
+                sizes: [value, by_norm * of_norm + by_det * of_det, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
     }
 }
 
@@ -202,7 +217,7 @@ fn values_and_derivatives_are_those_of_dual_numbers() {
 }
 
 /// One mistake in the derivatives of each metric, in the gradient or in the Hessian.
-const MISTAKES: [(Metric, &str, &str); 12] = [
+const MISTAKES: [(Metric, &str, &str); 18] = [
     (Metric::Edge, "own + k * spread", "own - k * spread"),
     (Metric::Edge, "q * g, q *", "1.001 * q * g, q *"),
     (Metric::Area, "0.0, 0.0, 2.0)", "0.0, 0.0, 1.0)"),
@@ -215,6 +230,12 @@ const MISTAKES: [(Metric, &str, &str); 12] = [
     (Metric::Ar, "2.0 * (1.0 - 2.0 * q)", "2.0 * (1.0 - 2.002 * q)"),
     (Metric::ShapeSize, "2.0 * e * cube", "2.01 * e * cube"),
     (Metric::ShapeSize, "3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"),
+    (Metric::Tmop80, "size * (square + 1.0) - e * square", "size * (square + 1.0) + e * square"),
+    (Metric::Tmop80, "3.0 * square * square", "3.01 * square * square"),
+    (Metric::Tmop94, "(0.75 * off * (tau + 1.0) - e)", "(0.76 * off * (tau + 1.0) - e)"),
+    (Metric::Tmop94, "2.0 * e + 1.5", "2.0 * e + 1.52"),
+    (Metric::SoftSize, "(0.2 * off * (tau + 1.0) - e)", "(0.2 * off * (tau + 1.0) + e)"),
+    (Metric::SoftSize, "2.0 * e + 0.4", "2.01 * e + 0.4"),
 ];
 
 #[test]

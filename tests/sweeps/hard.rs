@@ -140,7 +140,9 @@ fn a_run_with_one_free_vertex_ends_soon_and_both_engines_say_so_in_one_word() {
     // On a device f jitters in its last digits. Runs with corrections went on to the last sweep.
     let mesh = fan(12, 1);
     let smoother = Smoother::new(&mesh).unwrap();
-    for metric in [Metric::Imr, Metric::Ar, Metric::Rms, Metric::ShapeSize, Metric::Area] {
+    for metric in
+        [Metric::Imr, Metric::Ar, Metric::Rms, Metric::ShapeSize, Metric::Tmop80, Metric::Area]
+    {
         for backend in backends() {
             let options = Options { scheme: metric.into(), ..Options::default() };
             let outcome = run(&smoother, &options, backend);

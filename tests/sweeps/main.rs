@@ -16,6 +16,7 @@ mod optimum;
 mod random;
 mod requests;
 mod safety;
+mod targets;
 mod tolerance;
 mod untangle;
 

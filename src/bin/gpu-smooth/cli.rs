@@ -182,8 +182,7 @@ impl Cli {
             );
             Self::command().error(ErrorKind::UnknownArgument, text).exit();
         }
-        if let Some((kept, dropped)) = cli.smooth.contradiction() {
-            let text = format!("{kept} leaves nothing for {dropped} to choose: drop one of them");
+        if let Some(text) = cli.smooth.contradiction() {
             Self::command().error(ErrorKind::ArgumentConflict, text).exit();
         }
         cli

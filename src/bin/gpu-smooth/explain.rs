@@ -134,6 +134,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         | MeshError::RepeatedVertex { .. }
         | MeshError::PointCount { .. }
         | MeshError::ValueCount { .. }
+        | MeshError::Target { .. }
         | MeshError::BoundNotANumber => format!("{}: {error}", file.path().display()),
     }
 }

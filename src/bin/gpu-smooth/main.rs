@@ -22,6 +22,7 @@ mod run_args;
 mod shell;
 mod smooth;
 mod streams;
+mod target_args;
 mod task;
 mod tell;
 mod untangle;

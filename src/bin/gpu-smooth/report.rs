@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use gpu_smooth::{Metric, Outcome, Quality, Scheme};
+use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Spread};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
@@ -18,6 +18,9 @@ pub(crate) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
+    /// What elements were to look like, if not equilateral in the plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) target: Option<TargetReport>,
     pub(crate) sweeps: u32,
     /// Corrections from coarser levels, each after a sweep.
     pub(crate) corrections: u32,
@@ -48,6 +51,7 @@ pub(crate) struct Report {
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
     pub(crate) returned: usize,
+    pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
     pub(crate) history: Vec<SweepReport>,
@@ -80,6 +84,51 @@ pub(crate) struct MeshReport {
     pub(crate) triangles: usize,
     pub(crate) free: usize,
     pub(crate) colors: usize,
+}
+
+/// What elements were to look like, if not equilateral in the plane.
+#[derive(Serialize)]
+pub(crate) struct TargetReport {
+    /// equilateral, keep-size, keep-shape, size=SOURCE or metric=SOURCE.
+    pub(crate) kind: String,
+    /// plane or sphere.
+    pub(crate) surface: &'static str,
+    /// Over how many rings of neighbors sizes and shapes were averaged.
+    pub(crate) rings: u32,
+    /// The base metric's objective of the triangles as targets show them, before and after.
+    pub(crate) f: [f64; 2],
+}
+
+/// How far free vertices moved, and how the sizes of elements at them changed.
+#[derive(Serialize)]
+pub(crate) struct ChangeReport {
+    /// In lengths of an edge at the vertex.
+    pub(crate) moved: SpreadReport,
+    /// Factors, up or down.
+    pub(crate) size: SpreadReport,
+    /// The least altitude of a triangle, before and after.
+    pub(crate) least_altitude: [f64; 2],
+}
+
+#[derive(Serialize)]
+pub(crate) struct SpreadReport {
+    pub(crate) median: f64,
+    /// Of twenty vertices nineteen have no more.
+    pub(crate) most_of_twenty: f64,
+    pub(crate) most: f64,
+}
+
+impl From<Spread> for SpreadReport {
+    fn from(Spread { median, most_of_twenty, most }: Spread) -> Self {
+        Self { median, most_of_twenty, most }
+    }
+}
+
+impl From<Change> for ChangeReport {
+    fn from(change: Change) -> Self {
+        let Change { moved, size, least_altitude } = change;
+        Self { moved: moved.into(), size: size.into(), least_altitude }
+    }
 }
 
 /// What untangling did.
@@ -164,6 +213,9 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
     (0..).zip(&outcome.history).map(one).collect()
 }
 
+/// Changes of size by more than this factor at one vertex in twenty are worth a word.
+const LARGE_CHANGE: f64 = 1.25;
+
 impl Report {
     /// The metric that judges.
     pub(crate) fn base(&self) -> &str {
@@ -178,6 +230,7 @@ impl Report {
             let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
         }
         let _ = writeln!(text, "\n{}", self.ending());
+        let _ = writeln!(text, "{}", self.moves());
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");
         }
@@ -229,6 +282,10 @@ impl Report {
         if !matches!(base, "imr" | "ar") {
             metrics.push("imr");
         }
+        if let Some(TargetReport { f: [before, after], .. }) = self.target {
+            row("f of targets", six(before), six(after));
+            metrics = vec!["imr"];
+        }
         for metric in metrics {
             row(&format!("f {metric}"), six(self.before.f[metric]), six(self.after.f[metric]));
         }
@@ -240,6 +297,8 @@ impl Report {
             let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
             row("  of movable", six(before), six(after));
         }
+        let [before, after] = self.change.least_altitude;
+        row("min altitude", six(before), six(after));
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
         rows
     }
@@ -260,6 +319,31 @@ impl Report {
         };
         let (before, after) = (six(before), six(after));
         Some(format!("worst imr rose from {before} to {after}: {remedy}"))
+    }
+
+    /// How far vertices moved and how much sizes changed, in a sentence.
+    pub(crate) fn moves(&self) -> String {
+        let ChangeReport { moved, size, .. } = &self.change;
+        if moved.most == 0.0 {
+            return "no vertex moved".to_owned();
+        }
+        let percent = |factor: f64| match 100.0 * (factor - 1.0) {
+            change if change < 99.5 => format!("{change:.0} %"),
+            _ => format!("{factor:.1} times"),
+        };
+        let keeps = match self.target.is_none() && size.most_of_twenty > LARGE_CHANGE {
+            true => "; --target keep-size keeps sizes",
+            false => "",
+        };
+        format!(
+            "19 of 20 vertices moved {:.2} edges at most (half {:.2}, the farthest {:.2}), and sizes there changed by {} (half {}, the most {}){keeps}",
+            moved.most_of_twenty,
+            moved.median,
+            moved.most,
+            percent(size.most_of_twenty),
+            percent(size.median),
+            percent(size.most),
+        )
     }
 
     /// How far the run is from the limit of f, as far as that can be told.

@@ -3,12 +3,15 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
+use gpu_smooth::{
+    Derivatives, Desired, Goal, Method, Metric, Options, Precision, Scheme, Sharpness,
+};
 
 use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
 use crate::riding::RidingArgs;
+use crate::target_args::TargetArgs;
 
 #[derive(Args)]
 pub(crate) struct SmoothArgs {
@@ -24,14 +27,10 @@ pub(crate) struct SmoothArgs {
     pub(crate) more: Vec<PathBuf>,
 
     /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
-    /// convergence. Metrics: edge, area, rms, imr, ar, shape-size (see `gpu-smooth metrics`)
-    #[arg(
-        long,
-        default_value = "imr",
-        value_name = "A[+B...]",
-        help_heading = "Metric and engine"
-    )]
-    pub(crate) scheme: Scheme,
+    /// convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94 (see `gpu-smooth metrics`)
+    /// [default: imr; soft-size with --target keep-size]
+    #[arg(long, value_name = "A[+B...]", help_heading = "Metric and engine")]
+    scheme: Option<Scheme>,
 
     /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
     /// done first, but no software adapter
@@ -66,7 +65,7 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
-    /// Sweeps corrected from coarser levels of the mesh (imr, ar, rms and shape-size), over-relaxed sweeps, or the
+    /// Sweeps corrected from coarser levels of the mesh (all but edge, area), over-relaxed sweeps, or the
     /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
     #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
     pub(crate) method: MethodChoice,
@@ -84,6 +83,9 @@ pub(crate) struct SmoothArgs {
     /// which ends lower after more sweeps
     #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
     pub(crate) edge_norm: EdgeNorm,
+
+    #[command(flatten)]
+    pub(crate) target: TargetArgs,
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
@@ -166,30 +168,42 @@ impl SmoothArgs {
         self.input.iter().chain(&self.output).chain(&self.more)
     }
 
+    /// The metrics of the sweeps.
+    pub(crate) fn scheme(&self) -> Scheme {
+        self.scheme.clone().unwrap_or_else(|| self.target.default_metric().into())
+    }
+
     /// The share of f within which the run ends, if it has no other goal.
     pub(crate) fn estimated_end(&self) -> Option<f64> {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         (!has_goal).then_some(self.tolerance)
     }
 
-    /// An option given along with another that settles the same.
-    pub(crate) fn contradiction(&self) -> Option<(&str, &str)> {
-        if self.method == MethodChoice::Paper && self.omega.is_some() {
-            Some(("--method paper", "--omega"))
-        } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
-            Some(("--method multilevel", "--omega"))
-        } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
-            Some(("--engine cpu", "--adapter"))
-        } else {
-            None
+    /// What is wrong with options that contradict each other.
+    pub(crate) fn contradiction(&self) -> Option<String> {
+        if self.target.is_of_sizes() && !self.scheme().metrics().iter().any(sees_sizes) {
+            let scheme = self.scheme();
+            return Some(format!(
+                "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
+            ));
         }
+        let (kept, dropped) = if self.method == MethodChoice::Paper && self.omega.is_some() {
+            ("--method paper", "--omega")
+        } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
+            ("--method multilevel", "--omega")
+        } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
+            ("--engine cpu", "--adapter")
+        } else {
+            return None;
+        };
+        Some(format!("{kept} leaves nothing for {dropped} to choose: drop one of them"))
     }
 
     /// The options of a run on a mesh that is stored with so many digits.
     pub(crate) fn options(&self, stored: Precision) -> Options {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         Options {
-            scheme: self.scheme.clone(),
+            scheme: self.scheme(),
             max_sweeps: self.max_sweeps,
             tolerance: self.tolerance,
             stored,
@@ -219,6 +233,10 @@ impl SmoothArgs {
             ..Options::default()
         }
     }
+}
+
+fn sees_sizes(metric: &Metric) -> bool {
+    !metric.properties().scale_invariant
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

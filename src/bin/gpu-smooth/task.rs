@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
-    SmoothError, Smoother, Stop,
+    Backend, Change, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
+    Quality, SmoothError, Smoother, Stop,
 };
 
 use crate::cli::OutputArgs;
@@ -87,7 +87,8 @@ pub(crate) fn carry_out<T>(
     let file = file;
     let read_done = Instant::now();
     follow.has_read(&file)?;
-    for remark in tell::remarks(&file).iter().chain(&choice.notes) {
+    let degrees = args.target.is_on_plane().then(|| tell::degrees(&file)).flatten();
+    for remark in tell::remarks(&file).iter().chain(&choice.notes).chain(&degrees) {
         follow.remark(remark);
     }
     let mesh = file.mesh();
@@ -112,7 +113,7 @@ pub(crate) fn carry_out<T>(
         (prepared, taken)
     });
     let mended;
-    let (smoother, mending) = match prepared? {
+    let (mut smoother, mending) = match prepared? {
         Prepared::Ready(smoother) => (*smoother, None),
         Prepared::Mended(it) => {
             mended = it;
@@ -122,14 +123,25 @@ pub(crate) fn carry_out<T>(
         }
     };
     let taken = taken??;
-    let before = smoother.quality(&mesh.points).map_err(told)?;
+    let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
+    args.target.set(&file, &mut smoother, points)?;
+    let smoother = smoother;
+    let quality = |points: &[[f64; 2]]| {
+        Quality::on(args.target.surface(), points, smoother.topology()).map_err(told)
+    };
+    let before = quality(&mesh.points)?;
     let prepared = Instant::now();
 
     let options = options(args, &choice, file.precision());
     follow.stage(Stage::Smoothing);
     let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
     follow.has_smoothed()?;
-    let after = smoother.quality(&outcome.points).map_err(told)?;
+    let after = quality(&outcome.points)?;
+    let change =
+        Change::between(smoother.topology(), &mesh.points, &outcome.points).map_err(told)?;
+    let base = args.scheme().base();
+    let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
+    let f_after = smoother.f(base, &outcome.points).map_err(told)?;
     let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
     let parameters = riding.add_parameters(&file, &outcome.points)?;
     let has_moved = outcome.points != mesh.points;
@@ -154,12 +166,13 @@ pub(crate) fn carry_out<T>(
     let report = Report {
         engine: engine_report(&taken),
         mesh: mesh_report(&file, &smoother),
+        target: args.target.report([f_before, f_after]),
         untangled: mending.map(|mended| UntangleReport {
             bad_before: mended.bad_before,
             sweeps: mended.sweeps,
             moved: mended.moved,
         }),
-        scheme: args.scheme.to_string(),
+        scheme: args.scheme().to_string(),
         sweeps: outcome.sweeps,
         corrections: outcome.corrections,
         opening_sweeps: outcome.opening_sweeps,
@@ -174,9 +187,10 @@ pub(crate) fn carry_out<T>(
         lost: outcome.lost,
         goal: goal_report(&outcome),
         returned: outcome.returned,
+        change: change.into(),
         before: (&before).into(),
         after: (&after).into(),
-        history: report::history(&outcome, &args.scheme, args.history == History::All),
+        history: report::history(&outcome, &args.scheme(), args.history == History::All),
         seconds,
     };
     let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use gpu_smooth::gpu::AdapterSummary;
-use gpu_smooth::{GpuError, MeshFile, Metric};
+use gpu_smooth::{Format, GpuError, MeshFile, Metric};
 
 use serde_json::{Value, json};
 
@@ -97,6 +97,19 @@ pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
         )),
     }
     remarks
+}
+
+/// A remark on a mesh of a format of ocean models that seems to be given in longitude and latitude, at latitudes where
+/// degrees of longitude are shorter by more than a few percent.
+pub(crate) fn degrees(file: &MeshFile) -> Option<String> {
+    let is_of_oceans = matches!(file.format(), Format::Adcirc | Format::Sms2dm);
+    let points = &file.mesh().points;
+    let fits = |&[x, y]: &[f64; 2]| x.abs() <= 360.0 && y.abs() < 90.0;
+    let middle = points.iter().map(|p| p[1]).sum::<f64>() / points.len() as f64;
+    (is_of_oceans && middle.abs() > 20.0 && points.iter().all(fits)).then(|| {
+        "the coordinates look like degrees: --surface sphere smooths them as longitude and latitude"
+            .to_owned()
+    })
 }
 
 /// `gpu-smooth adapters`.

@@ -114,6 +114,19 @@ impl MeshSize {
     }
 }
 
+/// Fails if a buffer of this many rows like positions does not fit the limits, however it is bound.
+pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuError> {
+    let bytes = (rows as u64).saturating_mul(POSITION).saturating_add(ALIGNMENT);
+    let what = || format!("the buffer of positions and targets ({rows} rows)");
+    check_limit("max_buffer_size", limits.max_buffer_size, &what, bytes - ALIGNMENT)?;
+    let at_once = match Positions::of(rows, limits) {
+        Positions::Whole => bytes - ALIGNMENT,
+        Positions::InTwo => bytes / 2,
+    };
+    let bound = limits.max_storage_buffer_binding_size;
+    check_limit("max_storage_buffer_binding_size", bound, &what, at_once)
+}
+
 /// Fails if more is needed than there is.
 pub(crate) fn check_limit(
     limit: &'static str,

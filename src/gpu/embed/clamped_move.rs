@@ -117,7 +117,7 @@ impl BoundMove {
         // An empty buffer cannot be bound.
         corners.resize(corners.len().max(1), [NONE; 6]);
         moves.ways.resize(moves.ways.len().max(1), [NONE; 2]);
-        let positions = mesh.parts.positions();
+        let form = mesh.parts.form();
         let bind_group = scoped_to_buffer(&gpu.device, || {
             let movement = filled(gpu, "movement", &[movement], Usage::UNIFORM);
             let corners = filled(gpu, "corners of moved vertices", &corners, Usage::STORAGE);
@@ -133,9 +133,9 @@ impl BoundMove {
                 mesh.changes.buffer.as_entire_binding(),
             ];
             resources.extend(beyond);
-            gpu.pipelines.bind(&gpu.device, Interface::Move, positions, &resources)
+            gpu.pipelines.bind(&gpu.device, Interface::Move, form, &resources)
         })?;
-        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let find_share = pipeline(Kernel::FindShare)?;
         let move_vertices = pipeline(Kernel::MoveVertices)?;
         Ok(Self { find_share, move_vertices, bind_group, count })

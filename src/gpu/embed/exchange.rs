@@ -57,11 +57,11 @@ impl BoundVertices {
             let changes = mesh.changes.buffer.as_entire_binding();
             let mut resources = vec![uniform, positions, numbers, window.binding(), changes];
             resources.extend(beyond);
-            let positions = mesh.parts.positions();
+            let positions = mesh.parts.form();
             gpu.pipelines.bind(&gpu.device, Interface::Exchange, positions, &resources)
         })?;
         let [import, export] = [Kernel::Import, Kernel::Export]
-            .map(|kernel| gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.positions()));
+            .map(|kernel| gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form()));
         Ok(Self { import: import?, export: export?, bind_group, count })
     }
 

@@ -30,8 +30,8 @@ impl LastValid {
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, mesh: &MeshBuffers) -> Result<Self, GpuError> {
         let plan = Options::default().plan().endless();
         let evaluation = Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?;
-        let positions = mesh.parts.positions();
-        let restore = gpu.pipelines.get(&gpu.device, &Kernel::RestoreLastValid, positions)?;
+        let form = mesh.parts.form();
+        let restore = gpu.pipelines.get(&gpu.device, &Kernel::RestoreLastValid, form)?;
         let parts = scoped(&gpu.device, || {
             let valid: Vec<[f32; 4]> = problem.positions().iter().map(|&p| split(p)).collect();
             let valid = filled(gpu, "last valid positions", &valid, Usage::STORAGE);
@@ -49,7 +49,7 @@ impl LastValid {
                 ];
                 resources.extend(beyond);
                 let interface = Interface::Restore;
-                let bound = gpu.pipelines.bind(&gpu.device, interface, positions, &resources);
+                let bound = gpu.pipelines.bind(&gpu.device, interface, form, &resources);
                 (bound, count)
             };
             mesh.parts.vertices.iter().map(bind).collect()

@@ -12,7 +12,7 @@ use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
-use crate::gpu::kernels::uniforms::Publish;
+use crate::gpu::kernels::uniforms::{Publish, SLOTS};
 use crate::gpu::mesh::Changes;
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped_to_buffer;
@@ -24,7 +24,7 @@ use crate::run::Stop;
 ///
 /// ```wgsl
 /// struct ObjectiveValues {
-///     f: array<f32, 6>,
+///     f: array<f32, 9>,
 ///     inverted: u32,
 ///     worst_imr: f32,
 ///     stop: u32,
@@ -36,7 +36,7 @@ use crate::run::Stop;
 pub struct ObjectiveValues {
     /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]; 0 for one that is not the scheme's base
     /// unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted, f by a metric with
-    /// a barrier (IMR, AR, SHAPE-SIZE) is meaningless.
+    /// a barrier ([`Properties::barrier`](crate::Properties::barrier)) is meaningless.
     pub f: [f32; Metric::ALL.len()],
     /// How many triangles are inverted or flat, in single precision.
     pub inverted: u32,
@@ -103,7 +103,7 @@ impl BoundObjective {
         offset: u64,
     ) -> Result<Self, GpuError> {
         let window = Window::new(gpu, buffer, offset, size_of::<ObjectiveValues>() as u64)?;
-        let mut ideal_squared = [[0.0; 4]; 2];
+        let mut ideal_squared = [[0.0; 4]; SLOTS.div_ceil(4)];
         let Run { dispatches, evaluation, changes, triangles } = run;
         for metric in dispatches.plan.tracked() {
             let slot = metric as usize;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use crate::error::GpuError;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::scope::scoped;
 
 /// The bindings of group 0, in order. Tests compare them with the WGSL.
@@ -113,7 +113,7 @@ pub(crate) struct Pipeline {
 #[derive(Default)]
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; Interface::ALL.len()],
-    made: Mutex<HashMap<(Kernel, Positions), wgpu::ComputePipeline>>,
+    made: Mutex<HashMap<(Kernel, MeshForm), wgpu::ComputePipeline>>,
     /// A cache of the application's.
     cache: Option<wgpu::PipelineCache>,
 }
@@ -168,7 +168,7 @@ impl Pipelines {
         &self,
         device: &wgpu::Device,
         interface: Interface,
-        positions: Positions,
+        form: impl Into<MeshForm>,
         resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
         let entries: Vec<_> = resources
@@ -179,7 +179,7 @@ impl Pipelines {
             .collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(&format!("gpu-smooth {interface:?}")),
-            layout: &self.layout(device, interface, positions).bindings,
+            layout: &self.layout(device, interface, form.into().positions).bindings,
             entries: &entries,
         })
     }
@@ -189,16 +189,16 @@ impl Pipelines {
         &self,
         device: &wgpu::Device,
         kernel: &Kernel,
-        positions: Positions,
+        form: impl Into<MeshForm>,
     ) -> Result<Pipeline, GpuError> {
-        let positions = kernel.interface().sees(positions);
+        let form = kernel.sees(form.into());
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(raw) = made.get(&(kernel.clone(), positions)) {
+        if let Some(raw) = made.get(&(kernel.clone(), form)) {
             return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });
         }
-        let wgsl = kernel.composed(positions);
-        let raw = scoped(device, || self.compile(device, kernel, positions, wgsl))?;
-        made.insert((kernel.clone(), positions), raw.clone());
+        let wgsl = kernel.composed(form);
+        let raw = scoped(device, || self.compile(device, kernel, form.positions, wgsl))?;
+        made.insert((kernel.clone(), form), raw.clone());
         Ok(Pipeline { kernel: kernel.clone(), raw })
     }
 
@@ -250,15 +250,18 @@ mod tests {
 
     #[test]
     fn every_kernel_declares_the_bindings_of_its_interface() {
-        let each = |kernel: Kernel| Positions::ALL.map(|positions| (kernel.clone(), positions));
-        for (kernel, positions) in kernels().into_iter().flat_map(each) {
-            let module = naga::front::wgsl::parse_str(&kernel.composed(positions)).unwrap();
+        let form = |positions| [false, true].map(|has_targets| MeshForm { positions, has_targets });
+        let forms = Positions::ALL.map(form).concat();
+        let each =
+            |kernel: Kernel| forms.clone().into_iter().map(move |form| (kernel.clone(), form));
+        for (kernel, form) in kernels().into_iter().flat_map(each) {
+            let module = naga::front::wgsl::parse_str(&kernel.composed(form)).unwrap();
             let bound = module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?, v)));
             let mut spaces: Vec<_> = bound
                 .map(|(at, variable)| (at.group, at.binding as usize, variable.space))
                 .collect();
             spaces.sort_unstable_by_key(|&(group, binding, _)| (group, binding));
-            let wanted = bindings(kernel.interface(), positions);
+            let wanted = bindings(kernel.interface(), form.positions);
             let wanted = wanted.iter().enumerate().map(|(i, binding)| {
                 let space = match binding {
                     Binding::Uniform { .. } => AddressSpace::Uniform,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::kernels::uniforms::{
     FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP, WORST,
 };
@@ -23,6 +23,9 @@ const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
 const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
 const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
+const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
+const TARGETS: &str = include_str!("../../../shaders/targets.wgsl");
+const NO_TARGETS: &str = include_str!("../../../shaders/no_targets.wgsl");
 const OBJECTIVE: &str = include_str!("../../../shaders/objective.wgsl");
 const FINISH: &str = include_str!("../../../shaders/finish.wgsl");
 const KEEP_BEST: &str = include_str!("../../../shaders/keep_best.wgsl");
@@ -59,6 +62,7 @@ const SUM_ALONG_CORRECTION: &str =
 const MOVE_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/move_along_correction.wgsl");
 const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
+const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
 const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
 
 const SECANTS: &str = include_str!("../../../shaders/secants/common.wgsl");
@@ -71,15 +75,20 @@ const OPEN_SECANT: &str = include_str!("../../../shaders/secants/open.wgsl");
 impl Kernel {
     /// The complete WGSL module.
     pub fn wgsl(&self) -> String {
-        self.composed(Positions::Whole)
+        self.composed(Positions::Whole.into())
     }
 
     /// The complete WGSL module for a mesh whose positions are more than the device binds at once.
     pub fn wgsl_for_large_meshes(&self) -> String {
-        self.composed(Positions::InTwo)
+        self.composed(Positions::InTwo.into())
     }
 
-    pub(crate) fn composed(&self, positions: Positions) -> String {
+    /// The complete WGSL module for a mesh with targets.
+    pub fn wgsl_for_targets(&self) -> String {
+        self.composed(MeshForm { positions: Positions::Whole, has_targets: true })
+    }
+
+    pub(crate) fn composed(&self, form: MeshForm) -> String {
         let mut source = constants();
         let (parts, bindings): (&[&str], _) = match self.interface() {
             Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
@@ -99,10 +108,14 @@ impl Kernel {
         if let Some((first, second)) = bindings {
             let _ = writeln!(source, "const POSITIONS: u32 = {first}u;");
             let _ = writeln!(source, "const LOW_POSITIONS: u32 = {second}u;");
-            source.push_str(match positions {
+            source.push_str(match form.positions {
                 Positions::Whole => POSITIONS,
                 Positions::InTwo => POSITIONS_IN_TWO,
             });
+        }
+        if self.sees_targets() {
+            source.push_str(if form.has_targets { TARGETS } else { NO_TARGETS });
+            source.push_str(MAPS);
         }
         match self {
             Kernel::Sweep(metric, derivatives) => {
@@ -136,7 +149,7 @@ impl Kernel {
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
                 let parts: &[&str] = match self {
-                    Kernel::ObjectiveAlongCorrection(_) => &[OBJECTIVE_ALONG_CORRECTION],
+                    Kernel::ObjectiveAlongCorrection(_) => &[ALONG, OBJECTIVE_ALONG_CORRECTION],
                     Kernel::Stiffness(_) => &[AROUND, STIFFNESS],
                     _ => &[AROUND, GRADIENT],
                 };
@@ -156,7 +169,9 @@ impl Kernel {
             Kernel::Chebyshev => source.push_str(CHEBYSHEV),
             Kernel::CoarsestSolve => source.push_str(COARSEST_SOLVE),
             Kernel::SumAlongCorrection => source.push_str(SUM_ALONG_CORRECTION),
-            Kernel::MoveAlongCorrection => source.push_str(MOVE_ALONG_CORRECTION),
+            Kernel::MoveAlongCorrection => {
+                [ALONG, MOVE_ALONG_CORRECTION].iter().for_each(|part| source.push_str(part))
+            }
             Kernel::CheckArithmetic => source.push_str(CHECK_ARITHMETIC),
         }
         source

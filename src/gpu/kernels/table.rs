@@ -153,7 +153,42 @@ impl Positions {
     }
 }
 
+/// The form of a mesh on a device, which kernels are composed for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MeshForm {
+    pub(crate) positions: Positions,
+    /// Whether there are target maps behind the positions.
+    pub(crate) has_targets: bool,
+}
+
+impl From<Positions> for MeshForm {
+    /// A mesh without targets.
+    fn from(positions: Positions) -> Self {
+        Self { positions, has_targets: false }
+    }
+}
+
 impl Kernel {
+    /// The form that the kernel sees of a mesh.
+    pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
+        let positions = self.interface().sees(form.positions);
+        MeshForm { positions, has_targets: form.has_targets && self.sees_targets() }
+    }
+
+    /// Whether the kernel goes by target maps where there are any.
+    pub(crate) fn sees_targets(&self) -> bool {
+        matches!(
+            self,
+            Kernel::Sweep(..)
+                | Kernel::Objective(_)
+                | Kernel::Gradient(_)
+                | Kernel::Stiffness(_)
+                | Kernel::ObjectiveAlongCorrection(_)
+                | Kernel::MoveAlongCorrection
+                | Kernel::CloseSecant
+        )
+    }
+
     /// Every kernel that a run by this plan, or an application's frame, may need.
     pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
         let sweeps =

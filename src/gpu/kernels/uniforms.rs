@@ -39,6 +39,8 @@ pub(crate) struct Params {
     pub(crate) ideal_sum: f32,
     pub(crate) tolerance: f32,
     pub(crate) mean_area: [f32; 2],
+    pub(crate) targets: u32,
+    pub(crate) padding: u32,
 }
 
 /// `Part` in shaders/common.wgsl.
@@ -248,6 +250,7 @@ mod tests {
                 ideal_sum,
                 tolerance,
                 mean_area,
+                targets,
             }
         );
         mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base });

@@ -29,7 +29,7 @@ impl MeshBuffers {
     /// Uploads a problem with its vertices at `positions`.
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
         let parts = Parts::new(problem, &gpu.device.limits())?;
-        let positions = laid_out(positions, parts.low_positions);
+        let positions = laid_out(positions, problem.targets(), parts.low_positions);
         scoped(&gpu.device, || Self {
             positions: filled(gpu, "positions", &positions, Usage::STORAGE | Usage::COPY_SRC),
             ring_start: filled(
@@ -91,18 +91,19 @@ impl MeshBuffers {
 const PART: u64 = POSITION / 2;
 
 /// The content of the buffer of positions: high and low parts of one vertex after the other, or, with `low`, all high
-/// parts and from that byte on all low parts.
-fn laid_out(positions: &[DVec2], low: Option<u64>) -> Vec<[f32; 2]> {
-    let count = positions.len();
+/// parts and from that byte on all low parts. Target maps follow the positions, as if they were positions.
+fn laid_out(positions: &[DVec2], targets: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
+    let count = positions.len() + targets.map_or(0, <[_]>::len);
     let (step, low, length) = match low {
         None => (2, 1, 2 * count),
         Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
     };
     let mut parts = vec![[0.0; 2]; length];
-    for (v, &p) in positions.iter().enumerate() {
-        let [x, y, x_low, y_low] = split(p);
-        parts[step * v] = [x, y];
-        parts[step * v + low] = [x_low, y_low];
+    let positions = positions.iter().map(|&p| split(p));
+    let maps = targets.unwrap_or_default().iter().map(|&[xx, xy, yy]| [xx, xy, yy, 0.0]);
+    for (row, [a, b, c, d]) in positions.chain(maps).enumerate() {
+        parts[step * row] = [a, b];
+        parts[step * row + low] = [c, d];
     }
     parts
 }

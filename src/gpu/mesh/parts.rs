@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use crate::error::GpuError;
 use crate::gpu::device::size::{
-    MeshSize, NUMBER, POSITION, TRIANGLE, check_limit, objective_invocations,
+    MeshSize, NUMBER, POSITION, TRIANGLE, check_limit, check_rows, objective_invocations,
 };
-use crate::gpu::kernels::table::Positions;
+use crate::gpu::kernels::table::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 
@@ -19,6 +19,8 @@ use crate::layout::Problem;
 pub(crate) struct Parts {
     /// The byte at which the low parts start in the buffer of positions, if they take a binding of their own.
     pub(crate) low_positions: Option<u64>,
+    /// Whether target maps follow the positions in their buffer.
+    has_targets: bool,
     /// The parts of the one-rings.
     pub(crate) rings: Vec<RingPart>,
     /// The parts of the triangles.
@@ -47,12 +49,16 @@ impl Parts {
         let triangles = problem.triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
         size.check(limits)?;
+        let has_targets = problem.targets().is_some();
+        let rows = if has_targets { 2 * size.vertices } else { size.vertices };
+        check_rows(rows, limits)?;
         let free = problem.free_count() as u32;
         // A part has whole rounds of the objective, so that the sums do not depend on the parts. A binding may start
         // after a round, as the bytes of 64 triangles are a multiple of the alignment; so are those of 64 positions.
         let round = objective_invocations(triangles);
         Ok(Self {
-            low_positions: low_positions(size.vertices, limits),
+            low_positions: low_positions(rows, limits),
+            has_targets,
             rings: rings(problem.ring_start(), limits)?,
             triangles: ranges(triangles as u32, TRIANGLE, round, limits),
             free: ranges(free, POSITION, WORKGROUP, limits),
@@ -65,9 +71,11 @@ impl Parts {
         self.rings.len().max(self.triangles.len()).max(self.free.len())
     }
 
-    /// How kernels see the positions.
-    pub(crate) fn positions(&self) -> Positions {
-        if self.low_positions.is_some() { Positions::InTwo } else { Positions::Whole }
+    /// The form of the mesh, for kernels.
+    pub(crate) fn form(&self) -> MeshForm {
+        let in_two = self.low_positions.is_some();
+        let positions = if in_two { Positions::InTwo } else { Positions::Whole };
+        MeshForm { positions, has_targets: self.has_targets }
     }
 }
 

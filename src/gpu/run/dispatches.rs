@@ -125,8 +125,8 @@ impl Dispatches {
         steps: Vec<Step>,
         keep_best: bool,
     ) -> Result<Self, GpuError> {
-        let positions = mesh.parts.positions();
-        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
+        let form = mesh.parts.form();
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let mut sweeps: Vec<(Metric, Derivatives, Pipeline)> = Vec::new();
         for &Step { metric, derivatives, .. } in &steps {
             if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
@@ -176,7 +176,7 @@ impl Dispatches {
                     kept,
                 ];
                 resources.extend(beyond);
-                gpu.pipelines.bind(&gpu.device, Interface::Run, mesh.parts.positions(), &resources)
+                gpu.pipelines.bind(&gpu.device, Interface::Run, mesh.parts.form(), &resources)
             });
             let bind_groups = bind_groups.collect();
             (control, best, params, bind_groups)
@@ -258,5 +258,7 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         ideal_sum: ideal_sum as f32,
         tolerance: plan.stop.tolerance as f32,
         mean_area: pair(problem.mean_area()),
+        targets: problem.positions().len() as u32,
+        padding: 0,
     }
 }

@@ -9,7 +9,7 @@ use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
 use crate::gpu::kernels::uniforms::{LevelOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
@@ -70,7 +70,7 @@ const SUMS: u32 = 4;
 /// The content of the kernels' arrays, collected while the dispatches are listed.
 struct Listing<'g> {
     gpu: &'g Gpu,
-    positions: Positions,
+    form: MeshForm,
     structure: Pages<u32>,
     values: Pages<f32>,
     vectors: u32,
@@ -102,7 +102,7 @@ impl Listing<'_> {
         groups: Groups,
         op: LevelOp,
     ) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.positions)?;
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
         let known = self.bound.iter().position(|&known| known == bound);
         let bind_group = known.unwrap_or(self.bound.len());
         if known.is_none() {
@@ -208,7 +208,7 @@ impl Listing<'_> {
             };
             resources.push(vectors.as_entire_binding());
             resources.extend(beyond);
-            gpu.pipelines.bind(&gpu.device, interface, self.positions, &resources)
+            gpu.pipelines.bind(&gpu.device, interface, self.form, &resources)
         });
         let bind_groups = bind_groups.collect();
         Uploaded { bind_groups, ops, vectors, gradient, direction }
@@ -239,7 +239,7 @@ impl Levels {
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(f32::MAX.into()) as f32;
         let mut listing = Listing {
             gpu,
-            positions: mesh.parts.positions(),
+            form: mesh.parts.form(),
             structure: Pages::new(gpu, "structure of the coarse levels"),
             values: Pages::new(gpu, "matrices of the coarse levels"),
             vectors: SUMS,

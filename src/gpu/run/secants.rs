@@ -46,7 +46,7 @@ impl Secants {
         if 2 * vector > limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) {
             return Ok(None);
         }
-        let positions = mesh.parts.positions();
+        let positions = mesh.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
         let close = pipeline(Kernel::CloseSecant)?;
         let sum = pipeline(Kernel::SumSecants)?;
@@ -76,7 +76,7 @@ impl Secants {
             resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
             resources.push(sums.as_entire_binding());
             resources.extend(beyond);
-            let form = mesh.parts.positions();
+            let form = mesh.parts.form();
             (gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources), ops)
         })?;
         Ok(Some(Self { bind_group, ops, stride, close, sum, bend, multiply, open, op }))

@@ -23,9 +23,9 @@ pub(crate) async fn roots(
     free: u32,
     waiting: Waiting,
 ) -> Result<Vec<f32>, GpuError> {
-    let positions = mesh.parts.positions();
+    let form = mesh.parts.form();
     let kernel = Kernel::Stiffness(dispatches.plan.scheme.base());
-    let pipeline = gpu.pipelines.get(&gpu.device, &kernel, positions)?;
+    let pipeline = gpu.pipelines.get(&gpu.device, &kernel, form)?;
     let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
     let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
     let mut bytes = vec![0_u8; stride as usize * mesh.parts.rings.len()];
@@ -61,7 +61,7 @@ pub(crate) async fn roots(
             let vectors = [&found, &direction, &vectors];
             resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
             resources.extend(low);
-            let bound = gpu.pipelines.bind(&gpu.device, Interface::Fine, positions, &resources);
+            let bound = gpu.pipelines.bind(&gpu.device, Interface::Fine, form, &resources);
             passes.run(&pipeline, None, |pass| {
                 pass.set_bind_group(0, &bound, &[part as u32 * stride]);
                 dispatch(pass, vertices.end - vertices.start);

@@ -1,0 +1,119 @@
+//! Sizes and tensors given for the vertices of a mesh, in a file beside it: Medit's `.sol` and BAMG's metric files.
+
+use std::path::Path;
+
+use crate::error::ReadError;
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, Cursor};
+
+/// The numbers of each vertex of a mesh, vertex by vertex in the order of its file: one, a size, or three, a symmetric
+/// tensor as xx, xy, yy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    components: usize,
+    values: Vec<f64>,
+}
+
+impl Solution {
+    /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG: the number of vertices and of
+    /// numbers of each, 1 or 3, and then these numbers.
+    ///
+    /// # Errors
+    /// [`ReadError`] if the file cannot be read, or follows neither format.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let source = Source::load(path)?;
+        let mut cursor = Cursor::new(&source);
+        let is_medit = cursor.next_row() && cursor.is_at_letter();
+        match is_medit {
+            true => medit(cursor),
+            false => bamg(Cursor::new(&source)),
+        }
+    }
+
+    /// How many numbers each vertex has: 1 or 3.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    /// All numbers.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+/// The kinds of values that `.sol` files number: a scalar, a vector and a symmetric tensor.
+const SCALAR: u64 = 1;
+const TENSOR: u64 = 3;
+
+fn medit(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
+    const REMEDY: &str = "Give a solution at the vertices of a mesh of two dimensions";
+    loop {
+        match cursor.token().unwrap_or_default() {
+            b"MeshVersionFormatted" => {
+                word(&mut cursor, "the version")?;
+            }
+            b"Dimension" => match word(&mut cursor, "the dimension")? {
+                2 => {}
+                other => {
+                    let problem = format!("the solution is of a mesh of dimension {other}");
+                    return Err(cursor.error(problem, REMEDY));
+                }
+            },
+            b"SolAtVertices" => {
+                let count = word(&mut cursor, "the number of vertices")?;
+                let kinds = word(&mut cursor, "the number of solutions")?;
+                if kinds != 1 {
+                    let problem = format!("there are {kinds} solutions, not one");
+                    return Err(cursor.error(problem, "Give a file with one of them"));
+                }
+                let components = match word(&mut cursor, "the kind of solution")? {
+                    SCALAR => 1,
+                    TENSOR => 3,
+                    kind => {
+                        let problem = format!("the solution is of kind {kind}");
+                        let remedy = "Give one of kind 1, sizes, or 3, symmetric tensors";
+                        return Err(cursor.error(problem, remedy));
+                    }
+                };
+                return numbers(cursor, count, components);
+            }
+            _ => {}
+        }
+        if !cursor.next_word() {
+            return Err(cursor.error("there is no SolAtVertices", REMEDY));
+        }
+    }
+}
+
+fn bamg(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
+    let count = word(&mut cursor, "the number of vertices")?;
+    match word(&mut cursor, "the number of numbers of a vertex")? {
+        1 => numbers(cursor, count, 1),
+        3 => numbers(cursor, count, 3),
+        other => {
+            let problem = format!("a vertex has {other} numbers, not 1, a size, or 3, a tensor");
+            Err(cursor.error(problem, CORRECT))
+        }
+    }
+}
+
+/// A whole number on this row or a later one.
+fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
+    cursor.next_word();
+    cursor.integer(what)
+}
+
+/// The numbers of all vertices. There may be no more than those.
+fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solution, ReadError> {
+    let wanted = count.saturating_mul(components as u64);
+    let mut values = Vec::with_capacity(cursor.capacity(wanted, 2));
+    for i in 0..wanted {
+        if !cursor.next_word() {
+            let vertex = i / components as u64;
+            let problem = format!("the file ends after {vertex} of {count} vertices");
+            return Err(cursor.error(problem, crate::file::text::CUT_OFF));
+        }
+        values.push(cursor.real("a value")?);
+    }
+    Ok(Solution { components, values })
+}

@@ -1,0 +1,126 @@
+//! What a run changed: how far vertices moved, and how sizes of elements changed.
+
+use crate::error::MeshError;
+use crate::parallel::collect;
+use crate::topology::Topology;
+
+/// What is different between two states of a mesh, at its free vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// How far vertices moved, in the mean length of their edges before.
+    pub moved: Spread,
+    /// By what factor the size of elements at a vertex changed, up or down: 1 or more. The size is the root of the
+    /// geometric mean of the areas of the triangles there.
+    pub size: Spread,
+    /// The least altitude of a triangle before and after, which bounds the time step of explicit solvers.
+    pub least_altitude: [f64; 2],
+}
+
+/// How a number is spread over the free vertices; all zero if there are none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Half of the vertices have no more.
+    pub median: f64,
+    /// Of twenty vertices nineteen have no more.
+    pub most_of_twenty: f64,
+    /// The largest.
+    pub most: f64,
+}
+
+/// What the triangles around a vertex add up to.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    /// The sum of the logarithms of areas, and of the lengths of the edges at the vertex.
+    logarithms: f64,
+    lengths: f64,
+    triangles: u32,
+}
+
+impl Change {
+    /// Compares the mesh with its vertices at `before` and at `after`.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn between(
+        topology: &Topology<'_>,
+        before: &[[f64; 2]],
+        after: &[[f64; 2]],
+    ) -> Result<Self, MeshError> {
+        topology.check_count(before)?;
+        topology.check_count(after)?;
+        let (was, low_before) = around(topology, before);
+        let (is, low_after) = around(topology, after);
+        let free: Vec<u32> =
+            (0..).zip(topology.free()).filter(|(_, f)| **f).map(|(v, _)| v).collect();
+        let moved = |i: usize| {
+            let v = free[i] as usize;
+            let ([x, y], [a, b]) = (before[v], after[v]);
+            let length = was[v].lengths / f64::from(2 * was[v].triangles);
+            (x - a).hypot(y - b) / length
+        };
+        let size = |i: usize| {
+            let v = free[i] as usize;
+            let change = is[v].logarithms - was[v].logarithms;
+            (0.5 * change / f64::from(was[v].triangles)).abs().exp()
+        };
+        Ok(Self {
+            moved: spread(collect(free.len(), moved)),
+            size: spread(collect(free.len(), size)),
+            least_altitude: [low_before, low_after],
+        })
+    }
+}
+
+fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
+    let mut around = vec![Around::default(); points.len()];
+    let mut least = f64::INFINITY;
+    for t in topology.triangles() {
+        let [p, q, r] = t.map(|v| points[v as usize]);
+        let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+        let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
+        let lengths = [a, b, c].map(|[x, y]| x.hypot(y));
+        let doubled = (a[0] * b[1] - a[1] * b[0]).abs();
+        least = least.min(doubled / lengths.into_iter().fold(0.0, f64::max));
+        let logarithm = (0.5 * doubled).max(f64::MIN_POSITIVE).ln();
+        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]) {
+            let at = &mut around[*v as usize];
+            at.logarithms += logarithm;
+            at.lengths += lengths[one] + lengths[other];
+            at.triangles += 1;
+        }
+    }
+    (around, least)
+}
+
+fn spread(mut numbers: Vec<f64>) -> Spread {
+    let Some(last) = numbers.len().checked_sub(1) else { return Spread::default() };
+    let mut at = |rank: usize| *numbers.select_nth_unstable_by(rank, f64::total_cmp).1;
+    Spread { median: at(last / 2), most_of_twenty: at(last * 19 / 20), most: at(last) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    #[test]
+    fn a_vertex_moved_by_a_third_of_an_edge() {
+        // The middle of a square of side 2, moved from the center by half of 1.
+        let points = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        let mut after = mesh.points.clone();
+        after[4] = [0.5, 0.0];
+        let change = Change::between(&topology, &mesh.points, &after).unwrap();
+        assert!((change.moved.most - 0.5 / 2f64.sqrt()).abs() < 1e-15, "{change:?}");
+        assert_eq!(
+            (change.moved.median, change.moved.most_of_twenty),
+            (change.moved.most, change.moved.most)
+        );
+        // Areas of 1 become 1, 1, 0.5 and 1.5.
+        assert!((change.size.most - 0.75f64.powf(-0.125)).abs() < 1e-15, "{change:?}");
+        assert_eq!(change.least_altitude, [1.0, 0.5]);
+        assert!(Change::between(&topology, &mesh.points, &after[1..]).is_err());
+    }
+}

@@ -1,0 +1,84 @@
+//! Targets that a mesh has itself: the sizes or shapes of its triangles, averaged over neighbors.
+
+use crate::parallel::collect;
+use crate::targets::surface::Surface;
+use crate::targets::tensor::Tensor;
+
+/// 1/√3: the equilateral triangle W has W⁻¹ = [[1, -1/√3], [0, 2/√3]].
+const W: f64 = 0.577_350_269_189_625_8;
+
+/// The maps of equilateral triangles of the sizes that triangles have on a surface.
+pub(super) fn sizes(
+    triangles: &[[u32; 3]],
+    points: &[[f64; 2]],
+    surface: Surface,
+    rings: u32,
+) -> Vec<Tensor> {
+    // Half the logarithm of the area is that of the size.
+    let of = |t: &[u32; 3]| {
+        let [a, b] = edges(t, points);
+        let [x, y] = surface.lengths_in(points, t);
+        let area = ((a[0] * b[1] - a[1] * b[0]) * x * y).abs().max(f64::MIN_POSITIVE);
+        Tensor::isotropic(-0.5 * area.ln())
+    };
+    averaged(triangles, points.len(), rings, of)
+}
+
+/// The maps under which triangles are equilateral and of one size.
+pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
+    let of = |t: &[u32; 3]| {
+        let [a, b] = edges(t, points);
+        // A W⁻¹ takes the equilateral triangle to this one, and the map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
+        let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
+        let square = Tensor::of_columns([a, second]);
+        match square.is_positive() {
+            true => square.ln().times(-0.5),
+            // Flat but for rounding: its length alone is known.
+            false => Tensor::isotropic(-0.5 * square.eigenvalues()[1].max(f64::MIN_POSITIVE).ln()),
+        }
+    };
+    averaged(triangles, points.len(), rings, of)
+}
+
+/// The edges from the first corner of a triangle.
+fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let [p, q, r] = t.map(|v| points[v as usize]);
+    [[q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]]
+}
+
+/// The exponential of the mean that logarithms of triangles have at each vertex: over its triangles, then `rings` times
+/// over the triangles' mean of their corners.
+fn averaged(
+    triangles: &[[u32; 3]],
+    vertices: usize,
+    rings: u32,
+    logarithm: impl Fn(&[u32; 3]) -> Tensor + Sync,
+) -> Vec<Tensor> {
+    let of_triangles: Vec<Tensor> = collect(triangles.len(), |t| logarithm(&triangles[t]));
+    let mut at = at_vertices(triangles, vertices, &of_triangles);
+    for _ in 0..rings {
+        let mean = |t: usize| {
+            let [p, q, r] = triangles[t].map(|v| at[v as usize]);
+            p.plus(q).plus(r).times(1.0 / 3.0)
+        };
+        let of_triangles: Vec<Tensor> = collect(triangles.len(), mean);
+        at = at_vertices(triangles, vertices, &of_triangles);
+    }
+    collect(vertices, |v| at[v].exp())
+}
+
+/// The mean over the triangles of each vertex; zero for a vertex that has none.
+fn at_vertices(triangles: &[[u32; 3]], vertices: usize, of: &[Tensor]) -> Vec<Tensor> {
+    let mut sums = vec![(Tensor::default(), 0u32); vertices];
+    for (t, &value) in triangles.iter().zip(of) {
+        for &v in t {
+            let (sum, count) = &mut sums[v as usize];
+            *sum = sum.plus(value);
+            *count += 1;
+        }
+    }
+    collect(vertices, |v| {
+        let (sum, count) = sums[v];
+        sum.times(1.0 / f64::from(count.max(1)))
+    })
+}

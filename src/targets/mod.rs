@@ -1,0 +1,113 @@
+//! Targets: the size, stretching and orientation that elements are to have, vertex by vertex.
+
+mod keep;
+mod surface;
+mod tensor;
+
+use crate::error::MeshError;
+use crate::topology::Topology;
+pub use surface::Surface;
+pub(crate) use tensor::Tensor;
+
+/// What elements are to look like: for each vertex of a mesh a symmetric positive tensor M, under which an element that
+/// is wanted there is equilateral with edges of one length. The quality of a triangle is then that of its image under √M,
+/// with the mean of √M at its corners.
+///
+/// Targets belong to the vertices and move with them. Only the ratio of sizes at different places counts: as the number of
+/// triangles is what it is, all are scaled together to fill the domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Targets {
+    /// √M of each vertex.
+    maps: Vec<Tensor>,
+}
+
+impl Targets {
+    /// Equilateral elements of one size, for this many vertices.
+    pub fn equilateral(vertices: usize) -> Self {
+        Self { maps: vec![Tensor::isotropic(1.0); vertices] }
+    }
+
+    /// Equilateral elements whose edges have these lengths, one for each vertex, in any unit.
+    ///
+    /// # Errors
+    /// [`MeshError::Target`] if a length is not a positive number.
+    pub fn sizes(lengths: &[f64]) -> Result<Self, MeshError> {
+        let map = |(v, &length): (usize, &f64)| {
+            let is_length = length > 0.0 && length.is_finite() && (1.0 / length).is_finite();
+            match is_length {
+                true => Ok(Tensor::isotropic(1.0 / length)),
+                false => Err(MeshError::Target { vertex: v, problem: "its size is not positive" }),
+            }
+        };
+        Ok(Self { maps: lengths.iter().enumerate().map(map).collect::<Result<_, _>>()? })
+    }
+
+    /// Elements that are equilateral under these tensors, one for each vertex, as xx, xy, yy: the metric of
+    /// anisotropic mesh adaptation, in any unit.
+    ///
+    /// # Errors
+    /// [`MeshError::Target`] if a tensor is not positive definite.
+    pub fn tensors(tensors: &[[f64; 3]]) -> Result<Self, MeshError> {
+        let map = |(v, &tensor): (usize, &[f64; 3])| {
+            let tensor = Tensor(tensor);
+            match tensor.is_positive() {
+                true => Ok(tensor.sqrt()),
+                false => {
+                    let problem = "its tensor is not positive definite";
+                    Err(MeshError::Target { vertex: v, problem })
+                }
+            }
+        };
+        Ok(Self { maps: tensors.iter().enumerate().map(map).collect::<Result<_, _>>()? })
+    }
+
+    /// Equilateral elements of the sizes that the mesh has on a surface, averaged over `rings` rings of neighbors.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn keep_size(
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        surface: Surface,
+        rings: u32,
+    ) -> Result<Self, MeshError> {
+        topology.check_count(points)?;
+        Ok(Self { maps: keep::sizes(topology.triangles(), points, surface, rings) })
+    }
+
+    /// Elements of the size, stretching and orientation that those of the mesh have, averaged over `rings` rings of
+    /// neighbors: boundary layers and anisotropic adaptation stay, noise goes.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn keep_shape(
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        rings: u32,
+    ) -> Result<Self, MeshError> {
+        topology.check_count(points)?;
+        Ok(Self { maps: keep::shapes(topology.triangles(), points, rings) })
+    }
+
+    /// These targets where `points` are coordinates of a surface: what was wanted in lengths of the surface, in its
+    /// coordinates. Not for [`Self::keep_shape`], which takes shapes in coordinates.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Target`] if a point is not on
+    /// the surface.
+    pub fn seen_on(mut self, surface: Surface, points: &[[f64; 2]]) -> Result<Self, MeshError> {
+        if points.len() != self.maps.len() {
+            return Err(MeshError::PointCount { given: points.len(), expected: self.maps.len() });
+        }
+        surface.check(points)?;
+        for (map, &[_, y]) in self.maps.iter_mut().zip(points) {
+            *map = map.squared().stretched(surface.lengths(y)).sqrt();
+        }
+        Ok(self)
+    }
+
+    /// √M of each vertex, as xx, xy, yy.
+    pub(crate) fn maps(&self) -> &[Tensor] {
+        &self.maps
+    }
+}

@@ -1,0 +1,47 @@
+//! The surface that the coordinates of a mesh belong to.
+
+use crate::error::MeshError;
+
+/// What the coordinates of a mesh are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Surface {
+    /// Lengths in the plane.
+    #[default]
+    Plane,
+    /// Longitude and latitude on a sphere, in degrees.
+    Sphere,
+}
+
+impl Surface {
+    /// Fails if a point is not on the surface, or at a pole, where all longitudes are one point.
+    pub fn check(self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        let is_off = |&[_, y]: &[f64; 2]| !(y.abs() < 90.0);
+        match (self, points.iter().position(is_off)) {
+            (Surface::Sphere, Some(vertex)) => {
+                let problem = "its latitude is not between -90 and 90 degrees";
+                Err(MeshError::Target { vertex, problem })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// [`Self::lengths`] in the middle of a triangle.
+    #[inline]
+    pub(crate) fn lengths_in(self, points: &[[f64; 2]], triangle: &[u32; 3]) -> [f64; 2] {
+        match self {
+            Surface::Plane => [1.0, 1.0],
+            Surface::Sphere => {
+                let [p, q, r] = triangle.map(|v| points[v as usize][1]);
+                self.lengths((p + q + r) / 3.0)
+            }
+        }
+    }
+
+    /// How long a unit of the first and of the second coordinate is where the second one is `y`.
+    pub(crate) fn lengths(self, y: f64) -> [f64; 2] {
+        match self {
+            Surface::Plane => [1.0, 1.0],
+            Surface::Sphere => [y.to_radians().cos(), 1.0],
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Symmetric tensors of the plane, and functions of them.
+
+/// A symmetric tensor, as xx, xy, yy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tensor(pub(crate) [f64; 3]);
+
+impl Tensor {
+    /// This number times the identity.
+    pub(crate) fn isotropic(x: f64) -> Self {
+        Self([x, 0.0, x])
+    }
+
+    /// A Aᵀ for the matrix with these columns.
+    pub(crate) fn of_columns([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> Self {
+        Self([ax * ax + bx * bx, ax * ay + bx * by, ay * ay + by * by])
+    }
+
+    /// Whether it is finite and positive definite.
+    pub(crate) fn is_positive(self) -> bool {
+        let [xx, xy, yy] = self.0;
+        let [low, high] = self.eigenvalues();
+        xx > 0.0 && yy > 0.0 && low > 0.0 && high.is_finite() && xy.is_finite()
+    }
+
+    /// The smaller and the larger eigenvalue. The smaller one of a positive tensor is found without cancellation.
+    pub(crate) fn eigenvalues(self) -> [f64; 2] {
+        let [xx, xy, yy] = self.0;
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let radius = half.hypot(xy);
+        let high = mean + radius;
+        let low = match mean > 0.0 {
+            // The determinant, each product divided before it can overflow.
+            true => (xx / high) * yy - (xy / high) * xy,
+            false => mean - radius,
+        };
+        [low, high]
+    }
+
+    /// The tensor of the same directions whose eigenvalues are `of` these.
+    fn map(self, of: impl Fn(f64) -> f64) -> Self {
+        let [xx, xy, yy] = self.0;
+        let half = 0.5 * (xx - yy);
+        let radius = half.hypot(xy);
+        let [low, high] = self.eigenvalues().map(of);
+        if radius == 0.0 {
+            return Self::isotropic(high);
+        }
+        let (mean, spread) = (0.5 * (high + low), 0.5 * (high - low) / radius);
+        Self([mean + spread * half, spread * xy, mean - spread * half])
+    }
+
+    /// The square root of a positive tensor.
+    pub(crate) fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+
+    /// The logarithm of a positive tensor.
+    pub(crate) fn ln(self) -> Self {
+        self.map(f64::ln)
+    }
+
+    /// The exponential.
+    pub(crate) fn exp(self) -> Self {
+        self.map(f64::exp)
+    }
+
+    /// The tensor in coordinates that are `factors` times as long: D M D.
+    pub(crate) fn stretched(self, [x, y]: [f64; 2]) -> Self {
+        let [xx, xy, yy] = self.0;
+        Self([xx * x * x, xy * x * y, yy * y * y])
+    }
+
+    /// The square of the tensor.
+    pub(crate) fn squared(self) -> Self {
+        let [xx, xy, yy] = self.0;
+        Self::of_columns([[xx, xy], [xy, yy]])
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a + x, b + y, c + z])
+    }
+
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: Tensor, b: Tensor) {
+        // Small entries beside large ones are as good as the large ones' digits.
+        let size = b.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        for (x, y) in a.0.into_iter().zip(b.0) {
+            assert!((x - y).abs() < 1e-13 * size, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn the_root_is_the_exponential_of_half_the_logarithm() {
+        for tensor in [[2.0, 0.0, 2.0], [4.0, 1.0, 0.5], [1.0, -3.0, 10.0], [1e-8, 0.0, 1e6]] {
+            let tensor = Tensor(tensor);
+            assert!(tensor.is_positive());
+            near(tensor.ln().times(0.5).exp(), tensor.sqrt());
+            near(tensor.ln().exp(), tensor);
+            near(tensor.sqrt().squared(), tensor);
+        }
+        near(Tensor::isotropic(9.0).sqrt(), Tensor::isotropic(3.0));
+    }
+
+    #[test]
+    fn what_has_a_direction_of_no_or_negative_size_is_not_positive() {
+        for tensor in [[1.0, 1.0, 1.0], [1.0, 2.0, 1.0], [-1.0, 0.0, -1.0], [1.0, 0.0, 0.0]] {
+            assert!(!Tensor(tensor).is_positive(), "{tensor:?}");
+        }
+        assert!(!Tensor([f64::NAN, 0.0, 1.0]).is_positive());
+        assert!(!Tensor([f64::INFINITY, 0.0, 1.0]).is_positive());
+    }
+}
