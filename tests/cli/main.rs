@@ -30,6 +30,7 @@ mod report;
 mod schemes;
 mod shell;
 mod streams;
+mod targets;
 mod untangle;
 
 use gpu_smooth::{Mesh, MeshFile};

@@ -198,7 +198,7 @@ fn corrections_are_the_same_part_by_part() {
 #[test]
 fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
     // Its only coarse level has some 80 unknowns: their inverse matrix is more than the device binds.
-    let mesh = bad_plate(700);
+    let mesh = bad_plate(870);
     let [large, small] = devices(&self::mesh());
     let auto = Options::default();
     let [with, without] = [&large, &small].map(|app| run(app, &mesh, &auto));

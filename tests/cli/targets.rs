@@ -1,0 +1,187 @@
+//! What elements are to look like: sizes and shapes that are kept, given, or seen on the sphere.
+
+use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
+use gpu_smooth::Mesh;
+use std::fmt::Write;
+
+fn node_ele(mesh: &Mesh) -> [String; 2] {
+    super::support::triangle_text(mesh, "")
+}
+
+fn folder(more: &[(&str, &str)]) -> Folder {
+    let [node, ele] = node_ele(&disturbed());
+    let files = [("in.node", node.as_str()), ("in.ele", ele.as_str())];
+    Folder::new(&[&files, more].concat())
+}
+
+/// A number for each vertex, growing from left to right.
+fn sizes() -> Vec<f64> {
+    disturbed().points.iter().map(|&[x, _]| 1.0 + x.abs()).collect()
+}
+
+fn listed(values: &[f64], per_row: usize) -> String {
+    let mut text = String::new();
+    for row in values.chunks(per_row) {
+        let row: Vec<String> = row.iter().map(f64::to_string).collect();
+        writeln!(text, "{}", row.join(" ")).unwrap();
+    }
+    text
+}
+
+#[test]
+fn targets_are_kept_and_reported_on_both_engines() {
+    for engine in ["cpu", "gpu"] {
+        for (target, scheme) in [("keep-size", "soft-size"), ("keep-shape", "imr")] {
+            let folder = folder(&[]);
+            let line = format!("in out --engine {engine} --target {target} --report r.json");
+            let run = folder.line(&line).clean();
+            assert_smoothed(&folder.mesh("in.node"), &folder.mesh("out.node"));
+            assert_holds(&run.out, &[scheme, "f of targets", "f imr", "19 of 20 vertices moved"]);
+            let report = folder.json("r.json");
+            assert_eq!(report["scheme"], scheme);
+            let told = &report["target"];
+            assert_eq!((&told["kind"], &told["surface"]), (&target.into(), &"plane".into()));
+            let [before, after] = [0, 1].map(|i| number(&told["f"][i]));
+            assert!(after < before, "{told}");
+            assert!((number(&report["history"][0]["f"]) - before).abs() <= 1e-12 * before);
+        }
+    }
+}
+
+#[test]
+fn a_target_of_sizes_is_not_given_to_a_metric_that_sees_none() {
+    let folder = folder(&[]);
+    let run = folder.line("in out --target keep-size --scheme imr");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["--target keep-size has no effect on imr", "soft-size"]);
+    folder.line("in out --engine cpu --target keep-size --scheme shape-size").clean();
+}
+
+#[test]
+fn sizes_and_tensors_come_from_files_of_medit_and_bamg_and_from_point_data() {
+    let (sizes, count) = (sizes(), sizes().len());
+    let tensors: Vec<f64> =
+        sizes.iter().flat_map(|h| [1.0 / (h * h), 0.0, 1.0 / (h * h)]).collect();
+    let medit = |kind: u32, rows: &str| {
+        format!(
+            "MeshVersionFormatted 2\n\nDimension 2\n\nSolAtVertices\n{count}\n1 {kind}\n{rows}End\n"
+        )
+    };
+    let (scalars, rows) = (listed(&sizes, 1), listed(&tensors, 3));
+    let files = [
+        ("h.sol", medit(1, &scalars)),
+        ("m.sol", medit(3, &rows)),
+        ("h.mtr", format!("{count} 1\n{scalars}")),
+        ("m.mtr", format!("{count} 3\n{rows}")),
+    ];
+    let files: Vec<(&str, &str)> =
+        files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let folder = folder(&files);
+    let mut ends = Vec::new();
+    for target in ["size=h.sol", "metric=m.sol", "size=h.mtr", "metric=m.mtr"] {
+        let line = format!("in out --engine cpu --scheme soft-size --target {target}");
+        folder.line(&line).clean();
+        ends.push(folder.mesh("out.node").points);
+    }
+    // A size is the tensor of its inverse square, but for rounding.
+    for other in &ends {
+        let apart = ends[0].iter().zip(other).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
+        assert!(apart.fold(0.0, f64::max) < 1e-9);
+    }
+    // Sizes make a difference: where they grow by half, elements do.
+    folder.line("in even --engine cpu --scheme soft-size").clean();
+    assert_ne!(folder.mesh("even.node").points, ends[0]);
+
+    let mut vtk = "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\n".to_owned();
+    let mesh = disturbed();
+    writeln!(vtk, "POINTS {count} double").unwrap();
+    for [x, y] in &mesh.points {
+        writeln!(vtk, "{x:?} {y:?} 0").unwrap();
+    }
+    let triangles = mesh.triangles.len();
+    writeln!(vtk, "CELLS {triangles} {}", 4 * triangles).unwrap();
+    for [a, b, c] in &mesh.triangles {
+        writeln!(vtk, "3 {a} {b} {c}").unwrap();
+    }
+    writeln!(vtk, "CELL_TYPES {triangles}\n{}", "5\n".repeat(triangles)).unwrap();
+    writeln!(vtk, "POINT_DATA {count}\nSCALARS h double 1\nLOOKUP_TABLE default\n{scalars}")
+        .unwrap();
+    let folder = Folder::new(&[("in.vtk", &vtk)]);
+    assert_eq!(folder.line("in.vtk out.vtk --engine cpu --target size=h").code, Some(0));
+    let apart = folder.mesh("out.vtk").points;
+    let apart = apart.iter().zip(&ends[0]).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
+    assert!(apart.fold(0.0, f64::max) < 1e-9);
+}
+
+#[test]
+fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
+    let count = sizes().len();
+    let good = listed(&sizes(), 1);
+    let cut = good.lines().take(7).collect::<Vec<_>>().join("\n");
+    let files = [
+        ("few.mtr", "3 1\n1 1 1\n".to_owned()),
+        ("cut.mtr", format!("{count} 1\n{cut}")),
+        ("wrong.mtr", format!("{count} 1\n{}", good.replacen('1', "x", 1))),
+        ("zero.mtr", format!("{count} 1\n{}", "0\n".repeat(count))),
+        ("two.mtr", format!("{count} 2\n{good}")),
+        ("huge.mtr", "99999999999999 3\n1 0 1\n".to_owned()),
+        (
+            "vector.sol",
+            format!("MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n{count}\n1 2\n"),
+        ),
+        ("solid.sol", "MeshVersionFormatted 2\nDimension 3\n".to_owned()),
+        ("none.sol", "MeshVersionFormatted 2\nDimension 2\nEnd\n".to_owned()),
+    ];
+    let files: Vec<(&str, &str)> =
+        files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let folder = folder(&files);
+    for (target, parts) in [
+        ("size=few.mtr", &["few.mtr: there are numbers for 3 vertices"][..]),
+        ("size=cut.mtr", &["cut.mtr:8: the file ends after 7 of"]),
+        ("size=wrong.mtr", &["wrong.mtr:2", "not a number"]),
+        ("size=zero.mtr", &["vertex 0", "its size is not positive"]),
+        ("size=two.mtr", &["two.mtr:1: a vertex has 2 numbers"]),
+        ("metric=huge.mtr", &["huge.mtr:2: the file ends after 1 of 99999999999999 vertices"]),
+        ("size=vector.sol", &["vector.sol:5: the solution is of kind 2"]),
+        ("size=solid.sol", &["solid.sol:2: the solution is of a mesh of dimension 3"]),
+        ("size=none.sol", &["there is no SolAtVertices"]),
+        ("size=nowhere", &["nowhere: there is no such file"]),
+    ] {
+        folder.line(&format!("in out --engine cpu --target {target}")).refused(parts);
+    }
+    let run = folder.line("in out --engine cpu --target size=");
+    assert_eq!(run.code, Some(2), "{}", run.err);
+}
+
+#[test]
+fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
+    let mesh = disturbed();
+    let mut text = format!("bay\n{} {}\n", mesh.triangles.len(), mesh.points.len());
+    for (i, [x, y]) in mesh.points.iter().enumerate() {
+        writeln!(text, "{} {} {} 1.5", i + 1, -70.0 + x, 60.0 + 0.5 * y).unwrap();
+    }
+    for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
+        writeln!(text, "{} 3 {} {} {}", i + 1, a + 1, b + 1, c + 1).unwrap();
+    }
+    text += "0 = Number of open boundaries\n";
+    let folder = Folder::new(&[("in.gr3", &text)]);
+    let note = "the coordinates look like degrees: --surface sphere";
+    let plane = folder.line("in.gr3 plane.gr3 --engine cpu --report plane.json");
+    assert_holds(&plane.err, &[note]);
+    let sphere = folder.line("in.gr3 out.gr3 --engine cpu --surface sphere --report r.json");
+    assert_eq!(sphere.code, Some(0), "{}", sphere.err);
+    assert!(!sphere.err.contains(note), "{}", sphere.err);
+    let report = folder.json("r.json");
+    assert_eq!(report["target"]["surface"], "sphere");
+    // f and angles are those on the sphere. Targets take its lengths at vertices, f those in the middle of triangles.
+    let [f, target] = [&report["after"]["f"]["imr"], &report["target"]["f"][1]].map(number);
+    assert!((f / target - 1.0).abs() < 2e-3, "{f} {target}");
+    let angle = number(&report["after"]["min_angle"]);
+    assert!(angle > number(&folder.json("plane.json")["after"]["min_angle"]), "{angle}");
+
+    let far = text.replace(" 60.", " 90.");
+    let folder = Folder::new(&[("in.gr3", &far)]);
+    folder
+        .line("in.gr3 out.gr3 --engine cpu --surface sphere --quiet")
+        .refused(&["its latitude is not between -90 and 90 degrees"]);
+}
