@@ -61,7 +61,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 2 * (24 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 3 * (24 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]
