@@ -1,4 +1,4 @@
-// The state of a run, written by finish.wgsl alone.
+// The state of a run, written by finish.wgsl, and by judged/reopen.wgsl where an application encodes the sweeps.
 
 struct Control {
     // Not zero when the run has ended: every kernel then leaves everything as it is.
@@ -9,7 +9,9 @@ struct Control {
     improved: u32,
     best_sweep: u32,
     best_sum: vec2<f32>,
-    padding: vec2<u32>,
+    // How many changes of the mesh by the application there were when this run began.
+    changes: u32,
+    padding: u32,
     // Sums by evaluation (modulo HISTORY) and slot, each a pair of floats. A slot is a metric, or
     // INVERTED, the number of triangles that are inverted or flat in single precision, or
     // WORST, the largest imr² - 1, which is not a sum.

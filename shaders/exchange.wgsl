@@ -18,6 +18,8 @@ struct Exchange {
 // The application's number of each vertex.
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> vertex_buffer: array<f32>;
+// How often a vertex was moved, and how often the host changed what may move.
+@group(0) @binding(4) var<storage, read_write> changes: array<atomic<u32>, 2>;
 
 fn runtime_zero() -> u32 {
     return exchange.zero;

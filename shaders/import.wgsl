@@ -24,5 +24,6 @@ fn import_positions(
     // A position that is not finite would spread from neighbor to neighbor.
     if is_finite(x.x) && is_finite(y.x) {
         set_position(vertex, vec4(x.x, y.x, x.y, y.y));
+        atomicAdd(&changes[0], 1u);
     }
 }

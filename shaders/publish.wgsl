@@ -5,14 +5,20 @@ struct Publish {
     // In words, from the start of the binding.
     offset: u32,
     triangles: u32,
-    padding: vec2<u32>,
+    // Whether the sweeps are judged, so that the run that follows has a stop and a count of sweeps.
+    judged: u32,
+    padding: u32,
     // ideal² of each metric, which the sums leave out of each triangle; 0 for a metric that is not tracked.
     ideal_squared: array<vec4<f32>, SLOT_VECTORS>,
 }
 
 @group(0) @binding(0) var<uniform> publish_to: Publish;
 @group(0) @binding(1) var<storage, read> control: Control;
-@group(0) @binding(2) var<storage, read_write> destination: array<u32>;
+// The control of the sweeps themselves.
+@group(0) @binding(2) var<storage, read> sweeps: Control;
+// How often a vertex was moved, and how often the host changed what may move.
+@group(0) @binding(3) var<storage, read> changes: array<u32, 2>;
+@group(0) @binding(4) var<storage, read_write> destination: array<u32>;
 
 const INFINITY: u32 = 0x7f800000u;
 
@@ -32,4 +38,11 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
         word = bitcast<u32>(ideal + (sum.x + sum.y) / f32(publish_to.triangles));
     }
     destination[publish_to.offset + slot] = word;
+    if slot == 0u {
+        // Not of a run that the next sweeps will begin anew.
+        let holds = publish_to.judged != 0u && sweeps.changes == changes[0] + changes[1];
+        destination[publish_to.offset + SLOTS] = select(0u, sweeps.done, holds);
+        let done = max(sweeps.evaluated, 1u) - 1u;
+        destination[publish_to.offset + SLOTS + 1u] = select(0u, done, holds);
+    }
 }

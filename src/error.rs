@@ -303,6 +303,7 @@ pub enum SmoothError {
 
 /// The GPU engine cannot start, or failed during a run.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// There is no adapter, or none with the wanted name.
     #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
@@ -368,9 +369,18 @@ pub enum GpuError {
     /// The device is out of memory.
     #[error("the device is out of memory: {0}")]
     OutOfMemory(String),
-    /// A buffer of the application does not have the size, usage or layout that is needed.
+    /// A buffer of the application does not have the size, usage or layout that is needed, was destroyed, or is of another
+    /// device.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
+    /// The queue is not the queue of the device that it was given with.
+    #[error("the queue is not that of the device: both must come from one call of request_device")]
+    Queue,
+    /// The call would block the thread, which a page in a browser cannot do.
+    #[error(
+        "a browser cannot wait in a blocking call: use the call of this name that ends in _async"
+    )]
+    WouldBlock,
     /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),

@@ -58,22 +58,26 @@
 //! // In each frame, for a mesh whose boundary or vertices the application moves.
 //! let mut encoder = device.create_command_encoder(&Default::default());
 //! bound.encode_import(&mut encoder);
-//! sweeps.encode(&mut encoder, 5);
+//! sweeps.encode_sweeps(&mut encoder, 5);
 //! bound.encode_export(&mut encoder);
-//! objective.encode(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
+//! objective.encode_objective(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
 //! draw(&mut encoder, vertices);
 //! queue.submit([encoder.finish()]);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! - [`Topology::move_clamped`] moves vertices that a user drags and stops before a triangle inverts.
+//! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
+//!   [`Topology::move_clamped`] does so with positions on the host.
+//! - [`Sweeps::until_converged`] ends sweeps by themselves, on the device; a [`Budget`] chooses how many a frame has time for.
+//! - A [`Readback`] reads objectives or vertices in each frame and never waits.
 //! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
 //! - [`Timestamps`] measure how long each kernel takes.
 //! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
 //! - [`Smoother::run_async`] does a whole run, with its stop rule, without blocking the thread.
 //!
-//! `examples/embed` and `examples/moving_boundary` are complete applications.
+//! `docs/embedding.md` is the whole story: a frame, devices, precision, drags, pins, budgets, readbacks, other meshes and lost
+//! devices. `examples/embed`, `examples/moving_boundary` and `examples/outside` are complete applications.
 //!
 //! # Limits
 //!
@@ -113,6 +117,11 @@ pub mod output {
     pub use crate::file::{check, replace, same_file};
 }
 
+/// Has the code of the chapter compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/embedding.md")]
+mod embedding {}
+
 /// For benchmarks, experiments and this library's own tests. It changes without notice.
 #[doc(hidden)]
 pub mod internal;
@@ -126,8 +135,8 @@ pub use file::{
     Solution, abandon_writes,
 };
 pub use gpu::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, MeshSize, ObjectiveValues, Sweeps, Timestamps,
-    VertexBuffer,
+    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
+    MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{

@@ -2,9 +2,10 @@
 
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DVec2;
+use web_time::Instant;
 
 use crate::cpu::{CpuEngine, held_back, mean_excess};
 use crate::error::{MeshError, SmoothError};

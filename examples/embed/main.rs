@@ -90,10 +90,10 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
             // The import reads what the application has moved since the last export. Here it has moved nothing, so that
             // the import could be left out.
             bound.encode_import(&mut encoder);
-            smoother.encode(&mut encoder, sweeps);
+            smoother.encode_sweeps(&mut encoder, sweeps);
             bound.encode_export(&mut encoder);
         }
-        objective.encode(&mut encoder);
+        objective.encode_objective(&mut encoder);
         picture.draw(&mut encoder, &vertices);
         queue.submit([encoder.finish()]);
 

@@ -101,7 +101,7 @@ impl Smoothing {
 
     /// Lets the sweeps move all vertices but these and those that the mesh itself fixes.
     pub(crate) fn hold(&mut self, held: &[u32]) -> Result<()> {
-        self.device_mesh.set_fixed(&[&self.mesh.fixed, held].concat())?;
+        self.device_mesh.set_pinned(held)?;
         self.sweeps.restart();
         Ok(())
     }
@@ -129,8 +129,8 @@ impl Smoothing {
         if std::mem::take(&mut self.moved) {
             self.bound.encode_import(encoder);
         }
-        self.sweeps.encode(encoder, sweeps);
-        self.objective.encode(encoder);
+        self.sweeps.encode_sweeps(encoder, sweeps);
+        self.objective.encode_objective(encoder);
         self.bound.encode_export(encoder);
         let end = self.vertices.size();
         encoder.copy_buffer_to_buffer(&self.vertices, 0, &self.staging, 0, end);

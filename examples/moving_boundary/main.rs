@@ -105,7 +105,7 @@ pub(crate) fn simulate(
         bound.encode_import(&mut encoder);
         // No `restart`: the hole turns by less than an edge, and over-relaxed sweeps carry the motion farther into the
         // mesh than plain ones.
-        smoother.encode(&mut encoder, sweeps);
+        smoother.encode_sweeps(&mut encoder, sweeps);
         bound.encode_export(&mut encoder);
         queue.submit([encoder.finish()]);
         // Here the simulation would compute on the vertex buffer. This example only waits, to take the time.

@@ -16,7 +16,10 @@ pub(crate) mod scope;
 
 pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
-pub use embed::{BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer};
+pub use embed::{
+    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, LastValid,
+    ObjectiveValues, Readback, Sweeps, VertexBuffer,
+};
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};
 pub(crate) use run::GpuEngine;

@@ -2,7 +2,15 @@
 
 use crate::error::GpuError;
 
+/// Runs wgpu calls. A browser answers what it reports of them later, and a page cannot wait for that: there it goes to the
+/// device's handler of uncaptured errors.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn scoped<T>(_: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
+    Ok(calls())
+}
+
 /// Runs wgpu calls and turns whatever wgpu reports of them into an error.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -22,8 +30,22 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
     }
 }
 
+/// As [`scoped`], for calls that take a buffer of the application: what is refused is then the buffer.
+pub(crate) fn scoped_to_buffer<T>(
+    device: &wgpu::Device,
+    calls: impl FnOnce() -> T,
+) -> Result<T, GpuError> {
+    scoped(device, calls).map_err(|error| match error {
+        GpuError::Refused(text) => {
+            GpuError::Buffer(format!("it was destroyed, or is of another device: {text}"))
+        }
+        other => other,
+    })
+}
+
 /// Whether the device is lost, found by trial: a lost device makes a buffer that cannot be mapped, and reports nothing
 /// to the error scopes.
+#[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);

@@ -116,7 +116,7 @@ impl Measured<'_> {
         let taken = count.min(SAMPLE);
         let place = |i: usize| {
             let (start, end) = (i * count / taken, (i + 1) * count / taken);
-            start + (i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) % (end - start)
+            start + ((i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as usize % (end - start)
         };
         let mut samples = vec![Vec::with_capacity(taken); measures.len()];
         for i in 0..taken {

@@ -1,9 +1,10 @@
 //! The loop over the sweeps of a run, the same for every engine.
 
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DVec2;
+use web_time::Instant;
 
 use crate::error::{GpuError, SmoothError};
 use crate::layout::Problem;

@@ -3,8 +3,8 @@
 use std::sync::{Arc, LazyLock, Mutex};
 
 use gpu_smooth::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, ObjectiveValues,
-    SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
+    BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize,
+    ObjectiveValues, SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
 };
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;
@@ -133,7 +133,7 @@ impl App {
         let buffer =
             self.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
         let bound = sweeps.bind_objective(&buffer, 0).unwrap();
-        self.submit(|encoder| bound.encode(encoder));
+        self.submit(|encoder| bound.encode_objective(encoder));
         bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.read(&buffer)))
     }
 }
@@ -234,5 +234,6 @@ const _: () = {
     moves_between_threads::<Sweeps>();
     moves_between_threads::<BoundVertices>();
     moves_between_threads::<BoundObjective>();
+    moves_between_threads::<BoundMove>();
     moves_between_threads::<Timestamps>();
 };

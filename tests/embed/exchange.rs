@@ -33,7 +33,7 @@ fn an_export_writes_x_and_y_of_used_vertices_and_nothing_else() {
         let before = app.read(&vertices.buffer);
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
-            sweeps.encode(encoder, 2);
+            sweeps.encode_sweeps(encoder, 2);
             vertices.bind(&device_mesh).encode_export(encoder);
         });
         let (points, after) = (app.points(&device_mesh), app.read(&vertices.buffer));
@@ -93,7 +93,7 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
     let bound = device_mesh.bind_vertices(&place).unwrap();
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     app.submit(|encoder| {
-        sweeps.encode(encoder, 2);
+        sweeps.encode_sweeps(encoder, 2);
         bound.encode_export(encoder);
     });
     let (points, words) = (app.points(&device_mesh), app.read(&vertices.buffer));
@@ -132,7 +132,7 @@ fn what_the_application_leaves_alone_keeps_its_full_precision() {
                 if exchange {
                     vertices.bind(&device_mesh).encode_import(encoder);
                 }
-                sweeps.encode(encoder, 3);
+                sweeps.encode_sweeps(encoder, 3);
                 if exchange {
                     vertices.bind(&device_mesh).encode_export(encoder);
                 }
@@ -159,7 +159,7 @@ fn a_vertex_the_application_moves_is_followed() {
     let frame = |sweeps: &mut Sweeps, count| {
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
-            sweeps.encode(encoder, count);
+            sweeps.encode_sweeps(encoder, count);
             vertices.bind(&device_mesh).encode_export(encoder);
         });
         Mesh { points: app.points(&device_mesh), ..mesh.clone() }
@@ -208,7 +208,7 @@ fn two_vertex_buffers_can_show_one_mesh() {
     let [first, second] = [[0, 8], [16, 24]]
         .map(|[offset, stride]| (Vertices::new(&app, &mesh, offset, stride), stride));
     app.submit(|encoder| {
-        sweeps.encode(encoder, 4);
+        sweeps.encode_sweeps(encoder, 4);
         for (vertices, _) in [&first, &second] {
             vertices.bind(&device_mesh).encode_export(encoder);
         }
@@ -238,7 +238,7 @@ fn a_position_that_is_not_finite_is_not_taken() {
             });
             assert_eq!(app.points(&device_mesh)[v as usize], before[v as usize]);
             app.submit(|encoder| {
-                sweeps.encode(encoder, 10);
+                sweeps.encode_sweeps(encoder, 10);
                 vertices.bind(&device_mesh).encode_export(encoder);
             });
             let words = app.read(&vertices.buffer);

@@ -91,7 +91,7 @@ fn points_polled_by_the_application_are_those_read_by_blocking() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
-    app.submit(|encoder| sweeps.encode(encoder, 5));
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let (found, frames) = drive(app.device(), device_mesh.read_points_async());
     assert!(frames > 0, "the future blocked the thread");
     assert_eq!(found.unwrap(), app.points(&device_mesh));

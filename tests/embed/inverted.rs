@@ -84,7 +84,7 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
             });
             let start = app.points(&device_mesh);
             assert!(bad(&start) > 10);
-            app.submit(|encoder| sweeps.encode(encoder, 20));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 20));
             let end = app.points(&device_mesh);
 
             let case = format!("{throw:?}, {metric}, {derivatives:?}");
@@ -106,7 +106,7 @@ fn once_the_application_mends_the_mesh_all_is_well_again() {
         let vertices = Vertices::usual(&app, mesh);
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
-            sweeps.encode(encoder, 20);
+            sweeps.encode_sweeps(encoder, 20);
         });
     }
     let points = app.points(&device_mesh);

@@ -110,11 +110,31 @@ fn a_device_with_exactly_the_required_limits_smooths() {
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let vertices = Vertices::new(&app, &mesh, 0, 8);
     app.submit(|encoder| {
-        sweeps.encode(encoder, 10);
+        sweeps.encode_sweeps(encoder, 10);
         vertices.bind(&device_mesh).encode_export(encoder);
     });
     let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
+}
+
+#[test]
+fn a_device_with_exactly_the_limits_of_a_vertex_buffer_binds_it() {
+    let mesh = bad_plate(300);
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    for (offset, stride) in [(0, 96), (4, 96), (1020, 100), (1 << 16, 256)] {
+        let needed = VertexBuffer::binding_size(size.vertices, stride, offset);
+        let own = Limits {
+            max_storage_buffer_binding_size: needed,
+            ..Limits::downlevel_webgl2_defaults()
+        };
+        let limits = Gpu::required_limits(own, size, &adapter().limits()).unwrap();
+        assert_eq!(limits.max_storage_buffer_binding_size, needed);
+        let app = App::with_limits(limits).unwrap();
+        let vertices = Vertices::new(&app, &mesh, offset, stride);
+        vertices.bind(&app.mesh(&mesh));
+    }
+    assert_eq!(VertexBuffer::binding_size(usize::MAX, u64::MAX, 0), u64::MAX);
+    assert_eq!(VertexBuffer::binding_size(0, 8, 0), 8);
 }
 
 /// A device that binds 32 KiB at once.
@@ -141,7 +161,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
-    app.submit(|encoder| sweeps.encode(encoder, 5));
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
 }
@@ -155,7 +175,8 @@ fn a_vertex_buffer_too_large_to_bind_is_refused() {
     let buffer = app.buffer(bytes, wgpu::BufferUsages::STORAGE);
     let place = VertexBuffer::new(&buffer, 64);
     let error = device_mesh.bind_vertices(&place).err().unwrap();
-    let needed = bytes - 56;
+    let needed = VertexBuffer::binding_size(mesh.points.len(), 64, 0);
+    assert_eq!(needed, bytes - 56);
     assert_limit(
         &error,
         "max_storage_buffer_binding_size",

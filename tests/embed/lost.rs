@@ -6,7 +6,10 @@ use std::sync::mpsc;
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-use gpu_smooth::{Backend, DeviceMesh, GpuError, Mesh, Options, Progress, Smoother, Sweeps, wgpu};
+use gpu_smooth::{
+    Backend, DeviceMesh, Gpu, GpuError, Mesh, Options, Progress, Readback, Smoother, Sweeps,
+    VertexBuffer, wgpu,
+};
 
 use crate::app::{App, Vertices, bad_plate, gpu_error};
 use crate::support::f_imr;
@@ -97,19 +100,34 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let usage = wgpu::BufferUsages::STORAGE;
-        let published = app.buffer(64, usage);
+        let published = app.buffer(64, usage | wgpu::BufferUsages::COPY_SRC);
         let bound = vertices.bind(&device_mesh);
         let objective = sweeps.bind_objective(&published, 0).unwrap();
-        app.submit(|encoder| sweeps.encode(encoder, 2));
+        let mut judged = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let words = app.buffer(8 * mesh.points.len() as u64, usage);
+        let mask = device_mesh.bind_mask(&words, 0).unwrap();
+        let targets = VertexBuffer::new(&words, 8);
+        let drag = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).unwrap();
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
             // Most of wgpu looks as if it still worked.
             bound.encode_import(encoder);
-            sweeps.encode(encoder, 2);
-            objective.encode(encoder);
+            mask.encode_mask(encoder);
+            drag.encode_move(encoder);
+            sweeps.encode_sweeps(encoder, 2);
+            judged.encode_sweeps(encoder, 2);
+            objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
-        let _ = device_mesh.set_fixed(&[]);
+        let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
+        // Its queue is its own all the same.
+        assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
+        let _ = device_mesh.pin(&[1]);
+        judged.restart();
+        let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).map(drop);
+        let _ = device_mesh.bind_mask(&words, 0).map(drop);
+        let _ = Readback::<f32>::new(&app.gpu, &published, 0, 1).map(drop);
         assert_lost(&device_mesh.read_points().unwrap_err());
         match DeviceMesh::new(&app.gpu, &mesh) {
             Err(error) => assert_lost(&gpu_error(error)),
@@ -130,9 +148,9 @@ fn a_new_device_goes_on_from_the_last_positions() {
             let app = App::new();
             let device_mesh = app.mesh(&mesh);
             let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-            app.submit(|encoder| sweeps.encode(encoder, 3));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             mesh.points = app.points(&device_mesh);
-            app.submit(|encoder| sweeps.encode(encoder, 3));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             app.device().destroy();
             assert_lost(&device_mesh.read_points().unwrap_err());
         }
@@ -141,7 +159,7 @@ fn a_new_device_goes_on_from_the_last_positions() {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-        app.submit(|encoder| sweeps.encode(encoder, 20));
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 20));
         let points = app.points(&device_mesh);
         assert!(f_imr(&Mesh { points, ..mesh.clone() }) < saved);
     });

@@ -7,14 +7,21 @@
 mod support;
 
 mod app;
+mod budget;
+mod clamped;
 mod exchange;
-mod fixed;
+
 mod futures;
 mod inverted;
+mod judged;
+mod last_valid;
 mod limits;
 mod lost;
 mod objective;
 mod parts;
+mod passes;
+mod pins;
+mod readback;
 mod refusals;
 mod sweeps;
 mod timestamps;

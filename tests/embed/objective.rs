@@ -33,7 +33,7 @@ fn objectives_are_those_of_the_points_read_back() {
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
         for stage in 0..6 {
-            app.submit(|encoder| sweeps.encode(encoder, stage));
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, stage));
             let found = app.objective(&sweeps);
             let expected = quality(&mesh, &app.points(&device_mesh));
             for &metric in Metric::ALL {
@@ -74,8 +74,8 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     app.submit(|encoder| {
         for k in 0..count {
             let offset = (4 * WORDS * k) as u64;
-            sweeps.bind_objective(&published, offset).unwrap().encode(encoder);
-            sweeps.encode(encoder, u32::from(k < 40));
+            sweeps.bind_objective(&published, offset).unwrap().encode_objective(encoder);
+            sweeps.encode_sweeps(encoder, u32::from(k < 40));
         }
     });
     let found = floats(&app.read(&published));
@@ -101,7 +101,7 @@ fn what_is_not_tracked_is_zero_and_the_rest_of_the_buffer_untouched() {
         let words: Vec<u32> = (0..90).map(filler).collect();
         app.gpu.queue().write_buffer(&published, 0, bytemuck::cast_slice(&words));
         app.submit(|encoder| {
-            sweeps.bind_objective(&published, 4 * first as u64).unwrap().encode(encoder);
+            sweeps.bind_objective(&published, 4 * first as u64).unwrap().encode_objective(encoder);
         });
         let found = app.read(&published);
         let written = &floats(&found)[first..first + WORDS];

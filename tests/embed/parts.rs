@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use gpu_smooth::{
     Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother,
-    Stop, Sweeps, wgpu,
+    Stop, Sweeps, VertexBuffer, wgpu,
 };
 use wgpu::Limits;
 
@@ -76,19 +76,54 @@ fn an_application_sees_no_parts() {
     let found = devices(&mesh).map(|app| {
         let device_mesh = app.mesh(&mesh);
         let held: Vec<u32> = (0..mesh.points.len() as u32).step_by(17).collect();
-        device_mesh.set_fixed(&held).unwrap();
-        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        device_mesh.pin(&held).unwrap();
+        let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::new(&app, &mesh, 0, 8);
         let bound = vertices.bind(&device_mesh);
+        let words: Vec<u32> =
+            (0..mesh.points.len() as u32).map(|v| u32::from(v % 13 == 0)).collect();
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let [mask, targets] =
+            [4, 8].map(|bytes| app.buffer(bytes * mesh.points.len() as u64, usage));
+        app.gpu.queue().write_buffer(&mask, 0, bytemuck::cast_slice(&words));
+        let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        // All vertices toward one place, which soon a triangle stops.
+        let to = vec![[1.0f32, 1.0]; mesh.points.len()];
+        app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
+        let share = app.buffer(4, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let place = VertexBuffer::new(&targets, 8);
+        let moved: Vec<u32> = (0..mesh.points.len() as u32).step_by(41).collect();
+        let drag = device_mesh.bind_move(&moved, &place, 1e4, (&share, 0)).unwrap();
         // A corner of the plate, taken along by an import.
         vertices.put(&app, 0, [-0.125, -0.25]);
+        let last_valid = device_mesh.keep_last_valid().unwrap();
+        let all: Vec<u32> = (0..mesh.points.len() as u32).collect();
+        if let Err(error) = device_mesh.bind_move(&all, &place, 1e4, (&share, 0)) {
+            let text = "triangles around moved vertices needs";
+            assert!(error.to_string().contains(text), "{error}");
+            assert!(matches!(gpu_error(error), GpuError::Limit { .. }));
+        }
         app.submit(|encoder| {
             bound.encode_import(encoder);
-            sweeps.encode(encoder, 10);
+            mask.encode_mask(encoder);
+            drag.encode_move(encoder);
+            sweeps.encode_sweeps(encoder, 10);
+            last_valid.encode_restore_last_valid(encoder);
             bound.encode_export(encoder);
         });
+        let before = app.points(&device_mesh);
+        // One vertex out of the plate, and back.
+        vertices.put(&app, 300, [9.0, 9.0]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            last_valid.encode_restore_last_valid(encoder);
+            bound.encode_export(encoder);
+        });
+        assert!(app.points(&device_mesh) == before);
         let f = app.objective(&sweeps);
-        (app.read(&vertices.buffer), app.points(&device_mesh), f)
+        let share = f32::from_bits(app.read(&share)[0]);
+        assert!(share > 0.0 && share < 1.0, "{share}");
+        (app.read(&vertices.buffer), app.points(&device_mesh), f, share)
     });
     assert!(found[0] == found[1]);
     assert_ne!(found[0].1, mesh.points);
@@ -105,7 +140,11 @@ fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
          but the device's max_storage_buffer_binding_size is {BOUND}"
     );
     assert_eq!(error.to_string(), text);
-    let made = || app.device().generate_allocator_report().map(|report| report.allocations.len());
+    // After a poll, in which the device lets go of what it needs no longer.
+    let made = || {
+        app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        app.device().generate_allocator_report().map(|report| report.allocations.len())
+    };
     let before = made();
     assert_eq!(gpu_error(DeviceMesh::new(&app.gpu, &large).err().unwrap()).to_string(), text);
     let backend = Backend::Gpu(app.another_gpu());

@@ -2,7 +2,7 @@
 //! application's error handler; [`App`] looks at that when it is dropped.
 
 use gpu_smooth::{
-    DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
+    DeviceMesh, Gpu, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -115,8 +115,8 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
 fn a_place_for_objectives_is_held_to_the_same() {
     let storage = Usage::STORAGE;
     assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
-    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 44 from byte 0 are needed");
-    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 44 from byte 40 are needed");
+    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 52 from byte 0 are needed");
+    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 52 from byte 40 are needed");
     assert_objective_refused(64, storage, 2, "the offset is 2 bytes, not a multiple of 4");
 }
 
@@ -128,7 +128,7 @@ fn a_destroyed_buffer_is_refused() {
     let vertices = Vertices::usual(&app, &mesh);
     vertices.buffer.destroy();
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     assert!(error.to_string().contains("destroyed"), "{error}");
 }
 
@@ -140,9 +140,28 @@ fn what_belongs_to_another_device_is_refused() {
     let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let vertices = Vertices::usual(&other, &mesh);
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     let error = sweeps.bind_objective(&vertices.buffer, 0).err().unwrap();
-    assert!(matches!(error, GpuError::Refused(_)), "{error:?}");
+    assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+}
+
+/// wgpu tells the faults of such a queue to the handler of the queue's own device, which no error scope of the other
+/// catches.
+#[test]
+fn a_queue_of_another_device_is_refused() {
+    let (app, other) = (App::new(), App::new());
+    let refused = |app: &App, other: &App| {
+        let error = Gpu::new(app.device().clone(), other.gpu.queue().clone()).err().unwrap();
+        assert!(matches!(error, GpuError::Queue), "{error:?}");
+    };
+    refused(&app, &other);
+    // One that has done work, and one that has not.
+    let mesh = bad_plate(300);
+    app.points(&app.mesh(&mesh));
+    refused(&app, &other);
+    refused(&other, &app);
+    app.another_gpu();
+    other.another_gpu();
 }
 
 #[test]
@@ -154,7 +173,7 @@ fn what_is_wrong_with_an_encoder_the_application_hears_when_it_finishes_it() {
     let vertices = Vertices::usual(&app, &mesh).bind(&device_mesh);
     let mut encoder = other.encoder();
     vertices.encode_import(&mut encoder);
-    sweeps.encode(&mut encoder, 2);
+    sweeps.encode_sweeps(&mut encoder, 2);
     assert!(other.take_uncaptured().is_empty());
     let _ = encoder.finish();
     assert_eq!(other.take_uncaptured().len(), 1);

@@ -84,9 +84,9 @@ fn encoded_sweeps_are_those_of_a_run() {
         let device_mesh = app.mesh(&mesh);
         let mut encoded = Sweeps::new(&device_mesh, &options).unwrap();
         // Three calls in one command buffer, one of them for nothing, and the rest in others.
-        app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode(encoder, n)));
-        app.submit(|encoder| encoded.encode(encoder, 1));
-        app.submit(|encoder| encoded.encode(encoder, sweeps - 4));
+        app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode_sweeps(encoder, n)));
+        app.submit(|encoder| encoded.encode_sweeps(encoder, 1));
+        app.submit(|encoder| encoded.encode_sweeps(encoder, sweeps - 4));
         let found = app.points(&device_mesh);
         assert_same(name, &mesh, &expected, &found);
     }
@@ -106,8 +106,8 @@ fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
     let mut second = Sweeps::new(&meshes[1], &edge).unwrap();
     app.submit(|encoder| {
         for _ in 0..3 {
-            first.encode(encoder, 3);
-            second.encode(encoder, 2);
+            first.encode_sweeps(encoder, 3);
+            second.encode_sweeps(encoder, 2);
         }
     });
     assert_same("first", &plate, &first_expected, &app.points(&meshes[0]));
@@ -124,8 +124,8 @@ fn two_schemes_take_turns_on_one_mesh() {
         let bind = |scheme| Sweeps::new(&device_mesh, &options(scheme)).unwrap();
         let (mut imr, mut edge) = (bind("imr"), bind("edge"));
         let mut turn = |encoder: &mut CommandEncoder| {
-            imr.encode(encoder, 2);
-            edge.encode(encoder, 1);
+            imr.encode_sweeps(encoder, 2);
+            edge.encode_sweeps(encoder, 1);
         };
         if together {
             app.submit(|encoder| (0..4).for_each(|_| turn(encoder)));
@@ -148,13 +148,13 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-        app.submit(|encoder| sweeps.encode(encoder, 7));
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 7));
         match case {
             0 => sweeps.restart(),
             1 => sweeps = Sweeps::new(&device_mesh, &options).unwrap(),
             _ => {}
         }
-        app.submit(|encoder| sweeps.encode(encoder, 7));
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 7));
         app.points(&device_mesh)
     });
     assert_same("restarted", &mesh, &anew, &restarted);
@@ -168,6 +168,6 @@ fn sweeps_outlive_the_mesh_they_are_bound_to() {
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     drop(device_mesh);
-    app.submit(|encoder| sweeps.encode(encoder, 3));
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
     app.device().poll(gpu_smooth::wgpu::PollType::wait_indefinitely()).unwrap();
 }

@@ -23,8 +23,8 @@ fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) 
     let mut encoder = app.encoder();
     let mut timed = timestamps.time(&mut encoder);
     bound.encode_import(&mut timed);
-    sweeps.encode(&mut timed, count);
-    objective.encode(&mut timed);
+    sweeps.encode_sweeps(&mut timed, count);
+    objective.encode_objective(&mut timed);
     bound.encode_export(&mut timed);
     let spans = timed.resolve().unwrap();
     app.gpu.queue().submit([encoder.finish()]);
@@ -85,10 +85,10 @@ fn timing_changes_nothing_else() {
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         app.submit(|encoder| {
             if case == 0 {
-                return sweeps.encode(encoder, 9);
+                return sweeps.encode_sweeps(encoder, 9);
             }
             let mut timed = timestamps.time(encoder);
-            sweeps.encode(&mut timed, 9);
+            sweeps.encode_sweeps(&mut timed, 9);
             // The application's own, in between: it dereferences to the encoder.
             timed.push_debug_group("own");
             timed.pop_debug_group();
@@ -112,7 +112,7 @@ fn two_frames_in_flight_are_each_their_own() {
     let frames = [1, 30].map(|count| {
         let mut encoder = app.encoder();
         let mut timed = timestamps.time(&mut encoder);
-        sweeps.encode(&mut timed, count);
+        sweeps.encode_sweeps(&mut timed, count);
         let spans = timed.resolve().unwrap();
         app.gpu.queue().submit([encoder.finish()]);
         spans

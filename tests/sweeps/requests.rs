@@ -154,7 +154,7 @@ fn every_metric_is_tracked_on_request() {
 fn an_adapter_of_no_such_name_is_told_with_those_there_are() {
     let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
     let there = &gpu.adapter().name;
-    let error = Gpu::open(Some("no such adapter")).err().expect("there is none of that name");
+    let error = Gpu::open(Some("no such adapter")).expect_err("there is none of that name");
     assert!(matches!(error, GpuError::NoAdapter { .. }));
     let text = error.to_string();
     assert!(text.contains("'no such adapter'") && text.contains(there.as_str()), "{text}");

@@ -1,5 +1,7 @@
 //! The adapters of this machine.
 
+use crate::gpu::device::blocking::blocking;
+
 /// What an adapter is called and how wgpu drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
@@ -38,7 +40,8 @@ impl AdapterSummary {
     }
 }
 
-/// All adapters of this machine, in the order in which they would be chosen.
+/// All adapters of this machine, in the order in which they would be chosen. None in a browser, where
+/// [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the one that there is.
 pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
@@ -46,18 +49,26 @@ pub fn adapters() -> Vec<AdapterSummary> {
 /// Adapters that can compute, fastest kind first. OpenGL's are listed only where there are no others: they are the same
 /// devices again, and the driver is slow to start.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
-    let native = usable_adapters(wgpu::Backends::PRIMARY);
-    if native.is_empty() { usable_adapters(wgpu::Backends::SECONDARY) } else { native }
+    blocking(async { Ok(ranked_adapters_async().await) }).unwrap_or_default()
 }
 
-fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+/// As [`ranked_adapters`], without blocking.
+pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
+    let native = usable_adapters(wgpu::Backends::PRIMARY).await;
+    match native.is_empty() {
+        true => usable_adapters(wgpu::Backends::SECONDARY).await,
+        false => native,
+    }
+}
+
+async fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
         // Validation layers print to the caller's terminal.
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    let mut adapters = instance.enumerate_adapters(backends).await;
     let can_compute = |adapter: &wgpu::Adapter| {
         let downlevel = adapter.get_downlevel_capabilities();
         downlevel.flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)

@@ -5,6 +5,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::{filled, zeroed};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
@@ -25,7 +26,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Arithmetic`] if digits are lost, or what the device refuses.
     pub fn check_arithmetic(&self) -> Result<(), GpuError> {
-        pollster::block_on(self.arithmetic_checked(Waiting::Block))
+        blocking(self.arithmetic_checked(Waiting::Block))
     }
 
     /// [`check_arithmetic`](Self::check_arithmetic) without blocking. The application polls the device: the future

@@ -1,6 +1,8 @@
 //! A device with its pipelines.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::adapters::AdapterSummary;
@@ -30,7 +32,9 @@ impl Gpu {
     /// reading back. Faults of an encoder that was passed in (it is of another device, or finished) are reported by wgpu
     /// to the application when it finishes the encoder.
     ///
-    /// Nothing is submitted and nothing waits, so this may be called on any thread. The arithmetic of the adapter is
+    /// Nothing is submitted and nothing waits, so this may be called on any thread. The device is polled once, which may
+    /// run callbacks of the application, to find out whether the queue is its own; while the device is busy that cannot be
+    /// found out, and wgpu reports a foreign queue later, to the handler of the queue's own device. The arithmetic of the adapter is
     /// therefore not checked here: runs of [`Smoother`](crate::Smoother) check it first, and an application that encodes
     /// sweeps itself calls [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
     ///
@@ -39,10 +43,34 @@ impl Gpu {
     /// have one [`wgpu::Instance`].
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the device binds too few storage buffers, or what it refuses.
+    /// [`GpuError::Limit`] if the device binds too few storage buffers, [`GpuError::Queue`] if the queue is that of another
+    /// device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        if !is_own(&queue, &device) {
+            return Err(GpuError::Queue);
+        }
         let summary = AdapterSummary::new(&device.adapter_info());
         Self::with(device, queue, summary, Arc::default())
+    }
+
+    /// Compiles kernels with a pipeline cache of the application, which makes them start faster the next time. The
+    /// application makes it of its device, which has the feature `PIPELINE_CACHE` where the driver has caches (on Vulkan),
+    /// and saves its data ([`wgpu::PipelineCache::get_data`]). To be called before anything else: what is compiled already
+    /// is compiled again.
+    ///
+    /// ```no_run
+    /// # use gpu_smooth::{wgpu, Gpu, GpuError, Options, SmoothError};
+    /// # fn f(device: wgpu::Device, queue: wgpu::Queue, cache: wgpu::PipelineCache) -> Result<(), SmoothError> {
+    /// let gpu = Gpu::new(device, queue)?.with_pipeline_cache(cache.clone());
+    /// gpu.prepare(&Options::default())?;
+    /// if let Some(data) = cache.get_data() {
+    ///     // Write it to a file of wgpu::util::pipeline_cache_key(&adapter.get_info()).
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn with_pipeline_cache(self, cache: wgpu::PipelineCache) -> Self {
+        Self { pipelines: Arc::new(Pipelines::with_cache(cache)), ..self }
     }
 
     pub(super) fn with(
@@ -56,8 +84,9 @@ impl Gpu {
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
     }
 
-    /// Compiles the kernels that meshes need with these options, so that neither a frame nor a later
-    /// [`Sweeps::new`](crate::gpu::Sweeps::new) waits for the compiler. Kernels that are compiled already cost nothing.
+    /// Compiles the kernels that meshes need with these options: of sweeps, of objectives, and of the import and export of
+    /// vertices. Neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer then waits for the compiler; a
+    /// frame never does. Kernels that are compiled already cost nothing.
     /// May be called on another thread. Meshes so large that their positions take two bindings need kernels of their own,
     /// which are not included.
     ///
@@ -117,17 +146,18 @@ impl Gpu {
     /// once are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
     ///
     /// ```no_run
-    /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize};
+    /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize, VertexBuffer};
     /// # async fn f(adapter: wgpu::Adapter) -> Result<(), Box<dyn std::error::Error>> {
     /// let size = MeshSize { vertices: 100_000, triangles: 200_000 };
+    /// // A vertex buffer with 32 bytes for each vertex.
+    /// let own = wgpu::Limits {
+    ///     max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, 32, 0),
+    ///     ..wgpu::Limits::default()
+    /// };
     /// let (device, queue) = adapter
     ///     .request_device(&wgpu::DeviceDescriptor {
     ///         required_features: Gpu::required_features(),
-    ///         required_limits: Gpu::required_limits(
-    ///             wgpu::Limits::default(),
-    ///             size,
-    ///             &adapter.limits(),
-    ///         )?,
+    ///         required_limits: Gpu::required_limits(own, size, &adapter.limits())?,
     ///         ..Default::default()
     ///     })
     ///     .await?;
@@ -136,8 +166,9 @@ impl Gpu {
     /// # }
     /// ```
     ///
-    /// A vertex buffer with a stride above 16 bytes may need a larger `max_storage_buffer_binding_size` than the
-    /// mesh.
+    /// The application's own buffers count as its own needs. A vertex buffer with a long stride may need more than the
+    /// mesh: raise `max_storage_buffer_binding_size` of `own` to
+    /// [`VertexBuffer::binding_size`](crate::gpu::VertexBuffer::binding_size).
     ///
     /// # Errors
     /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it
@@ -160,3 +191,28 @@ impl Gpu {
         size.check(&self.device.limits())
     }
 }
+
+/// Whether the queue is that of the device, as far as this can be found out without waiting: true where it cannot.
+///
+/// What a queue has done is reported by polls of its own device alone. A device without work that leaves the report
+/// of the queue outstanding is therefore another one. Browsers have no polls.
+fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
+    if cfg!(target_arch = "wasm32") {
+        return true;
+    }
+    let reported = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&reported);
+    queue.on_submitted_work_done(move || flag.store(true, Ordering::Relaxed));
+    // Another thread may have taken the report in a poll of its own, and be about to make it.
+    (0..PATIENCE).any(|_| {
+        let idle = device.poll(wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
+        let is_own = reported.load(Ordering::Relaxed) || !idle;
+        if !is_own {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        is_own
+    })
+}
+
+/// How often a queue that looks foreign is looked at, once in a millisecond.
+const PATIENCE: u32 = 30;

@@ -2,6 +2,7 @@
 
 mod adapters;
 mod arithmetic;
+pub(crate) mod blocking;
 pub(crate) mod buffers;
 mod gpu;
 pub(crate) mod limits;

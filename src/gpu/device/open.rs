@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters};
+use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters, ranked_adapters_async};
+use crate::gpu::device::blocking::blocking;
+use crate::gpu::device::readback::Waiting;
 
 impl Gpu {
     /// Opens the best adapter, or the best whose name contains `name` (whatever the case). Discrete GPUs come before
@@ -14,28 +16,45 @@ impl Gpu {
     /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] of the best adapter if none passes, or
     /// what the device refuses.
     pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
-        let adapters = ranked_adapters();
+        blocking(Self::open_async(name))
+    }
+
+    /// As [`open`](Self::open), for a page in a browser, which cannot block. Elsewhere it blocks as `open` does while the
+    /// arithmetic is checked.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub async fn open_async(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = ranked_adapters_async().await;
         let has_name = |adapter: &&wgpu::Adapter| {
             let text = adapter.get_info().name.to_lowercase();
             name.is_none_or(|name| text.contains(&name.to_lowercase()))
         };
-        first_that_passes(adapters.iter().filter(has_name), Self::start).unwrap_or_else(|| {
-            let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
-            let (wanted, available) = (name.map(str::to_owned), names.join(", "));
-            Err(GpuError::NoAdapter { wanted, available })
-        })
+        let start = async |adapter| Self::start_async(adapter).await;
+        match first_that_passes(adapters.iter().filter(has_name), start).await {
+            Some(opened) => opened,
+            None => {
+                let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+                let (wanted, available) = (name.map(str::to_owned), names.join(", "));
+                Err(GpuError::NoAdapter { wanted, available })
+            }
+        }
     }
 
     /// Opens an adapter with the highest limits that it offers, and checks its arithmetic.
     pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        blocking(Self::start_async(adapter))
+    }
+
+    async fn start_async(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let summary = AdapterSummary::new(&adapter.get_info());
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        let requested = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gpu-smooth device"),
             required_features: adapter.features() & Self::optional_features(),
             required_limits: adapter.limits(),
             ..Default::default()
-        }))
-        .map_err(|error| GpuError::NoDevice {
+        });
+        let (device, queue) = requested.await.map_err(|error| GpuError::NoDevice {
             adapter: summary.name.clone(),
             message: error.to_string(),
         })?;
@@ -51,7 +70,9 @@ impl Gpu {
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
         let gpu = Self::with(device, queue, summary, lost)?;
-        gpu.check_arithmetic()?;
+        // A browser polls by itself. Elsewhere nobody else has the device to poll it.
+        let browser = cfg!(target_arch = "wasm32");
+        gpu.arithmetic_checked(if browser { Waiting::Await } else { Waiting::Block }).await?;
         Ok(gpu)
     }
 }
@@ -67,13 +88,13 @@ pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
 
 /// Opens candidates until one has the right arithmetic. If none has, the error is that of the first; `None` if there are
 /// no candidates.
-fn first_that_passes<A, G>(
+async fn first_that_passes<A, G>(
     candidates: impl Iterator<Item = A>,
-    mut open: impl FnMut(A) -> Result<G, GpuError>,
+    open: impl AsyncFn(A) -> Result<G, GpuError>,
 ) -> Option<Result<G, GpuError>> {
     let mut failed = None;
     for candidate in candidates {
-        match open(candidate) {
+        match open(candidate).await {
             Err(error @ GpuError::Arithmetic { .. }) => failed = failed.or(Some(Err(error))),
             opened => return Some(opened),
         }
@@ -91,12 +112,14 @@ mod tests {
 
     #[test]
     fn an_adapter_that_drops_digits_is_passed_over() {
-        let open = |name: &'static str| match name {
+        let open = async |name: &'static str| match name {
             "fast" | "faster" => Err(drops_digits(name)),
             "gone" => Err(GpuError::Lost("gone".into())),
             name => Ok(name),
         };
-        let first = |names: &[&'static str]| first_that_passes(names.iter().copied(), open);
+        let first = |names: &[&'static str]| {
+            pollster::block_on(first_that_passes(names.iter().copied(), open))
+        };
         assert_eq!(first(&["fast", "right", "other"]).unwrap().unwrap(), "right");
         let error = first(&["fast", "faster"]).unwrap().unwrap_err();
         assert!(matches!(&error, GpuError::Arithmetic { adapter, .. } if adapter == "fast"));

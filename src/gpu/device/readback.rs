@@ -73,6 +73,9 @@ impl<T: Pod> Copied<'_, T> {
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
         let Self { gpu, staging, arrival, .. } = self;
         if waiting == Waiting::Block {
+            if cfg!(target_arch = "wasm32") {
+                return Err(GpuError::WouldBlock);
+            }
             let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
             gpu.check()?;
             polled.map_err(|error| GpuError::Lost(error.to_string()))?;

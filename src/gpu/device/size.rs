@@ -35,7 +35,7 @@ enum Spread {
 /// Bytes of a position, a pair of floats for each coordinate.
 pub(crate) const POSITION: u64 = size_of::<[f32; 4]>() as u64;
 /// The largest alignment of the start of a binding.
-const ALIGNMENT: u64 = 256;
+pub(crate) const ALIGNMENT: u64 = 256;
 /// Bytes of a triangle.
 pub(crate) const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
 /// Bytes of a vertex number.

@@ -4,16 +4,20 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::device::Gpu;
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::Waiting;
-use crate::gpu::embed::{BoundVertices, VertexBuffer};
-use crate::gpu::kernels::uniforms::{HELD, join};
+use crate::gpu::device::{Gpu, MeshSize};
+use crate::gpu::embed::clamped_move::Moves;
+use crate::gpu::embed::pins::{Change, Pins};
+use crate::gpu::embed::{BoundMask, BoundMove, BoundVertices, LastValid, VertexBuffer};
+use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::Mesh;
+use crate::run::multilevel::NONE;
 
 /// A mesh on the device. Its triangles stay the same; its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the
 /// application through [`BoundVertices::encode_import`]. Several meshes can be on a device at once.
@@ -27,6 +31,9 @@ pub struct DeviceMesh {
     /// The application's number of each vertex.
     numbers: wgpu::Buffer,
     vertex_count: usize,
+    /// The number on the device of each vertex of the application, or [`NONE`].
+    places: Vec<u32>,
+    pins: Pins,
     /// The vertices that no triangle uses: they are not on the device.
     unused: Vec<(u32, [f64; 2])>,
 }
@@ -34,7 +41,7 @@ pub struct DeviceMesh {
 impl DeviceMesh {
     /// Prepares a mesh and uploads it. Blocks while it colors the vertices.
     ///
-    /// The vertices of [`Mesh::fixed`] stay until [`set_fixed`](Self::set_fixed) says otherwise.
+    /// The vertices of [`Mesh::fixed`] always stay, as those of the boundary do. [`pin`](Self::pin) holds others for a while.
     ///
     /// # Errors
     /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, [`SmoothError::Gpu`] with
@@ -49,35 +56,86 @@ impl DeviceMesh {
         let vertex_count = mesh.points.len();
         let unused = (0..).zip(&mesh.points).filter(|&(v, _)| topology.star(v).is_empty());
         let unused = unused.map(|(v, &point)| (v, point)).collect();
-        let device_mesh =
-            Self { gpu: gpu.clone(), problem, buffers, numbers, vertex_count, unused };
-        device_mesh.set_fixed(&mesh.fixed)?;
-        Ok(device_mesh)
+        let mut places = vec![NONE; vertex_count];
+        for (place, &v) in (0..).zip(problem.vertices()) {
+            places[v as usize] = place;
+        }
+        let free = problem.free_count() as u32;
+        let mut fixed = Vec::new();
+        for &vertex in &mesh.fixed {
+            let (triangle, vertices) = (None, vertex_count);
+            let place = places.get(vertex as usize).copied();
+            let place = place.ok_or(MeshError::IndexOutOfRange { triangle, vertex, vertices })?;
+            fixed.extend(Some(place).filter(|&place| place < free));
+        }
+        let pins = Pins::new(gpu, &problem, &buffers, &fixed)?;
+        let gpu = gpu.clone();
+        Ok(Self { gpu, problem, buffers, numbers, vertex_count, places, pins, unused })
     }
 
-    /// Fixes these vertices (zero-based) and frees all others, those of [`Mesh::fixed`] too if they are not listed again.
-    /// Boundary vertices always stay, listed or not. Takes effect in what is submitted after the call.
+    /// Pins vertices (zero-based): sweeps leave them where they are, beside those of [`Mesh::fixed`] and of the boundary,
+    /// which always stay. Takes effect in what is submitted after the call. Only what changes is sent to the device.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have.
-    pub fn set_fixed(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let mut fixed = vec![false; self.vertex_count];
-        for &vertex in vertices {
-            let Some(flag) = fixed.get_mut(vertex as usize) else {
-                let vertices = self.vertex_count;
-                return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
-            };
-            *flag = true;
-        }
-        let mut starts = self.problem.ring_start().to_vec();
-        // One start for each free vertex; the entry after them is the end of the last ring.
-        let free = self.problem.free_count();
-        for (start, &vertex) in starts[..free].iter_mut().zip(self.problem.vertices()) {
-            *start |= if fixed[vertex as usize] { HELD } else { 0 };
-        }
-        let Gpu { device, queue, .. } = &self.gpu;
-        let starts = bytemuck::cast_slice(&starts);
-        Ok(scoped(device, || queue.write_buffer(&self.buffers.ring_start, 0, starts))?)
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is pinned then.
+    pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let places = self.free_places(vertices)?;
+        self.change_pins(Change::Pin(&places))
+    }
+
+    /// Lets go of vertices that were pinned. Those of [`Mesh::fixed`] and of the boundary stay all the same. Takes effect in
+    /// what is submitted after the call.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is let go then.
+    pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let places = self.free_places(vertices)?;
+        self.change_pins(Change::Unpin(&places))
+    }
+
+    /// Pins these vertices and lets go of all others that were pinned. Takes effect in what is submitted after the call.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing changes then.
+    pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
+        let places = self.free_places(vertices)?;
+        self.change_pins(Change::PinThese(&places))
+    }
+
+    fn change_pins(&self, change: Change<'_>) -> Result<(), SmoothError> {
+        Ok(self.pins.change(&self.gpu, &self.problem, &self.buffers, change)?)
+    }
+
+    /// Binds a mask that holds vertices, in a buffer of the application: a u32 for each vertex of the mesh, from byte
+    /// `offset` on, not 0 for a vertex that is to stay. Kernels of the application may write it.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`, [`GpuError::Limit`] if the
+    /// mask is larger than what the device binds at once.
+    pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
+        let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
+        BoundMask::new(gpu, (problem, *vertex_count), buffers, numbers, pins, (buffer, offset))
+    }
+
+    /// Keeps the positions of the mesh as long as it is valid, so that a frame in which the application has inverted
+    /// triangles can be taken back. Takes 16 bytes on the device for each vertex.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn keep_last_valid(&self) -> Result<LastValid, GpuError> {
+        LastValid::new(&self.gpu, &self.problem, &self.buffers)
+    }
+
+    /// The numbers on the device of those of the vertices that could be moved by sweeps.
+    fn free_places(&self, vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
+        let free = self.problem.free_count() as u32;
+        let places: Result<Vec<u32>, _> = vertices.iter().map(|&v| self.place_of(v)).collect();
+        Ok(places?.into_iter().filter(|&place| place < free).collect())
+    }
+
+    /// Number of vertices, those of no triangle too, and of triangles.
+    pub fn size(&self) -> MeshSize {
+        MeshSize { vertices: self.vertex_count, triangles: self.problem.triangles().len() }
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers
@@ -92,13 +150,60 @@ impl DeviceMesh {
         BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
     }
 
+    /// Binds vertices that the application moves toward targets, as far as the triangles allow: for handles, holes and
+    /// boundaries that a user drags. Target i, of `vertices[i]`, is vertex i of the buffer `targets`, in the coordinates
+    /// that its origin and scale say. When the command buffer of a frame runs, the share of the ways that was gone is
+    /// written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
+    ///
+    /// To be called when a drag begins; as it goes on, the application writes the targets and encodes
+    /// [`BoundMove::encode_move`]. Fixed vertices and those of the boundary can be moved too. Sweeps move a free
+    /// vertex on from where it was dragged, unless it is [pinned](Self::pin). If a vertex is listed twice,
+    /// its last target counts. A vertex of no triangle is not on the device, and no target moves it.
+    ///
+    /// No triangle gets an inverse mean ratio above `worst_imr`. One of about 8 leaves room for sweeps, and for the
+    /// rounding of vertex buffers; above 100,000 it counts as 100,000, which single precision surely tells from flat.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have, [`MeshError::BoundNotANumber`] if
+    /// `worst_imr` is NaN, [`GpuError::Buffer`] if a buffer is too small, misaligned or was made without `STORAGE`, if both
+    /// are the same, or if the origin or the scale is not usable; [`GpuError::Limit`] if the vertices have more triangles
+    /// than the device binds at once, with 24 bytes for each.
+    pub fn bind_move(
+        &self,
+        vertices: &[u32],
+        targets: &VertexBuffer<'_>,
+        worst_imr: f64,
+        share: (&wgpu::Buffer, u64),
+    ) -> Result<BoundMove, SmoothError> {
+        if worst_imr.is_nan() {
+            return Err(MeshError::BoundNotANumber.into());
+        }
+        let mut ways = Vec::with_capacity(vertices.len());
+        for (target, &vertex) in (0..).zip(vertices) {
+            match self.place_of(vertex)? {
+                NONE => {}
+                place => ways.push([place, target]),
+            }
+        }
+        let Self { gpu, problem, buffers, .. } = self;
+        let moves = Moves { ways, listed: vertices.len(), worst_imr };
+        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share)?)
+    }
+
+    /// The number on the device of a vertex of the application, or [`NONE`].
+    fn place_of(&self, vertex: u32) -> Result<u32, MeshError> {
+        let vertices = self.vertex_count;
+        let place = self.places.get(vertex as usize).copied();
+        place.ok_or(MeshError::IndexOutOfRange { triangle: None, vertex, vertices })
+    }
+
     /// Reads the positions back, in the order and unit of the mesh; blocks until the device has done all that was
     /// submitted. A vertex of no triangle is where the mesh had it.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
     pub fn read_points(&self) -> Result<Vec<[f64; 2]>, GpuError> {
-        pollster::block_on(self.wait_for_points(Waiting::Block))
+        blocking(self.wait_for_points(Waiting::Block))
     }
 
     /// As [`read_points`](Self::read_points), without blocking: completes once the application has polled the device.

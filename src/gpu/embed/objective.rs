@@ -8,16 +8,18 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::embed::exchange::Window;
+use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::{Publish, SLOTS};
+use crate::gpu::mesh::Changes;
 use crate::gpu::run::Dispatches;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::scoped_to_buffer;
 use crate::metric::Metric;
+use crate::run::Stop;
 
-/// What [`BoundObjective::encode`] writes: how good the mesh is at that point of the command buffer. The application
+/// What [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command buffer. The application
 /// casts the bytes that it reads back to this struct, or declares it in its shaders:
 ///
 /// ```wgsl
@@ -25,6 +27,8 @@ use crate::metric::Metric;
 ///     f: array<f32, 9>,
 ///     inverted: u32,
 ///     worst_imr: f32,
+///     stop: u32,
+///     sweeps: u32,
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -38,6 +42,13 @@ pub struct ObjectiveValues {
     pub inverted: u32,
     /// The largest inverse mean ratio of a triangle, 1 being equilateral; infinite while triangles are inverted.
     pub worst_imr: f32,
+    /// Why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that further ones do nothing:
+    /// 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for [`Stop::MaxSweeps`]; see
+    /// [`stop`](Self::stop). 0 if they go on, and always for sweeps that do not end by themselves.
+    pub stop: u32,
+    /// How many sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) were done since they began, or began anew
+    /// as the mesh was changed. Always 0 for sweeps that do not end by themselves.
+    pub sweeps: u32,
 }
 
 impl ObjectiveValues {
@@ -45,51 +56,86 @@ impl ObjectiveValues {
     pub fn of(&self, metric: Metric) -> f32 {
         self.f[metric as usize]
     }
+
+    /// Why the sweeps have ended, so that further ones do nothing; `None` if they go on.
+    pub fn stop(&self) -> Option<Stop> {
+        Stop::from_code(self.stop)
+    }
+
+    /// Whether the sweeps have ended because f is as near to its limit as
+    /// [`Options::tolerance`](crate::Options::tolerance) asks.
+    pub fn has_converged(&self) -> bool {
+        self.stop() == Some(Stop::Converged)
+    }
 }
 
 /// A place in a buffer of the application for the objectives of one [`Sweeps`](crate::gpu::Sweeps). Made by
 /// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); it can be used after the sweeps are dropped.
 pub struct BoundObjective {
-    dispatches: Arc<Dispatches>,
+    evaluation: Arc<Dispatches>,
     publish: Pipeline,
     bind_group: wgpu::BindGroup,
+}
+
+/// What sweeps and objectives of one scheme on one mesh share.
+pub(crate) struct Run {
+    /// The sweeps, and where they are judged.
+    pub(crate) dispatches: Arc<Dispatches>,
+    /// The evaluations that the application asks for. Where sweeps are judged, these are apart: the history of a run has
+    /// one evaluation for each sweep.
+    pub(crate) evaluation: Arc<Dispatches>,
+    pub(crate) changes: Changes,
+    pub(crate) triangles: usize,
+}
+
+impl Run {
+    /// Whether the sweeps end by a stop rule.
+    pub(crate) fn is_judged(&self) -> bool {
+        !Arc::ptr_eq(&self.dispatches, &self.evaluation)
+    }
 }
 
 impl BoundObjective {
     pub(crate) fn new(
         gpu: &Gpu,
-        dispatches: &Arc<Dispatches>,
-        triangles: usize,
+        run: &Run,
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<Self, GpuError> {
         let window = Window::new(gpu, buffer, offset, size_of::<ObjectiveValues>() as u64)?;
         let mut ideal_squared = [[0.0; 4]; SLOTS.div_ceil(4)];
+        let Run { dispatches, evaluation, changes, triangles } = run;
         for metric in dispatches.plan.tracked() {
             let slot = metric as usize;
             ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
         }
         let uniform = Publish {
             offset: window.offset,
-            triangles: triangles as u32,
-            padding: [0; 2],
+            triangles: *triangles as u32,
+            judged: run.is_judged().into(),
+            padding: 0,
             ideal_squared,
         };
-        let bind_group = scoped(&gpu.device, || {
+        let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
-            let control = dispatches.control.as_entire_binding();
-            let resources = [uniform.as_entire_binding(), control, window.binding()];
+            let resources = [
+                uniform.as_entire_binding(),
+                evaluation.control.as_entire_binding(),
+                dispatches.control.as_entire_binding(),
+                changes.buffer.as_entire_binding(),
+                window.binding(),
+            ];
             gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
         })?;
         let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
-        Ok(Self { dispatches: Arc::clone(dispatches), publish, bind_group })
+        Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group })
     }
 
     /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
     /// [`ObjectiveValues`].
-    pub fn encode(&self, encoder: &mut impl Encoder) {
+    pub fn encode_objective(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth objective");
-        self.dispatches.encode_evaluation(&mut passes);
+        self.evaluation.encode_evaluation(&mut passes);
         passes.run(&self.publish, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
@@ -106,7 +152,9 @@ mod tests {
 
     #[test]
     fn objective_values_are_the_slots_of_the_kernel() {
-        assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS);
+        assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS + 8);
+        assert_eq!(offset_of!(ObjectiveValues, stop), 4 * SLOTS);
+        assert_eq!(offset_of!(ObjectiveValues, sweeps), 4 * SLOTS + 4);
         assert_eq!(offset_of!(ObjectiveValues, f), 0);
         assert_eq!(offset_of!(ObjectiveValues, inverted), 4 * INVERTED as usize);
         assert_eq!(offset_of!(ObjectiveValues, worst_imr), 4 * WORST as usize);

@@ -2,23 +2,38 @@
 
 use std::sync::Arc;
 
-use crate::error::GpuError;
-use crate::error::SmoothError;
-use crate::gpu::embed::BoundObjective;
-use crate::gpu::embed::DeviceMesh;
-use crate::gpu::encode::Encoder;
+use crate::error::{GpuError, SmoothError};
+use crate::gpu::device::Gpu;
+use crate::gpu::embed::objective::Run;
+use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh};
+use crate::gpu::encode::{Encoder, Passes};
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::run::Dispatches;
+use crate::gpu::scope::scoped;
+use crate::metric::Scheme;
 use crate::run::Options;
 
-/// A scheme bound to a mesh on the device. Encodes sweeps into the application's command encoder; never submits, never
-/// reads back, never stops by itself.
+/// A scheme bound to a mesh on the device. Encodes sweeps into the application's command encoder; never submits and never
+/// reads back. Those of [`new`](Self::new) never stop by themselves, those
+/// [`until_converged`](Self::until_converged) do nothing once they have converged.
 ///
 /// Several schemes can be bound to one mesh, and the sweeps of several meshes interleaved in one encoder.
 pub struct Sweeps {
-    gpu: crate::gpu::Gpu,
-    dispatches: Arc<Dispatches>,
-    triangles: usize,
+    gpu: Gpu,
+    run: Run,
+    judged: Option<Judged>,
     done: u32,
+}
+
+/// The label of the pass of sweeps.
+const LABEL: &str = "gpu-smooth sweeps";
+
+/// What sweeps that end by themselves take besides.
+struct Judged {
+    reopen: Pipeline,
+    resume: Pipeline,
+    bind_group: wgpu::BindGroup,
 }
 
 impl Sweeps {
@@ -29,33 +44,104 @@ impl Sweeps {
     /// hundreds of sweeps instead of a dozen. Metrics without a barrier (RMS, EDGE, AREA) leave no triangle with an
     /// inverse mean ratio above 30 unless its patch had a worse one.
     ///
-    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::gpu::Gpu::prepare) does so beforehand.
+    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] does so beforehand.
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
-        options.check()?;
-        let plan = options.plan().endless();
-        let steps = plan.steps();
-        let DeviceMesh { gpu, problem, buffers, .. } = mesh;
-        let dispatches = Arc::new(Dispatches::new(gpu, problem, buffers, plan, steps, false)?);
-        let triangles = mesh.problem.triangles().len();
-        Ok(Self { gpu: mesh.gpu.clone(), dispatches, triangles, done: 0 })
+        Self::by(mesh, options, Ending::Never)
     }
 
-    /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it.
-    pub fn encode(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
-        let mut passes = encoder.passes("gpu-smooth sweeps");
+    /// As [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once f is within
+    /// [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing. (A GPU spends
+    /// next to no time on them; a software driver, which starts every kernel all the same, a fifth of that of others.) [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells. The goal of `options` has no effect.
+    ///
+    /// They begin anew when the application changes the mesh: where an import finds a vertex that was moved, after a move
+    /// that was not in vain, after [`DeviceMesh::pin`] and the like, a mask that has changed, and [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count. Each sweep is followed by an
+    /// evaluation of f, which takes about a sixth of its time.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn until_converged(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
+        Self::by(mesh, options, Ending::Judged)
+    }
+
+    fn by(mesh: &DeviceMesh, options: &Options, ending: Ending) -> Result<Self, SmoothError> {
+        options.check()?;
+        let plan = options.plan();
+        let endless = plan.clone().endless();
+        let steps = plan.steps();
+        let DeviceMesh { gpu, problem, buffers, .. } = mesh;
+        let dispatches =
+            |plan, steps| Dispatches::new(gpu, problem, buffers, plan, steps, false).map(Arc::new);
+        let (dispatches, evaluation) = match ending {
+            Ending::Never => {
+                let both = dispatches(endless, steps)?;
+                (Arc::clone(&both), both)
+            }
+            Ending::Judged => (dispatches(plan, steps)?, dispatches(endless, Vec::new())?),
+        };
+        let (changes, triangles) = (buffers.changes.clone(), problem.triangles().len());
+        let run = Run { dispatches, evaluation, changes, triangles };
+        let judged = run.is_judged().then(|| Judged::new(gpu, &run)).transpose()?;
+        Ok(Self { gpu: gpu.clone(), run, judged, done: 0 })
+    }
+
+    /// Encodes `sweeps` further sweeps. The scheme goes on where the last call left it, whether or not that encoder was
+    /// submitted: alternate metrics and over-relaxation count the sweeps that were encoded.
+    pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
+        self.encode(&mut encoder.passes(LABEL), sweeps);
+    }
+
+    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget is
+    /// [timed](Budget::timed_by) by the device.
+    pub fn encode_within(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        budget: &mut Budget,
+    ) -> u32 {
+        budget.collect();
+        let sweeps = budget.sweeps();
+        match &mut budget.clock {
+            None => self.encode_sweeps(encoder, sweeps),
+            Some(clock) => {
+                self.encode(&mut Passes::clocked(encoder, LABEL, clock.writes()), sweeps);
+                clock.encode(encoder, &self.run.dispatches.control, sweeps);
+            }
+        }
+        sweeps
+    }
+
+    fn encode(&mut self, passes: &mut Passes<'_>, sweeps: u32) {
+        let Self { run: Run { dispatches, .. }, judged, .. } = self;
+        if let Some(judged) = judged.as_ref().filter(|_| sweeps > 0) {
+            judged.encode(passes, &judged.reopen);
+            dispatches.encode_evaluation(passes);
+            judged.encode(passes, &judged.resume);
+        }
         for _ in 0..sweeps {
             self.done = self.done.saturating_add(1);
-            self.dispatches.encode_sweep(&mut passes, &self.dispatches.plan.step(self.done));
+            dispatches.encode_sweep(passes, &dispatches.plan.step(self.done));
+            if judged.is_some() {
+                dispatches.encode_evaluation(passes);
+            }
         }
     }
 
+    /// The scheme that is swept by.
+    pub fn scheme(&self) -> &Scheme {
+        &self.run.dispatches.plan.scheme
+    }
+
     /// Starts the scheme anew, with plain sweeps before over-relaxed ones. To be called when the application has moved
-    /// vertices far.
+    /// vertices far. Sweeps [`until_converged`](Self::until_converged), of all schemes on the mesh, begin anew in what is
+    /// submitted after the call.
     pub fn restart(&mut self) {
         self.done = 0;
+        if self.judged.is_some() {
+            // A device that refuses this is lost, and no sweep begins on it.
+            let _ = self.run.changes.count(&self.gpu);
+        }
     }
 
     /// Binds a place in a buffer of the application for the objectives, the bytes of
@@ -68,6 +154,32 @@ impl Sweeps {
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<BoundObjective, GpuError> {
-        BoundObjective::new(&self.gpu, &self.dispatches, self.triangles, buffer, offset)
+        BoundObjective::new(&self.gpu, &self.run, buffer, offset)
+    }
+}
+
+/// When encoded sweeps end by themselves.
+enum Ending {
+    Never,
+    Judged,
+}
+
+impl Judged {
+    fn new(gpu: &Gpu, run: &Run) -> Result<Self, GpuError> {
+        let (whole, interface) = (Positions::Whole, Interface::Reopen);
+        let resources = [&run.dispatches.control, &run.changes.buffer];
+        let resources = resources.map(wgpu::Buffer::as_entire_binding);
+        let bind_group =
+            scoped(&gpu.device, || gpu.pipelines.bind(&gpu.device, interface, whole, &resources))?;
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
+        let (reopen, resume) = (pipeline(Kernel::Reopen)?, pipeline(Kernel::Resume)?);
+        Ok(Self { reopen, resume, bind_group })
+    }
+
+    fn encode(&self, passes: &mut Passes<'_>, pipeline: &Pipeline) {
+        passes.run(pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
     }
 }

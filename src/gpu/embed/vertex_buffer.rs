@@ -3,6 +3,9 @@
 use glam::DVec2;
 
 use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::size::ALIGNMENT;
+use crate::gpu::embed::window::Window;
 use crate::layout::Problem;
 use crate::topology::predicates::not_positive;
 
@@ -42,24 +45,24 @@ impl<'a> VertexBuffer<'a> {
         Self { scale, ..self }
     }
 
+    /// The `max_storage_buffer_binding_size` that a device needs to bind the coordinates of this many vertices, for
+    /// [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). Of a buffer in which many meshes stand one after the
+    /// other, only the part of this mesh is bound, so `offset` hardly counts. [`u64::MAX`] where no device can bind it.
+    pub fn binding_size(vertices: usize, stride: u64, offset: u64) -> u64 {
+        // A binding starts at a multiple of the device's alignment, 256 bytes at most.
+        (vertices.saturating_sub(1) as u64)
+            .saturating_mul(stride)
+            .saturating_add(8 + offset % ALIGNMENT)
+    }
+
     /// The coordinates of the buffer.
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the origin or the scale is not usable, or if the vertices of a triangle of the problem would
     /// invert it or make it flat as they are rounded to single precision.
     pub(crate) fn coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
-        let refuse = |problem: String| Err(GpuError::Buffer(problem));
-        let Self { origin, scale, .. } = *self;
-        if !origin.iter().all(|x| x.is_finite()) {
-            return refuse(format!("the origin is {origin:?}, not a point"));
-        }
-        if !(scale > 0.0 && scale.is_finite()) {
-            return refuse(format!("the scale is {scale}, not a number above 0"));
-        }
+        let given = self.unjudged_coordinates(problem)?;
         let (center, size) = problem.normalization();
-        let at =
-            |origin: DVec2| Coordinates { center: (center - origin) * scale, scale: size / scale };
-        let given = at(origin.into());
         let bad = match given.inverted_by_rounding(problem) {
             Some(0) => return Ok(given),
             bad => bad,
@@ -70,13 +73,58 @@ impl<'a> VertexBuffer<'a> {
             Some(bad) => format!("{bad} triangles would be inverted or flat in single precision"),
         };
         let [x, y] = center.to_array();
-        let remedy = match (bad, at(center).inverted_by_rounding(problem)) {
+        let centered = Coordinates { center: DVec2::ZERO, scale: size / self.scale };
+        let remedy = match (bad, centered.inverted_by_rounding(problem)) {
             (None, _) => "set a scale".to_owned(),
             (_, Some(0)) => format!("set an origin in the mesh, such as {x}, {y}"),
             _ => "single precision has too few digits for this mesh, wherever the origin is"
                 .to_owned(),
         };
-        refuse(format!("{problem_text}: {remedy}"))
+        Err(GpuError::Buffer(format!("{problem_text}: {remedy}")))
+    }
+
+    /// The coordinates of the buffer, whatever rounding does to the problem's triangles.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the origin or the scale is not usable.
+    pub(crate) fn unjudged_coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
+        let refuse = |problem: String| Err(GpuError::Buffer(problem));
+        let Self { origin, scale, .. } = *self;
+        if !origin.iter().all(|x| x.is_finite()) {
+            return refuse(format!("the origin is {origin:?}, not a point"));
+        }
+        if !(scale > 0.0 && scale.is_finite()) {
+            return refuse(format!("the scale is {scale}, not a number above 0"));
+        }
+        let (center, size) = problem.normalization();
+        let center = (center - DVec2::from(origin)) * scale;
+        Ok(Coordinates { center, scale: size / scale })
+    }
+
+    /// The words from one vertex to the next.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the stride is not one that kernels can take.
+    pub(crate) fn words(&self) -> Result<u32, GpuError> {
+        let stride = self.stride;
+        if !stride.is_multiple_of(4) || stride < 8 {
+            let problem =
+                format!("the stride is {stride} bytes, not a multiple of 4 of at least 8");
+            return Err(GpuError::Buffer(problem));
+        }
+        u32::try_from(stride / 4).map_err(|_| {
+            GpuError::Buffer(format!("the stride is {stride} bytes, which is more than 16 GiB"))
+        })
+    }
+
+    /// The part of the buffer that holds this many vertices.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] or [`GpuError::Limit`] if that cannot be bound.
+    pub(crate) fn window(&self, gpu: &Gpu, vertices: usize) -> Result<Window<'a>, GpuError> {
+        let steps = vertices.saturating_sub(1) as u64;
+        let bytes = steps.saturating_mul(self.stride).saturating_add(8);
+        Window::new(gpu, self.buffer, self.offset, bytes)
     }
 }
 

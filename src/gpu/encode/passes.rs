@@ -6,11 +6,15 @@ use crate::error::GpuError;
 use crate::gpu::encode::timestamps::{Spans, Timestamps};
 use crate::gpu::kernels::pipelines::Pipeline;
 
-/// What this library encodes into: an application's [`wgpu::CommandEncoder`], or one whose kernels are timed, made by
-/// [`Timestamps::time`].
+/// What this library encodes into: an application's [`wgpu::CommandEncoder`], a [`wgpu::ComputePass`] that it has begun, or
+/// an encoder whose kernels are timed, made by [`Timestamps::time`].
+///
+/// In a pass of the application, the pipeline and bind group 0 are other ones after a call than before. One dispatch sees
+/// what those before it have written, of the application's own too.
 pub trait Encoder: sealed::Target {}
 
 impl Encoder for wgpu::CommandEncoder {}
+impl Encoder for wgpu::ComputePass<'_> {}
 impl Encoder for Timed<'_> {}
 
 /// Keeps other crates from implementing [`Encoder`].
@@ -33,6 +37,23 @@ impl sealed::Target for wgpu::CommandEncoder {
     }
 }
 
+impl sealed::Target for wgpu::ComputePass<'_> {
+    fn passes(&mut self, _: &'static str) -> Passes<'_> {
+        Passes(State::Given { pass: self, set: None })
+    }
+}
+
+/// A pass that an application has begun, whatever its lifetime.
+trait Given {
+    fn with(&mut self, encode: &mut dyn FnMut(&mut wgpu::ComputePass<'_>));
+}
+
+impl Given for wgpu::ComputePass<'_> {
+    fn with(&mut self, encode: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
+        encode(self);
+    }
+}
+
 /// The compute passes that the kernels of one call are encoded into.
 pub struct Passes<'e>(State<'e>);
 
@@ -41,11 +62,26 @@ pub struct Passes<'e>(State<'e>);
 enum State<'e> {
     /// All kernels in one pass. `set` is the pipeline that is set in it.
     One { pass: wgpu::ComputePass<'e>, set: Option<wgpu::ComputePipeline> },
+    /// All kernels in a pass of the application.
+    Given { pass: &'e mut (dyn Given + 'e), set: Option<wgpu::ComputePipeline> },
     /// Each kernel in a pass of its own: core WebGPU takes the time at the ends of a pass only.
     Timed { encoder: &'e mut wgpu::CommandEncoder, timestamps: &'e mut Timestamps },
 }
 
 impl<'e> Passes<'e> {
+    /// All kernels in one pass, which is timed as a whole.
+    pub(crate) fn clocked(
+        encoder: &'e mut wgpu::CommandEncoder,
+        label: &'static str,
+        timestamp_writes: wgpu::ComputePassTimestampWrites<'_>,
+    ) -> Self {
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: Some(timestamp_writes),
+        });
+        Self(State::One { pass, set: None })
+    }
+
     pub(crate) fn timed(
         encoder: &'e mut wgpu::CommandEncoder,
         timestamps: &'e mut Timestamps,
@@ -67,6 +103,22 @@ impl<'e> Passes<'e> {
                     *set = Some(pipeline.raw.clone());
                 }
                 dispatch(pass);
+            }
+            State::Given { pass, set } => {
+                let is_set = set.as_ref() == Some(&pipeline.raw);
+                // It is called once.
+                let mut dispatch = Some(dispatch);
+                pass.with(&mut |pass| {
+                    if !is_set {
+                        pass.set_pipeline(&pipeline.raw);
+                    }
+                    if let Some(dispatch) = dispatch.take() {
+                        dispatch(pass);
+                    }
+                });
+                if !is_set {
+                    *set = Some(pipeline.raw.clone());
+                }
             }
             State::Timed { encoder, timestamps } => {
                 let label = pipeline.kernel.label();

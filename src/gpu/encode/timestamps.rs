@@ -4,6 +4,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::kernels::table::Kernel;
@@ -27,7 +28,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// let mut encoder = gpu.device().create_command_encoder(&Default::default());
 /// let mut timed = timestamps.time(&mut encoder);
 /// vertices.encode_import(&mut timed);
-/// sweeps.encode(&mut timed, 5);
+/// sweeps.encode_sweeps(&mut timed, 5);
 /// vertices.encode_export(&mut timed);
 /// let spans = timed.resolve()?;
 /// gpu.queue().submit([encoder.finish()]);
@@ -142,7 +143,7 @@ impl Spans {
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
     pub fn read(self) -> Result<Vec<Span>, GpuError> {
-        pollster::block_on(self.wait(Waiting::Block))
+        blocking(self.wait(Waiting::Block))
     }
 
     /// As [`read`](Self::read), without blocking: completes once the application has polled the device.

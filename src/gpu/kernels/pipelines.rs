@@ -32,8 +32,14 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
             ReadWrite,
             ReadWrite,
         ],
-        Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite],
-        Interface::Publish => &[UNIFORM, ReadOnly, ReadWrite],
+        Interface::Exchange => &[UNIFORM, ReadWrite, ReadOnly, ReadWrite, ReadWrite],
+        Interface::Publish => &[UNIFORM, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Reopen => &[ReadWrite, ReadOnly],
+        Interface::Restore => &[UNIFORM, ReadWrite, ReadWrite, ReadOnly, ReadWrite],
+        Interface::Mask => &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Move => {
+            &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite, ReadWrite]
+        }
         Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
@@ -108,6 +114,8 @@ pub(crate) struct Pipeline {
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; Interface::ALL.len()],
     made: Mutex<HashMap<(Kernel, MeshForm), wgpu::ComputePipeline>>,
+    /// A cache of the application's.
+    cache: Option<wgpu::PipelineCache>,
 }
 
 /// The layout of one [`Interface`].
@@ -143,6 +151,11 @@ impl Layout {
 }
 
 impl Pipelines {
+    /// No pipelines yet, and a cache that they are compiled with.
+    pub(crate) fn with_cache(cache: wgpu::PipelineCache) -> Self {
+        Self { cache: Some(cache), ..Self::default() }
+    }
+
     /// To be called in an error scope.
     fn layout(&self, device: &wgpu::Device, interface: Interface, positions: Positions) -> &Layout {
         let positions = interface.sees(positions);
@@ -208,7 +221,7 @@ impl Pipelines {
             module: &module,
             entry_point: Some(kernel.entry_point()),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
+            cache: self.cache.as_ref(),
         })
     }
 }
@@ -229,6 +242,8 @@ mod tests {
         kernels.extend(all.iter().map(differences));
         kernels.extend([Kernel::Objective(all.clone()), Kernel::Finish(all), Kernel::KeepBest]);
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
+        kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
+        kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

@@ -33,6 +33,14 @@ const EXCHANGE: &str = include_str!("../../../shaders/exchange.wgsl");
 const IMPORT: &str = include_str!("../../../shaders/import.wgsl");
 const EXPORT: &str = include_str!("../../../shaders/export.wgsl");
 const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
+const JUDGED: &str = include_str!("../../../shaders/judged/common.wgsl");
+const REOPEN: &str = include_str!("../../../shaders/judged/reopen.wgsl");
+const RESUME: &str = include_str!("../../../shaders/judged/resume.wgsl");
+const RESTORE: &str = include_str!("../../../shaders/restore.wgsl");
+const MASK: &str = include_str!("../../../shaders/mask.wgsl");
+const MOVEMENT: &str = include_str!("../../../shaders/clamp/common.wgsl");
+const FIND_SHARE: &str = include_str!("../../../shaders/clamp/find_share.wgsl");
+const MOVE_VERTICES: &str = include_str!("../../../shaders/clamp/move_vertices.wgsl");
 const CHECK_ARITHMETIC: &str = include_str!("../../../shaders/check_arithmetic.wgsl");
 
 const LEVELS: &str = include_str!("../../../shaders/levels/common.wgsl");
@@ -84,8 +92,12 @@ impl Kernel {
         let mut source = constants();
         let (parts, bindings): (&[&str], _) = match self.interface() {
             Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
-            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 4))),
+            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 5))),
             Interface::Publish => (&[CONTROL], None),
+            Interface::Reopen => (&[CONTROL, JUDGED], None),
+            Interface::Mask => (&[], None),
+            Interface::Restore => (&[CONTROL, PAIRS], Some((1, 5))),
+            Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
@@ -125,6 +137,12 @@ impl Kernel {
             Kernel::Import => source.push_str(IMPORT),
             Kernel::Export => source.push_str(EXPORT),
             Kernel::Publish => source.push_str(PUBLISH),
+            Kernel::Reopen => source.push_str(REOPEN),
+            Kernel::Resume => source.push_str(RESUME),
+            Kernel::RestoreLastValid => source.push_str(RESTORE),
+            Kernel::HoldByMask => source.push_str(MASK),
+            Kernel::FindShare => source.push_str(FIND_SHARE),
+            Kernel::MoveVertices => source.push_str(MOVE_VERTICES),
             Kernel::Gradient(metric)
             | Kernel::Stiffness(metric)
             | Kernel::ObjectiveAlongCorrection(metric) => {

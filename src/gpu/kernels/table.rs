@@ -20,6 +20,18 @@ pub enum Kernel {
     Export,
     /// Writes objectives to an application's buffer.
     Publish,
+    /// Begins judged sweeps anew where an application has changed the mesh.
+    Reopen,
+    /// Lets judged sweeps go on after [`Reopen`](Self::Reopen) and the evaluation that follows it.
+    Resume,
+    /// Keeps the positions of a valid mesh, and puts them back where it is not.
+    RestoreLastValid,
+    /// Holds vertices by a mask of the application.
+    HoldByMask,
+    /// Finds how far an application's moves can go before a triangle gives way.
+    FindShare,
+    /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
+    MoveVertices,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
     /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
@@ -65,6 +77,14 @@ pub enum Interface {
     Exchange,
     /// A run's history and a buffer: `shaders/publish.wgsl`.
     Publish,
+    /// The control of judged sweeps, and the changes of a mesh: `shaders/judged/common.wgsl`.
+    Reopen,
+    /// A mesh, and its positions when it was valid: `shaders/restore.wgsl`.
+    Restore,
+    /// Which vertices are held, and a mask of the application: `shaders/mask.wgsl`.
+    Mask,
+    /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
+    Move,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
     Fine,
     /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
@@ -78,10 +98,14 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 12] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
+        Interface::Reopen,
+        Interface::Restore,
+        Interface::Mask,
+        Interface::Move,
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
@@ -93,10 +117,15 @@ impl Interface {
     /// without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
-            Interface::Run | Interface::Exchange | Interface::Fine | Interface::Secants => {
-                positions
-            }
+            Interface::Run
+            | Interface::Exchange
+            | Interface::Move
+            | Interface::Restore
+            | Interface::Fine
+            | Interface::Secants => positions,
             Interface::Publish
+            | Interface::Reopen
+            | Interface::Mask
             | Interface::Transfer
             | Interface::Coarse
             | Interface::Arithmetic => Positions::Whole,
@@ -167,6 +196,8 @@ impl Kernel {
         let mut kernels: Vec<_> = sweeps.collect();
         kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
+        kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
+        kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
         kernels
     }
 
@@ -205,6 +236,12 @@ impl Kernel {
             Kernel::Import => "import_positions",
             Kernel::Export => "export_positions",
             Kernel::Publish => "publish",
+            Kernel::Reopen => "reopen",
+            Kernel::Resume => "resume",
+            Kernel::RestoreLastValid => "restore_last_valid",
+            Kernel::HoldByMask => "hold_by_mask",
+            Kernel::FindShare => "find_share",
+            Kernel::MoveVertices => "move_vertices",
             Kernel::Gradient(_) => "find_gradient",
             Kernel::SmoothGradient => "smooth_gradient",
             Kernel::Restrict => "restrict_gradient",
@@ -230,6 +267,10 @@ impl Kernel {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
             Kernel::Publish => Interface::Publish,
+            Kernel::HoldByMask => Interface::Mask,
+            Kernel::RestoreLastValid => Interface::Restore,
+            Kernel::Reopen | Kernel::Resume => Interface::Reopen,
+            Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
             Kernel::CheckArithmetic => Interface::Arithmetic,
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run

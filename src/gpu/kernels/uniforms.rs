@@ -7,9 +7,10 @@ use crate::metric::Metric;
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`, `sum_along_correction` and `publish`.
+/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction`, `publish`, `reopen` and
+/// `resume`.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Invocations of the `finish` and `sum_along_correction` kernels.
+/// Invocations of the `finish`, `find_share` and `sum_along_correction` kernels.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
 /// The values kept of an evaluation: the sum of q² - ideal² for every metric, the number of inverted triangles, and the
@@ -99,7 +100,8 @@ pub(crate) struct Control {
     pub(crate) improved: u32,
     pub(crate) best_sweep: u32,
     pub(crate) best_sum: [f32; 2],
-    pub(crate) padding: [u32; 2],
+    pub(crate) changes: u32,
+    pub(crate) padding: u32,
     pub(crate) history: [[[f32; 2]; SLOTS]; HISTORY as usize],
 }
 
@@ -117,13 +119,48 @@ pub(crate) struct Exchange {
     pub(crate) padding: [u32; 2],
 }
 
+/// `Restore` in shaders/restore.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Restore {
+    pub(crate) zero: u32,
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) padding: u32,
+}
+
+/// `Mask` in shaders/mask.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Mask {
+    pub(crate) vertices: u32,
+    pub(crate) offset: u32,
+    pub(crate) padding: [u32; 2],
+}
+
+/// `Movement` in shaders/clamp/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Movement {
+    pub(crate) zero: u32,
+    pub(crate) vertices: u32,
+    pub(crate) triangles: u32,
+    pub(crate) worst_imr: f32,
+    pub(crate) offset: u32,
+    pub(crate) stride: u32,
+    pub(crate) share: u32,
+    pub(crate) scale: f32,
+    pub(crate) center: [f32; 4],
+}
+
 /// `Publish` in shaders/publish.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Publish {
     pub(crate) offset: u32,
     pub(crate) triangles: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) judged: u32,
+    pub(crate) padding: u32,
     pub(crate) ideal_squared: [[f32; 4]; SLOTS.div_ceil(4)],
 }
 
@@ -239,12 +276,21 @@ mod tests {
         );
         let secants = &Kernel::OpenSecant;
         mirrors!(secants, SecantOp { free, newer, older, pairs, partials, is_after });
-        for kernel in [run, &Kernel::Publish] {
-            mirrors!(kernel, Control { done, evaluated, improved, best_sweep, best_sum, history });
+        for kernel in [run, &Kernel::Publish, &Kernel::Reopen] {
+            mirrors!(
+                kernel,
+                Control { done, evaluated, improved, best_sweep, best_sum, changes, history }
+            );
         }
         mirrors!(
             &Kernel::Import,
             Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
+        );
+        mirrors!(&Kernel::RestoreLastValid, Restore { zero, first, count });
+        mirrors!(&Kernel::HoldByMask, Mask { vertices, offset });
+        mirrors!(
+            &Kernel::FindShare,
+            Movement { zero, vertices, triangles, worst_imr, offset, stride, share, scale, center }
         );
         let check = &Kernel::CheckArithmetic;
         mirrors!(check, ArithmeticInput { a, b });
@@ -252,7 +298,7 @@ mod tests {
             check,
             ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
         );
-        mirrors!(&Kernel::Publish, Publish { offset, triangles, ideal_squared });
+        mirrors!(&Kernel::Publish, Publish { offset, triangles, judged, ideal_squared });
     }
 
     #[test]

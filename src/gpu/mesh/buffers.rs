@@ -9,7 +9,7 @@ use crate::gpu::device::buffers::{bytes, filled, rows};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::uniforms::split;
-use crate::gpu::mesh::{Parts, of_part};
+use crate::gpu::mesh::{Changes, Parts, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 
@@ -19,6 +19,8 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
+    /// How often an application has changed the mesh.
+    pub(crate) changes: Changes,
     /// How the buffers are bound.
     pub(crate) parts: Parts,
 }
@@ -38,6 +40,7 @@ impl MeshBuffers {
             ),
             ring: filled(gpu, "one-rings", problem.ring(), Usage::STORAGE),
             triangles: filled(gpu, "triangles", problem.triangles(), Usage::STORAGE),
+            changes: Changes::new(gpu),
             parts,
         })
     }

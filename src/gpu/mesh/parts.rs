@@ -27,6 +27,8 @@ pub(crate) struct Parts {
     pub(crate) triangles: Vec<Range<u32>>,
     /// The parts of the free vertices, for buffers that hold a position for each.
     pub(crate) free: Vec<Range<u32>>,
+    /// The parts of all vertices, for buffers that hold a position for each.
+    pub(crate) vertices: Vec<Range<u32>>,
 }
 
 /// The one-rings that are bound at once.
@@ -60,6 +62,7 @@ impl Parts {
             rings: rings(problem.ring_start(), limits)?,
             triangles: ranges(triangles as u32, TRIANGLE, round, limits),
             free: ranges(free, POSITION, WORKGROUP, limits),
+            vertices: ranges(size.vertices as u32, POSITION, WORKGROUP, limits),
         })
     }
 

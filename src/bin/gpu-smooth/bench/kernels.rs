@@ -34,11 +34,11 @@ pub(crate) fn time(
     let objective = sweeps.bind_objective(&values, 0)?;
     let mut encoder =
         gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    sweeps.encode(&mut encoder, BEFORE);
+    sweeps.encode_sweeps(&mut encoder, BEFORE);
     let mut timed = timestamps.time(&mut encoder);
     for _ in 0..TIMED {
-        sweeps.encode(&mut timed, 1);
-        objective.encode(&mut timed);
+        sweeps.encode_sweeps(&mut timed, 1);
+        objective.encode_objective(&mut timed);
     }
     let spans = timed.resolve()?;
     gpu.queue().submit([encoder.finish()]);

@@ -1,0 +1,114 @@
+//! Frames of an application: the time to encode one, and from its submission until the device is done.
+//!
+//! `cargo bench --bench frames -- [VERTICES...]`, 2,000, 20,000 and 200,000 by default. A frame is an import, three sweeps, the
+//! objective and the export; `all` adds a mask, a move of the hole, the last valid positions and two readbacks, and ends
+//! its sweeps by itself.
+
+#![allow(clippy::print_stdout)]
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use std::time::{Duration, Instant};
+
+use gpu_smooth::wgpu::{self, BufferUsages as Usage};
+use gpu_smooth::{
+    DeviceMesh, Gpu, ObjectiveValues, Options, Readback, Sweeps, Topology, VertexBuffer,
+    signed_area,
+};
+
+/// Frames that are measured, after as many that are not.
+const FRAMES: usize = 50;
+
+fn main() {
+    let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
+    let sizes = if sizes.is_empty() { vec![2000, 20_000, 200_000] } else { sizes };
+    let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
+    let gpu = Gpu::open(None).unwrap();
+    println!("{}: medians", gpu.adapter().name);
+    for vertices in sizes {
+        let mesh = support::triangulate(&outline, vertices).unwrap();
+        let buffer = |size: usize, usage| {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: size as u64,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let count = mesh.points.len();
+        let usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+        let vertex_buffer = buffer(8 * count, usage);
+        let points: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
+        gpu.queue().write_buffer(&vertex_buffer, 0, bytemuck::cast_slice(&points));
+        let numbers = buffer(size_of::<ObjectiveValues>() + 4, usage);
+        let device_mesh = DeviceMesh::new(&gpu, &mesh).unwrap();
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertex_buffer, 8)).unwrap();
+
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let objective = sweeps.bind_objective(&numbers, 0).unwrap();
+        let plain = median(&gpu, |encoder| {
+            bound.encode_import(encoder);
+            sweeps.encode_sweeps(encoder, 3);
+            objective.encode_objective(encoder);
+            bound.encode_export(encoder);
+        });
+
+        let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let objective = sweeps.bind_objective(&numbers, 0).unwrap();
+        let mask = buffer(4 * count, usage);
+        let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        let mut loops = Topology::new(&mesh).unwrap().boundary_loops();
+        loops.retain(|vertices| signed_area(&mesh.points, vertices) < 0.0);
+        let hole = loops.swap_remove(0);
+        let targets = buffer(8 * hole.len(), usage);
+        let to: Vec<[f32; 2]> = hole.iter().map(|&v| points[v as usize].map(|x| x + 0.1)).collect();
+        gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
+        let share = (&numbers, size_of::<ObjectiveValues>() as u64);
+        let drag =
+            device_mesh.bind_move(&hole, &VertexBuffer::new(&targets, 8), 8.0, share).unwrap();
+        let last_valid = device_mesh.keep_last_valid().unwrap();
+        let mut values = Readback::<ObjectiveValues>::new(&gpu, &numbers, 0, 1).unwrap();
+        let mut positions = Readback::<[f32; 2]>::new(&gpu, &vertex_buffer, 0, count).unwrap();
+        let all = median(&gpu, |encoder| {
+            bound.encode_import(encoder);
+            mask.encode_mask(encoder);
+            drag.encode_move(encoder);
+            sweeps.encode_sweeps(encoder, 3);
+            last_valid.encode_restore_last_valid(encoder);
+            objective.encode_objective(encoder);
+            bound.encode_export(encoder);
+            values.encode_readback(encoder);
+            positions.encode_readback(encoder);
+            // What has arrived makes room for the next ones; positions are copied.
+            let _ = (values.latest().unwrap(), positions.latest().unwrap());
+        });
+        for (name, [encode, frame]) in [("plain", plain), ("all", all)] {
+            println!(
+                "{vertices:>7} {name:>5}: encode {:6.1} µs, frame {:8.2} ms",
+                1e6 * encode.as_secs_f64(),
+                1e3 * frame.as_secs_f64()
+            );
+        }
+    }
+}
+
+/// The time to encode a frame, and until the device is done with it.
+fn median(gpu: &Gpu, mut encode: impl FnMut(&mut wgpu::CommandEncoder)) -> [Duration; 2] {
+    let mut times = [Vec::new(), Vec::new()];
+    for _ in 0..2 * FRAMES {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        let start = Instant::now();
+        encode(&mut encoder);
+        times[0].push(start.elapsed());
+        let start = Instant::now();
+        gpu.queue().submit([encoder.finish()]);
+        gpu.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        times[1].push(start.elapsed());
+    }
+    times.map(|times| {
+        let mut times = times[FRAMES..].to_vec();
+        times.sort_unstable();
+        times[FRAMES / 2]
+    })
+}

@@ -1,0 +1,171 @@
+//! An application that knows of gpu-smooth what docs/embedding.md says, and lives with a mesh for many frames: it drags a
+//! hole, pins vertices, meshes anew on another thread, and goes on after its device was lost.
+//!
+//! ```text
+//! cargo run --release --example outside -- [MESH]
+//! ```
+//!
+//! It has no window: it prints what it sees in each act.
+#![allow(clippy::print_stdout)]
+
+mod scene;
+
+use std::path::PathBuf;
+
+use gpu_smooth::wgpu;
+use gpu_smooth::{Gpu, GpuError, Mesh, MeshFile, MeshSize, Topology, VertexBuffer, signed_area};
+use scene::{STRIDE, Scene, Seen};
+
+pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+fn main() -> Result<()> {
+    let path = std::env::args().nth(1).map_or("meshes/plate.node".into(), PathBuf::from);
+    for (act, told) in acts(MeshFile::read(&path)?.mesh())? {
+        println!("{act}: {told:?}");
+    }
+    Ok(())
+}
+
+/// What an act of the application came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) frames: u32,
+    pub(crate) sweeps: u32,
+    /// The most triangles that were inverted in any frame.
+    pub(crate) inverted: u32,
+    /// At the end.
+    pub(crate) worst_imr: f32,
+    pub(crate) has_converged: bool,
+    /// The least share of the way that a drag could go in a frame.
+    pub(crate) least_share: f32,
+}
+
+/// All acts, with their names.
+pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
+    let mut acts = Vec::new();
+    let gpu = open(mesh)?;
+    let mut scene = Scene::new(&gpu, mesh)?;
+    acts.push(("settle", settle(&mut scene)?));
+
+    let hole = hole(mesh)?;
+    acts.push(("drag a hole", drag(&mut scene, &hole, [0.4, 0.1])?));
+    acts.push(("settle around it", settle(&mut scene)?));
+
+    let pinned: Vec<u32> = (0..mesh.points.len() as u32).step_by(3).collect();
+    scene.device_mesh.pin(&pinned)?;
+    acts.push(("drag it home with vertices pinned", drag(&mut scene, &hole, [0.0, 0.0])?));
+    scene.device_mesh.unpin(&pinned)?;
+    acts.push(("settle with them unpinned", settle(&mut scene)?));
+
+    // A finer mesh is made ready on another thread while frames go on.
+    let (worker_gpu, finer) = (gpu.clone(), refined(mesh));
+    let worker = std::thread::spawn(move || Scene::new(&worker_gpu, &finer));
+    let mut meanwhile = Told { least_share: 1.0, ..Told::default() };
+    while !worker.is_finished() {
+        let seen = scene.frame(None)?;
+        meanwhile.add(seen);
+    }
+    acts.push(("frames while another mesh is made ready", meanwhile));
+    let mut scene = worker.join().map_err(|_| "the worker panicked")??;
+    acts.push(("settle the finer mesh", settle(&mut scene)?));
+
+    // A device that is lost: the last vertices that were read back go on another one.
+    let last = scene.last_mesh()?;
+    gpu.device().destroy();
+    let error = loop {
+        match scene.frame(None) {
+            Ok(_) => {}
+            Err(error) => break error,
+        }
+    };
+    if !matches!(error.downcast_ref(), Some(GpuError::Lost(_))) {
+        return Err(error);
+    }
+    let mut scene = Scene::new(&open(&last)?, &last)?;
+    acts.push(("settle on another device", settle(&mut scene)?));
+    Ok(acts)
+}
+
+impl Told {
+    fn add(&mut self, Seen { sweeps, values, share }: Seen) {
+        self.frames += 1;
+        self.sweeps += sweeps;
+        self.inverted = self.inverted.max(values.inverted);
+        self.worst_imr = values.worst_imr;
+        self.has_converged = values.has_converged();
+        self.least_share = self.least_share.min(share);
+    }
+}
+
+/// Frames until the mesh is as good as it gets.
+fn settle(scene: &mut Scene) -> Result<Told> {
+    let mut told = Told { least_share: 1.0, ..Told::default() };
+    while told.frames < 5000 && !told.has_converged {
+        told.add(scene.frame(None)?);
+    }
+    Ok(told)
+}
+
+/// Drags vertices to where the mesh had them at first, and `by` from there, a step in each frame.
+fn drag(scene: &mut Scene, vertices: &[u32], by: [f32; 2]) -> Result<Told> {
+    const FRAMES: usize = 30;
+    let drag = scene.take_hold(vertices)?;
+    let (from, home) = (scene.places(vertices)?, scene.home(vertices));
+    let mut told = Told { least_share: 1.0, ..Told::default() };
+    for frame in 1..=FRAMES {
+        let part = frame as f32 / FRAMES as f32;
+        let toward = |(from, home): (&[f32; 2], &[f32; 2])| {
+            [0, 1].map(|i| from[i] + part * (home[i] + by[i] - from[i]))
+        };
+        let targets: Vec<[f32; 2]> = from.iter().zip(&home).map(toward).collect();
+        told.add(scene.frame(Some((&drag, &targets)))?);
+    }
+    Ok(told)
+}
+
+/// A device for the mesh and one four times as large, with timestamps where there are any.
+fn open(mesh: &Mesh) -> Result<Gpu> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    let size = MeshSize { vertices: 4 * mesh.points.len(), triangles: 4 * mesh.triangles.len() };
+    let own = wgpu::Limits {
+        max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, STRIDE, 0),
+        ..wgpu::Limits::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        required_features: adapter.features() & Gpu::optional_features(),
+        required_limits: Gpu::required_limits(own, size, &adapter.limits())?,
+        ..Default::default()
+    }))?;
+    let gpu = Gpu::new(device, queue)?;
+    gpu.check_arithmetic()?;
+    gpu.prepare(&scene::options())?;
+    Ok(gpu)
+}
+
+/// The vertices of a hole.
+fn hole(mesh: &Mesh) -> Result<Vec<u32>> {
+    let mut loops = Topology::new(mesh)?.boundary_loops();
+    // The outside goes around counter-clockwise, a hole clockwise.
+    loops.retain(|vertices| signed_area(&mesh.points, vertices) < 0.0);
+    loops.into_iter().next().ok_or("the mesh has no hole".into())
+}
+
+/// The mesh with each triangle cut into four.
+fn refined(mesh: &Mesh) -> Mesh {
+    let mut points = mesh.points.clone();
+    let mut middles = std::collections::HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let [p, q] = [a, b].map(|v| mesh.points[v as usize]);
+            points.push([0, 1].map(|i| 0.5 * (p[i] + q[i])));
+            points.len() as u32 - 1
+        })
+    };
+    let mut triangles = Vec::new();
+    for &[a, b, c] in &mesh.triangles {
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    Mesh { points, triangles, fixed: Vec::new() }
+}

@@ -1,0 +1,165 @@
+// The share of their ways that vertices can go before a triangle gives way, as Topology::move_clamped on the host finds
+// it (src/topology/clamp.rs): the least root of a quadratic for each triangle, and then triangles are judged where they
+// would be. One workgroup.
+
+// By this share of an inverse mean ratio, times the ratio, its value in single precision may be wrong.
+const ROUNDING: f32 = 4.76837158203125e-7; // 2^-21
+// Triangles flatter than this count as flat: their area is not known to be positive.
+const FLATTEST: f32 = 5.0e5;
+// The first shortening of a share that is too long, and how much larger the next one is.
+const SHORTEN_FIRST: f32 = 9.5367431640625e-7; // 2^-20
+const SHORTEN_MORE: f32 = 16.0;
+
+var<workgroup> least: atomic<u32>;
+var<workgroup> too_long: atomic<u32>;
+var<workgroup> share: f32;
+var<workgroup> goes_on: u32;
+
+struct Corners {
+    p: vec4<f32>,
+    q: vec4<f32>,
+    r: vec4<f32>,
+}
+
+fn corners_of(t: u32) -> Corners {
+    return Corners(
+        position(corners[6u * t]),
+        position(corners[6u * t + 1u]),
+        position(corners[6u * t + 2u]),
+    );
+}
+
+// The inverse mean ratio of the triangle that edges a and b span; 0 if it is inverted, flat or not a number.
+fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    let t = Corner(a, b, vec2(0.0));
+    let area = doubled_area(t);
+    if !is_positive(area) {
+        return 0.0;
+    }
+    let ratio = 0.28867513459 * squared_length_sum(t) / area;
+    return select(0.0, ratio, is_positive(ratio) && ratio <= FLATTEST);
+}
+
+// The inverse mean ratio that a triangle may get, given the one that it has.
+fn limit_of(now: f32) -> f32 {
+    return max(movement.worst_imr, now * (1.0 + now * ROUNDING));
+}
+
+fn way_vector(t: u32, corner: u32, from_: vec4<f32>) -> vec2<f32> {
+    let way = corners[6u * t + 3u + corner];
+    if way == NONE {
+        return vec2(0.0);
+    }
+    return edge(from_, target_of(way, from_));
+}
+
+fn going(t: u32, corner: u32, from_: vec4<f32>, by: f32) -> vec4<f32> {
+    let way = corners[6u * t + 3u + corner];
+    if way == NONE {
+        return from_;
+    }
+    return gone(way, from_, by);
+}
+
+// The least positive t with constant + slope t + bend t² = 0; above 1 if there is none.
+fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
+    let discriminant = slope * slope - 4.0 * bend * constant;
+    if discriminant < 0.0 {
+        return 2.0;
+    }
+    // Both roots by the formula that does not cancel.
+    let half = -0.5 * (slope + select(-1.0, 1.0, slope >= 0.0) * sqrt(discriminant));
+    let first = half / bend;
+    let second = constant / half;
+    return min(
+        select(2.0, first, is_positive(first)),
+        select(2.0, second, is_positive(second)),
+    );
+}
+
+// The share at which a triangle's inverse mean ratio reaches its limit. With L the sum of the squared lengths and D the
+// doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic D - L / (2√3 limit).
+fn gives_way(t: u32) -> f32 {
+    let c = corners_of(t);
+    let now = imr(edge(c.p, c.q), edge(c.p, c.r));
+    if now == 0.0 {
+        return 1.0;
+    }
+    let dp = way_vector(t, 0u, c.p);
+    var e = edge(c.p, c.q);
+    var f = edge(c.p, c.r);
+    var de = way_vector(t, 1u, c.q) - dp;
+    var df = way_vector(t, 2u, c.r) - dp;
+    // Divided by the largest difference of coordinates, so that nothing overflows.
+    let most = max(max(abs(e), abs(f)), max(abs(de), abs(df)));
+    let unit = 1.0 / max(most.x, most.y);
+    e *= unit;
+    f *= unit;
+    de *= unit;
+    df *= unit;
+    let weight = 0.28867513459 / limit_of(now);
+    let g = f - e;
+    let dg = df - de;
+    return least_root(
+        cross2(e, f) - weight * (dot(e, e) + dot(f, f) + dot(g, g)),
+        cross2(e, df) + cross2(de, f) - 2.0 * weight * (dot(e, de) + dot(f, df) + dot(g, dg)),
+        cross2(de, df) - weight * (dot(de, de) + dot(df, df) + dot(dg, dg)),
+    );
+}
+
+// Whether a triangle keeps to its limit when its vertices have gone a share of their ways.
+fn holds(t: u32, by: f32) -> bool {
+    let c = corners_of(t);
+    let now = imr(edge(c.p, c.q), edge(c.p, c.r));
+    if now == 0.0 {
+        return true;
+    }
+    let p = going(t, 0u, c.p, by);
+    let then = imr(edge(p, going(t, 1u, c.q, by)), edge(p, going(t, 2u, c.r, by)));
+    return then > 0.0 && then <= limit_of(now);
+}
+
+@compute @workgroup_size(FINISH_WORKGROUP)
+fn find_share(@builtin(local_invocation_index) local: u32) {
+    if local == 0u {
+        atomicStore(&least, bitcast<u32>(1.0f));
+    }
+    workgroupBarrier();
+    for (var t = local; t < movement.triangles; t += FINISH_WORKGROUP) {
+        // Floats that are not negative compare as their bits do.
+        atomicMin(&least, bitcast<u32>(gives_way(t)));
+    }
+    workgroupBarrier();
+    if local == 0u {
+        let found = bitcast<f32>(atomicLoad(&least));
+        share = select(found * (1.0 - SHORTEN_FIRST), 1.0, found >= 1.0);
+        goes_on = 1u;
+    }
+    // The share and the positions are rounded, so a triangle may exceed its limit: lowers the share until none does.
+    for (var shorten = SHORTEN_FIRST; shorten < 1.0; shorten *= SHORTEN_MORE) {
+        // These loads are barriers as well.
+        if workgroupUniformLoad(&goes_on) == 0u {
+            break;
+        }
+        let by = workgroupUniformLoad(&share);
+        for (var t = local; t < movement.triangles; t += FINISH_WORKGROUP) {
+            if !holds(t, by) {
+                atomicStore(&too_long, 1u);
+                break;
+            }
+        }
+        workgroupBarrier();
+        if local == 0u {
+            goes_on = atomicLoad(&too_long);
+            if goes_on != 0u {
+                let longer = shorten * SHORTEN_MORE;
+                share = select(0.0, by * (1.0 - shorten), longer < 1.0);
+            }
+            atomicStore(&too_long, 0u);
+        }
+    }
+    workgroupBarrier();
+    if local == 0u {
+        shares[movement.share] = share;
+    }
+}

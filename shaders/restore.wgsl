@@ -1,0 +1,44 @@
+// Keeps the positions of a mesh that is valid, and puts them back where it is not.
+
+struct Restore {
+    // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
+    zero: u32,
+    // The vertices of this dispatch; `valid_positions` is bound from the first of them on.
+    first: u32,
+    count: u32,
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> restore: Restore;
+@group(0) @binding(2) var<storage, read_write> valid_positions: array<vec4<f32>>;
+// Of an evaluation just before.
+@group(0) @binding(3) var<storage, read> control: Control;
+// How often a vertex was moved, and how often the host changed what may move.
+@group(0) @binding(4) var<storage, read_write> changes: array<atomic<u32>, 2>;
+
+fn runtime_zero() -> u32 {
+    return restore.zero;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn restore_last_valid(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let index = invocation(id, groups);
+    if index >= restore.count {
+        return;
+    }
+    let vertex = restore.first + index;
+    let last = ((control.evaluated - 1u) % HISTORY) * SLOTS;
+    let now = position(vertex);
+    if control.history[last + INVERTED].x <= 0.0 {
+        valid_positions[index] = now;
+        return;
+    }
+    let then = valid_positions[index];
+    if any(then != now) {
+        set_position(vertex, then);
+        atomicAdd(&changes[0], 1u);
+    }
+}

@@ -1,0 +1,234 @@
+//! How many sweeps a frame has time for.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::zeroed;
+use crate::gpu::embed::Readback;
+use crate::gpu::scope::scoped;
+
+/// The time that sweeps may take on the device in each frame. It chooses the number of sweeps of the next frame from the
+/// time that those of the frames before took: at least one, and at most twice as many as in the frame before.
+///
+/// [`timed_by`](Self::timed_by) lets the device measure; [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) then
+/// does all the rest. Where the device has no clock, the application tells what it has measured by
+/// [`record`](Self::record).
+///
+/// ```
+/// # use std::time::Duration;
+/// use gpu_smooth::Budget;
+///
+/// let mut budget = Budget::micros(500);
+/// assert_eq!(budget.sweeps(), 1);
+/// // Two sweeps took 80 µs.
+/// budget.record(2, Duration::from_micros(80));
+/// assert_eq!(budget.sweeps(), 4);
+/// budget.record(4, Duration::from_micros(160));
+/// budget.record(8, Duration::from_micros(320));
+/// assert_eq!(budget.sweeps(), 12);
+/// ```
+#[derive(Debug)]
+pub struct Budget {
+    time: Duration,
+    most: u32,
+    /// Seconds that a sweep took in the last frames that were measured.
+    measured: [f64; FRAMES],
+    /// How many frames were measured.
+    count: usize,
+    /// The sweeps of the last measurement.
+    last: u32,
+    pub(crate) clock: Option<Clock>,
+}
+
+/// How many frames count. A sweep is expected to take as long as in the slowest of them but one: rather too few sweeps than
+/// a late frame, but a single late frame, such as the first one of a driver, says nothing.
+const FRAMES: usize = 6;
+/// The most sweeps of a frame unless the application sets another number.
+const MOST: u32 = 100;
+
+impl Budget {
+    /// A budget of this many microseconds in each frame.
+    pub fn micros(micros: u64) -> Self {
+        Self::new(Duration::from_micros(micros))
+    }
+
+    /// A budget of this time in each frame.
+    pub fn new(time: Duration) -> Self {
+        Self { time, most: MOST, measured: [0.0; FRAMES], count: 0, last: 1, clock: None }
+    }
+
+    /// Sets the most sweeps of a frame, whatever the budget: 100 by default, at least 1.
+    pub fn at_most(self, sweeps: u32) -> Self {
+        Self { most: sweeps.max(1), ..self }
+    }
+
+    /// Lets the device measure the sweeps of [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within), by its
+    /// timestamps. They are read without waiting, a frame or two later.
+    ///
+    /// # Errors
+    /// [`GpuError::Feature`] if the device was made without `TIMESTAMP_QUERY`; see [`Gpu::optional_features`].
+    pub fn timed_by(self, gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { clock: Some(Clock::new(gpu)?), ..self })
+    }
+
+    /// The number of sweeps that the next frame has time for.
+    pub fn sweeps(&self) -> u32 {
+        let Some(each) = self.seconds() else { return 1 };
+        // A float too large for an integer becomes the largest one.
+        let fit = (self.time.as_secs_f64() / each) as u32;
+        fit.min(self.last.saturating_mul(2)).clamp(1, self.most)
+    }
+
+    /// Takes account of what was measured: that `sweeps` sweeps have taken `time`. Not to be called for sweeps
+    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had nothing more to do.
+    pub fn record(&mut self, sweeps: u32, time: Duration) {
+        if sweeps == 0 {
+            return;
+        }
+        self.measured[self.count % FRAMES] = time.as_secs_f64() / f64::from(sweeps);
+        self.count = self.count.saturating_add(1);
+        self.last = sweeps;
+    }
+
+    /// Seconds that a sweep is expected to take.
+    fn seconds(&self) -> Option<f64> {
+        let mut measured = self.measured;
+        let measured = &mut measured[..self.count.min(FRAMES)];
+        measured.sort_unstable_by(f64::total_cmp);
+        measured.get(measured.len().saturating_sub(2)).copied()
+    }
+
+    /// The time that a sweep is estimated to take; `None` before the first measurement.
+    pub fn estimate(&self) -> Option<Duration> {
+        self.seconds().map(Duration::from_secs_f64)
+    }
+
+    /// Takes account of what the device has measured since the last call.
+    pub(crate) fn collect(&mut self) {
+        if let Some((sweeps, time)) = self.clock.as_mut().and_then(Clock::measured) {
+            self.record(sweeps, time);
+        }
+    }
+}
+
+/// Measures the sweeps of each frame by the device's clock.
+#[derive(Debug)]
+pub(crate) struct Clock {
+    queries: wgpu::QuerySet,
+    /// The times before and after the sweeps, and whether they had ended by themselves.
+    times: wgpu::Buffer,
+    readback: Readback<[u64; 3]>,
+    /// Copies under way: their numbers, and the sweeps that were measured.
+    measuring: VecDeque<(u64, u32)>,
+    taken: Option<u64>,
+    /// Seconds of a tick.
+    period: f64,
+}
+
+impl Clock {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+            return Err(GpuError::Feature { what: "timing", feature: "TIMESTAMP_QUERY" });
+        }
+        let (queries, times) = scoped(&gpu.device, || {
+            let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("gpu-smooth budget"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            });
+            let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC | Usage::COPY_DST;
+            (queries, zeroed(gpu, "budget", size_of::<[u64; 3]>() as u64, usage))
+        })?;
+        let readback = Readback::new(gpu, &times, 0, 1)?;
+        let period = 1e-9 * f64::from(gpu.queue.get_timestamp_period());
+        let (measuring, taken) = (VecDeque::with_capacity(8), None);
+        Ok(Self { queries, times, readback, measuring, taken, period })
+    }
+
+    /// Where the pass of the sweeps writes its times.
+    pub(crate) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        }
+    }
+
+    /// Encodes the readback of the times, after the pass of the sweeps. `control` starts with whether they have ended.
+    pub(crate) fn encode(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        control: &wgpu::Buffer,
+        sweeps: u32,
+    ) {
+        encoder.resolve_query_set(&self.queries, 0..2, &self.times, 0);
+        encoder.copy_buffer_to_buffer(control, 0, &self.times, 16, 4);
+        if let Some(number) = self.readback.encode(encoder) {
+            self.measuring.push_back((number, sweeps));
+        }
+    }
+
+    /// The latest measurement that was not taken yet. There is none of sweeps that had ended by themselves: they took no
+    /// time. A lost device measures nothing.
+    fn measured(&mut self) -> Option<(u32, Duration)> {
+        let &[[start, end, ended]] = self.readback.latest().ok()?? else { return None };
+        let number = self.readback.arrived().filter(|&number| self.taken != Some(number))?;
+        self.taken = Some(number);
+        self.measuring.retain(|&(older, _)| older >= number);
+        let &(_, sweeps) = self.measuring.front().filter(|(first, _)| *first == number)?;
+        // Clocks of devices are known to go back now and then.
+        let seconds = end.checked_sub(start)? as f64 * self.period;
+        (ended == 0).then_some((sweeps, Duration::try_from_secs_f64(seconds).ok()?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frames of a device on which a frame costs a constant and each sweep its part.
+    fn settle(budget: &mut Budget, constant: f64, each: f64, frames: u32) -> u32 {
+        for _ in 0..frames {
+            let sweeps = budget.sweeps();
+            let micros = constant + each * f64::from(sweeps);
+            budget.record(sweeps, Duration::from_secs_f64(1e-6 * micros));
+        }
+        budget.sweeps()
+    }
+
+    #[test]
+    fn the_budget_is_used_and_kept() {
+        for (constant, each, expected) in [(0.0, 40.0, 12), (60.0, 40.0, 11), (0.0, 3000.0, 1)] {
+            let mut budget = Budget::micros(500);
+            assert_eq!(budget.sweeps(), 1);
+            let sweeps = settle(&mut budget, constant, each, 60);
+            assert!(sweeps.abs_diff(expected) <= 1, "{sweeps} for {expected}");
+            assert!(sweeps == 1 || constant + each * f64::from(sweeps) <= 500.0);
+        }
+        let mut budget = Budget::micros(1_000_000).at_most(7);
+        assert_eq!(settle(&mut budget, 0.0, 1.0, 20), 7);
+        // No time at all.
+        let mut budget = Budget::micros(0);
+        assert_eq!(settle(&mut budget, 0.0, 1.0, 5), 1);
+        let mut budget = Budget::micros(500);
+        budget.record(1, Duration::ZERO);
+        assert_eq!(budget.sweeps(), 2);
+    }
+
+    #[test]
+    fn slower_sweeps_count_sooner_than_faster_ones() {
+        let mut budget = Budget::micros(1000);
+        assert_eq!(settle(&mut budget, 0.0, 20.0, 40), 50);
+        assert_eq!(settle(&mut budget, 0.0, 100.0, 2), 10);
+        assert_eq!(settle(&mut budget, 0.0, 20.0, 4), 10);
+        assert_eq!(settle(&mut budget, 0.0, 20.0, 4), 50);
+        // A single late frame says nothing, nor does a frame without sweeps.
+        budget.record(50, Duration::from_secs(1));
+        budget.record(0, Duration::from_secs(1));
+        assert_eq!(budget.sweeps(), 50);
+    }
+}

@@ -1,0 +1,166 @@
+//! Vertices that an application moves as far as the triangles allow.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::filled;
+use crate::gpu::device::size::check_limit;
+use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
+use crate::gpu::embed::window::Window;
+use crate::gpu::encode::Encoder;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::uniforms::{Movement, pair};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::scope::scoped_to_buffer;
+use crate::layout::Problem;
+use crate::run::multilevel::NONE;
+
+/// The largest bound on the inverse mean ratio by which single precision surely tells a triangle from a flat one.
+const LARGEST_BOUND: f64 = 1e5;
+
+/// What is to be moved.
+pub(crate) struct Moves {
+    /// The number of each vertex on the device, and the number of its target. Where a vertex is repeated, its last target
+    /// counts.
+    pub(crate) ways: Vec<[u32; 2]>,
+    /// The number of targets.
+    pub(crate) listed: usize,
+    /// No triangle gets an inverse mean ratio above this.
+    pub(crate) worst_imr: f64,
+}
+
+impl Moves {
+    /// The triangles of the vertices that move, each with its corners and the way of each of them, or [`NONE`].
+    fn corners(&mut self, problem: &Problem) -> Vec<[u32; 6]> {
+        // The last target of each vertex counts.
+        self.ways.reverse();
+        self.ways.sort_by_key(|&[vertex, _]| vertex);
+        self.ways.dedup_by_key(|&mut [vertex, _]| vertex);
+        let mut way_of = vec![NONE; problem.positions().len()];
+        for (way, &[vertex, _]) in (0..).zip(&self.ways) {
+            way_of[vertex as usize] = way;
+        }
+        let corners = problem.triangles().iter().map(|&[p, q, r]| {
+            let [a, b, c] = [p, q, r].map(|v| way_of[v as usize]);
+            [p, q, r, a, b, c]
+        });
+        corners.filter(|corners| corners[3..].iter().any(|&way| way != NONE)).collect()
+    }
+}
+
+/// Vertices that an application moves, bound to a buffer of targets and to a place for the share of their ways. Made by
+/// [`DeviceMesh::bind_move`](crate::gpu::DeviceMesh::bind_move); it can be used after the mesh is dropped.
+///
+/// ```no_run
+/// # use gpu_smooth::*;
+/// # fn f(
+/// #     mesh: &DeviceMesh, hole: &[u32], targets: &wgpu::Buffer, numbers: &wgpu::Buffer, queue: &wgpu::Queue,
+/// #     sweeps: &mut Sweeps, vertices: &BoundVertices, encoder: &mut wgpu::CommandEncoder, where_to: &[[f32; 2]],
+/// # ) -> Result<(), SmoothError> {
+/// // When the user takes hold of a hole; a target is two floats.
+/// let drag = mesh.bind_move(hole, &VertexBuffer::new(targets, 8), 8.0, (numbers, 0))?;
+/// // In each frame.
+/// queue.write_buffer(targets, 0, bytemuck::cast_slice(where_to));
+/// drag.encode_move(encoder);
+/// sweeps.encode_sweeps(encoder, 3);
+/// vertices.encode_export(encoder);
+/// # Ok(())
+/// # }
+/// ```
+pub struct BoundMove {
+    find_share: Pipeline,
+    move_vertices: Pipeline,
+    bind_group: wgpu::BindGroup,
+    count: u32,
+}
+
+impl BoundMove {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        mut moves: Moves,
+        targets: &VertexBuffer<'_>,
+        (share, place): (&wgpu::Buffer, u64),
+    ) -> Result<Self, GpuError> {
+        if targets.buffer == share {
+            let problem = "targets and share are in one buffer, and a kernel that writes a buffer \
+                           cannot read another part of it";
+            return Err(GpuError::Buffer(problem.into()));
+        }
+        let stride = targets.words()?;
+        let window = targets.window(gpu, moves.listed.max(1))?;
+        let share = Window::new(gpu, share, place, size_of::<f32>() as u64)?;
+        let Coordinates { center, scale } = targets.unjudged_coordinates(problem)?;
+        let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
+        let mut corners = moves.corners(problem);
+        let count = moves.ways.len() as u32;
+        let most = gpu.device.limits().max_storage_buffer_binding_size;
+        let what =
+            || format!("the buffer of the {} triangles around moved vertices", corners.len());
+        let bytes = corners.len() as u64 * size_of::<[u32; 6]>() as u64;
+        check_limit("max_storage_buffer_binding_size", most, &what, bytes)?;
+        let movement = Movement {
+            zero: 0,
+            vertices: count,
+            triangles: corners.len() as u32,
+            worst_imr: moves.worst_imr.min(LARGEST_BOUND) as f32,
+            offset: window.offset,
+            stride,
+            share: share.offset,
+            scale: scale as f32,
+            center: [x, y, x_low, y_low],
+        };
+        // An empty buffer cannot be bound.
+        corners.resize(corners.len().max(1), [NONE; 6]);
+        moves.ways.resize(moves.ways.len().max(1), [NONE; 2]);
+        let form = mesh.parts.form();
+        let bind_group = scoped_to_buffer(&gpu.device, || {
+            let movement = filled(gpu, "movement", &[movement], Usage::UNIFORM);
+            let corners = filled(gpu, "corners of moved vertices", &corners, Usage::STORAGE);
+            let ways = filled(gpu, "ways of moved vertices", &moves.ways, Usage::STORAGE);
+            let (whole, beyond) = mesh.bind_positions();
+            let mut resources = vec![
+                movement.as_entire_binding(),
+                whole,
+                corners.as_entire_binding(),
+                ways.as_entire_binding(),
+                window.binding(),
+                share.binding(),
+                mesh.changes.buffer.as_entire_binding(),
+            ];
+            resources.extend(beyond);
+            gpu.pipelines.bind(&gpu.device, Interface::Move, form, &resources)
+        })?;
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
+        let find_share = pipeline(Kernel::FindShare)?;
+        let move_vertices = pipeline(Kernel::MoveVertices)?;
+        Ok(Self { find_share, move_vertices, bind_group, count })
+    }
+
+    /// Encodes the move: when the command buffer runs, the vertices go straight toward their targets as they are in the
+    /// buffer then, all by the same share of their ways, as far as the triangles allow. The share is written; 1 is all the
+    /// way.
+    ///
+    /// It is the move of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on the device: no
+    /// triangle inverts or becomes flat, neither on the way nor at the end, and none gets an inverse mean ratio above the
+    /// bound, but for rounding (5e-7 of the ratio, times the ratio). A triangle that already has a larger one does not get
+    /// worse. Triangles that are inverted or flatter than 500,000 beforehand do not limit the move. A target that is not a
+    /// finite point counts as where its vertex is.
+    pub fn encode_move(&self, encoder: &mut impl Encoder) {
+        let mut passes = encoder.passes("gpu-smooth move");
+        passes.run(&self.find_share, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+        if self.count > 0 {
+            passes.run(&self.move_vertices, None, |pass| {
+                pass.set_bind_group(0, &self.bind_group, &[]);
+                dispatch(pass, self.count);
+            });
+        }
+    }
+}

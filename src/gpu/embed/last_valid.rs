@@ -1,0 +1,76 @@
+//! A mesh that goes back to where it was valid.
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{filled, rows};
+use crate::gpu::device::size::POSITION;
+use crate::gpu::encode::Encoder;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::uniforms::{Restore, split};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::run::Dispatches;
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+use crate::run::Options;
+
+/// The positions of a mesh when it was valid last. Made by
+/// [`DeviceMesh::keep_last_valid`](crate::gpu::DeviceMesh::keep_last_valid); it can be used after the mesh is dropped.
+pub struct LastValid {
+    evaluation: Dispatches,
+    restore: Pipeline,
+    /// A bind group and the number of vertices of each part of the mesh.
+    parts: Vec<(wgpu::BindGroup, u32)>,
+}
+
+impl LastValid {
+    pub(crate) fn new(gpu: &Gpu, problem: &Problem, mesh: &MeshBuffers) -> Result<Self, GpuError> {
+        let plan = Options::default().plan().endless();
+        let evaluation = Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?;
+        let form = mesh.parts.form();
+        let restore = gpu.pipelines.get(&gpu.device, &Kernel::RestoreLastValid, form)?;
+        let parts = scoped(&gpu.device, || {
+            let valid: Vec<[f32; 4]> = problem.positions().iter().map(|&p| split(p)).collect();
+            let valid = filled(gpu, "last valid positions", &valid, Usage::STORAGE);
+            let bind = |part: &std::ops::Range<u32>| {
+                let (first, count) = (part.start, part.end - part.start);
+                let uniform = Restore { zero: 0, first, count, padding: 0 };
+                let uniform = filled(gpu, "restore", &[uniform], Usage::UNIFORM);
+                let (whole, beyond) = mesh.bind_positions();
+                let mut resources = vec![
+                    uniform.as_entire_binding(),
+                    whole,
+                    rows(&valid, part, POSITION),
+                    evaluation.control.as_entire_binding(),
+                    mesh.changes.buffer.as_entire_binding(),
+                ];
+                resources.extend(beyond);
+                let interface = Interface::Restore;
+                let bound = gpu.pipelines.bind(&gpu.device, interface, form, &resources);
+                (bound, count)
+            };
+            mesh.parts.vertices.iter().map(bind).collect()
+        })?;
+        Ok(Self { evaluation, restore, parts })
+    }
+
+    /// Encodes the keeping or the restoring: when the command buffer runs, a mesh without inverted and flat triangles is
+    /// remembered as it is then, and one with such triangles goes back to where it was remembered last, or, if it never was,
+    /// to where it was uploaded. All its vertices do, those of the boundary too. To be encoded before the export, so that
+    /// the application's vertices go back with it.
+    ///
+    /// It takes an evaluation of f and a copy of the positions: less than a sweep.
+    pub fn encode_restore_last_valid(&self, encoder: &mut impl Encoder) {
+        let mut passes = encoder.passes("gpu-smooth restore");
+        self.evaluation.encode_evaluation(&mut passes);
+        for (bound, count) in &self.parts {
+            passes.run(&self.restore, None, |pass| {
+                pass.set_bind_group(0, bound, &[]);
+                dispatch(pass, *count);
+            });
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Vertices that are held where they are: on the host's word, or by a mask of the application.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{filled, zeroed};
+use crate::gpu::embed::window::Window;
+use crate::gpu::encode::Encoder;
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::uniforms::{HELD, Mask};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::scope::{scoped, scoped_to_buffer};
+use crate::layout::Problem;
+
+/// Which vertices the host holds. They are named by their numbers on the device.
+pub(crate) struct Pins {
+    /// Of each vertex that is free or held: [`FIXED`], [`PINNED`].
+    flags: Mutex<Vec<u8>>,
+    /// On the device, a bit for each vertex that is fixed or pinned.
+    bits: wgpu::Buffer,
+}
+
+/// A vertex of [`Mesh::fixed`](crate::Mesh::fixed), which always stays.
+const FIXED: u8 = 1;
+const PINNED: u8 = 2;
+
+/// Places between two changes that are sent with them: a write of its own costs more.
+const GAP: u32 = 64;
+/// The most writes in one call; more changes than that are sent as one range.
+const WRITES: usize = 32;
+
+impl Pins {
+    /// Holds the fixed vertices of a mesh.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        fixed: &[u32],
+    ) -> Result<Self, GpuError> {
+        let words = problem.free_count().div_ceil(32).max(1);
+        let bits = scoped(&gpu.device, || {
+            zeroed(gpu, "pins", 4 * words as u64, Usage::STORAGE | Usage::COPY_DST)
+        })?;
+        let mut flags = vec![0; problem.free_count()];
+        fixed.iter().for_each(|&place| flags[place as usize] = FIXED);
+        let pins = Self { flags: Mutex::default(), bits };
+        pins.send(gpu, problem, mesh, &flags, &with(&flags, FIXED))?;
+        *pins.flags() = flags;
+        Ok(pins)
+    }
+
+    fn flags(&self) -> MutexGuard<'_, Vec<u8>> {
+        self.flags.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Pins vertices and lets go of others, and sends what is different to the device.
+    pub(crate) fn change(
+        &self,
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        change: Change<'_>,
+    ) -> Result<(), GpuError> {
+        let mut flags = self.flags();
+        let mut changed = Vec::new();
+        let mut set = |flags: &mut [u8], places: &[u32], wanted: u8| {
+            for &place in places {
+                let flag = &mut flags[place as usize];
+                if *flag & PINNED != wanted {
+                    *flag ^= PINNED;
+                    changed.push(place);
+                }
+            }
+        };
+        match change {
+            Change::Pin(places) => set(&mut flags, places, PINNED),
+            Change::Unpin(places) => set(&mut flags, places, 0),
+            Change::PinThese(places) => {
+                let before = with(&flags, PINNED);
+                set(&mut flags, &before, 0);
+                set(&mut flags, places, PINNED);
+            }
+        }
+        // A vertex that was let go of and pinned again is listed twice.
+        changed.sort_unstable();
+        let once = changed.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+        let changed: Vec<u32> = once.map(|same| same[0]).collect();
+        let changed: Vec<u32> =
+            changed.into_iter().filter(|&place| flags[place as usize] & FIXED == 0).collect();
+        if changed.is_empty() {
+            return Ok(());
+        }
+        self.send(gpu, problem, mesh, &flags, &changed)?;
+        mesh.changes.count(gpu)
+    }
+
+    /// Sends to the device what holds for vertices that have changed, in ascending order.
+    fn send(
+        &self,
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        flags: &[u8],
+        changed: &[u32],
+    ) -> Result<(), GpuError> {
+        let is_held = |place: usize| flags.get(place).is_some_and(|&flags| flags != 0);
+        let start =
+            |place: usize| problem.ring_start()[place] | if is_held(place) { HELD } else { 0 };
+        let bits =
+            |word: usize| (0..32).fold(0, |bits, i| bits | u32::from(is_held(32 * word + i)) << i);
+        scoped(&gpu.device, || {
+            let write = |buffer: &wgpu::Buffer, first: usize, words: &[u32]| {
+                gpu.queue.write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(words));
+            };
+            for (first, last) in ranges(changed) {
+                let (first, last) = (first as usize, last as usize);
+                let starts: Vec<u32> = (first..=last).map(start).collect();
+                write(&mesh.ring_start, first, &starts);
+                let words: Vec<u32> = (first / 32..=last / 32).map(bits).collect();
+                write(&self.bits, first / 32, &words);
+            }
+        })
+    }
+}
+
+/// A change of which vertices are pinned, named by their numbers on the device.
+pub(crate) enum Change<'a> {
+    Pin(&'a [u32]),
+    Unpin(&'a [u32]),
+    /// These and no others.
+    PinThese(&'a [u32]),
+}
+
+/// The places that have a flag, in ascending order.
+fn with(flags: &[u8], flag: u8) -> Vec<u32> {
+    let has = |&(_, flags): &(u32, &u8)| flags & flag != 0;
+    (0..).zip(flags).filter(has).map(|(place, _)| place).collect()
+}
+
+/// The ranges, ends included, in which these places are sent.
+fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
+    let parts = places.chunk_by(|&a, &b| b - a <= GAP);
+    let ends = |part: &[u32]| part.first().copied().zip(part.last().copied());
+    let ranges: Vec<(u32, u32)> = parts.filter_map(ends).collect();
+    match ranges.len() <= WRITES {
+        true => ranges,
+        false => ends(places).into_iter().collect(),
+    }
+}
+
+/// A mask in a buffer of the application, which holds vertices. Made by
+/// [`DeviceMesh::bind_mask`](crate::gpu::DeviceMesh::bind_mask); it can be used after the mesh is dropped.
+pub struct BoundMask {
+    pipeline: Pipeline,
+    bind_group: wgpu::BindGroup,
+    count: u32,
+}
+
+impl BoundMask {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        (problem, vertex_count): (&Problem, usize),
+        mesh: &MeshBuffers,
+        numbers: &wgpu::Buffer,
+        pins: &Pins,
+        (buffer, offset): (&wgpu::Buffer, u64),
+    ) -> Result<Self, GpuError> {
+        let bytes = (vertex_count as u64).saturating_mul(size_of::<u32>() as u64);
+        let window = Window::new(gpu, buffer, offset, bytes)?;
+        let count = problem.free_count() as u32;
+        let mask = Mask { vertices: count, offset: window.offset, padding: [0; 2] };
+        let bind_group = scoped_to_buffer(&gpu.device, || {
+            let uniform = filled(gpu, "mask", &[mask], Usage::UNIFORM);
+            let resources = [
+                uniform.as_entire_binding(),
+                mesh.ring_start.as_entire_binding(),
+                numbers.as_entire_binding(),
+                pins.bits.as_entire_binding(),
+                window.binding(),
+                mesh.changes.buffer.as_entire_binding(),
+            ];
+            gpu.pipelines.bind(&gpu.device, Interface::Mask, Positions::Whole, &resources)
+        })?;
+        let pipeline = gpu.pipelines.get(&gpu.device, &Kernel::HoldByMask, Positions::Whole)?;
+        Ok(Self { pipeline, bind_group, count })
+    }
+
+    /// Encodes the holding of vertices: when the command buffer runs, those whose word in the mask is not 0 then are held
+    /// from there on, and the others are let go, but for vertices of [`Mesh::fixed`](crate::Mesh::fixed) and those that are
+    /// [pinned](crate::gpu::DeviceMesh::pin). To be encoded again after the mask has changed, and after a vertex that the
+    /// mask holds was unpinned.
+    pub fn encode_mask(&self, encoder: &mut impl Encoder) {
+        encoder.passes("gpu-smooth mask").run(&self.pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            dispatch(pass, self.count);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_sent_in_few_ranges_that_hold_them_all() {
+        assert_eq!(ranges(&[]), []);
+        assert_eq!(ranges(&[7]), [(7, 7)]);
+        assert_eq!(ranges(&[0, 3, 67, 132, 1000]), [(0, 67), (132, 132), (1000, 1000)]);
+        let scattered: Vec<u32> = (0..100).map(|i| 100 * i).collect();
+        assert_eq!(ranges(&scattered), [(0, 9900)]);
+    }
+}

@@ -1,0 +1,198 @@
+//! Buffers that are read in each frame without waiting for the device.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use bytemuck::Pod;
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::zeroed;
+use crate::gpu::scope::{scoped, scoped_to_buffer};
+
+/// How many copies may be under way. A device that is further behind gets no more until one arrives.
+const COPIES: usize = 3;
+
+/// Reads part of a buffer in each frame, such as [`ObjectiveValues`](crate::gpu::ObjectiveValues), the vertices or the
+/// share of a move. Neither call ever waits: [`latest`](Self::latest) has what has arrived, usually that of a frame or two
+/// ago. The application polls the device, as it does for its own work.
+///
+/// ```no_run
+/// # use gpu_smooth::*;
+/// # fn f(
+/// #     gpu: &Gpu, numbers: &wgpu::Buffer, objective: &BoundObjective, encoder: &mut wgpu::CommandEncoder,
+/// # ) -> Result<(), GpuError> {
+/// // Once; the buffer has usage COPY_SRC.
+/// let mut readback = Readback::<ObjectiveValues>::new(gpu, numbers, 0, 1)?;
+/// // In each frame.
+/// objective.encode_objective(encoder);
+/// readback.encode_readback(encoder);
+/// if let Some([values]) = readback.latest()? {
+///     println!("{} triangles are inverted", values.inverted);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Readback<T> {
+    source: wgpu::Buffer,
+    offset: u64,
+    bytes: u64,
+    copies: Vec<Staged>,
+    /// How many copies were encoded.
+    encoded: u64,
+    latest: Vec<T>,
+    /// The number of the copy that is the latest.
+    arrived: Option<u64>,
+}
+
+/// A staging buffer.
+#[derive(Debug)]
+struct Staged {
+    staging: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+    /// The number of the copy that is in it.
+    number: u64,
+}
+
+const FREE: u8 = 0;
+const UNDER_WAY: u8 = 1;
+const ARRIVED: u8 = 2;
+const LOST: u8 = 3;
+
+/// Tells that a copy has arrived. If it never will, as the command buffer was dropped, its staging buffer is free again.
+struct Arrival(Arc<AtomicU8>);
+
+impl Arrival {
+    fn tell(&self, result: Result<(), wgpu::BufferAsyncError>) {
+        let state = if result.is_ok() { ARRIVED } else { LOST };
+        self.0.store(state, Ordering::Release);
+    }
+}
+
+impl Drop for Arrival {
+    fn drop(&mut self) {
+        let (from, to) = (UNDER_WAY, FREE);
+        // It fails if the copy has arrived.
+        let _ = self.0.compare_exchange(from, to, Ordering::AcqRel, Ordering::Relaxed);
+    }
+}
+
+impl<T: Pod> Readback<T> {
+    /// Readbacks of `count` values from byte `offset` of a buffer of the application on. It takes three times that memory
+    /// on the device.
+    ///
+    /// # Errors
+    /// [`GpuError::Buffer`] if the buffer is too small, was made without `COPY_SRC` or is of another device, or if the offset
+    /// or the size of a value is no multiple of 4; or what the device refuses.
+    pub fn new(
+        gpu: &Gpu,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+        count: usize,
+    ) -> Result<Self, GpuError> {
+        let refuse = |problem: String| Err(GpuError::Buffer(problem));
+        if !buffer.usage().contains(Usage::COPY_SRC) {
+            let usage = buffer.usage();
+            return refuse(format!("it was made for {usage:?}, and needs COPY_SRC as well"));
+        }
+        let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
+        if !offset.is_multiple_of(4) || !bytes.is_multiple_of(4) || bytes == 0 {
+            return refuse(format!(
+                "{bytes} bytes from byte {offset} on cannot be copied: both must be multiples of 4, and the first above 0"
+            ));
+        }
+        if offset.checked_add(bytes).is_none_or(|end| end > buffer.size()) {
+            let size = buffer.size();
+            return refuse(format!(
+                "it has {size} bytes, and {bytes} from byte {offset} are needed"
+            ));
+        }
+        let usage = Usage::COPY_DST | Usage::MAP_READ;
+        let copies: Vec<Staged> = scoped(&gpu.device, || {
+            let copy = |_| Staged {
+                staging: zeroed(gpu, "readback", bytes, usage),
+                state: Arc::new(AtomicU8::new(FREE)),
+                number: 0,
+            };
+            (0..COPIES).map(copy).collect()
+        })?;
+        // Encoded for nothing: a buffer of another device shows now and not in a frame.
+        scoped_to_buffer(&gpu.device, || {
+            let descriptor = wgpu::CommandEncoderDescriptor::default();
+            let mut encoder = gpu.device.create_command_encoder(&descriptor);
+            encoder.copy_buffer_to_buffer(buffer, offset, &copies[0].staging, 0, bytes);
+            drop(encoder.finish());
+        })?;
+        let (source, encoded, latest, arrived) = (buffer.clone(), 0, Vec::new(), None);
+        Ok(Self { source, offset, bytes, copies, encoded, latest, arrived })
+    }
+
+    /// Encodes a copy of what the buffer holds at this point of the command buffer. Does nothing while three copies are
+    /// under way: then the device is behind, or nobody polls it. In an encoder that is not submitted it counts for nothing.
+    pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.encode(encoder);
+    }
+
+    /// Encodes a copy, and returns its number, from 0 on, if there was room.
+    pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Option<u64> {
+        let Self { source, offset, bytes, copies, encoded, .. } = self;
+        let copy = copies.iter_mut().find(|copy| copy.state.load(Ordering::Acquire) == FREE)?;
+        copy.number = *encoded;
+        *encoded += 1;
+        copy.state.store(UNDER_WAY, Ordering::Release);
+        let arrival = Arrival(Arc::clone(&copy.state));
+        encoder.copy_buffer_to_buffer(source, *offset, &copy.staging, 0, *bytes);
+        let tell = move |result| arrival.tell(result);
+        encoder.map_buffer_on_submit(&copy.staging, wgpu::MapMode::Read, .., tell);
+        Some(copy.number)
+    }
+
+    /// The values that have arrived last; `None` until the first have.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] if the device is lost.
+    pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
+        self.collect()?;
+        Ok(self.arrived.is_some().then_some(&self.latest[..]))
+    }
+
+    /// How many copies were encoded after the one that [`latest`](Self::latest) has returned.
+    pub fn age(&self) -> Option<u64> {
+        self.arrived.map(|number| self.encoded - 1 - number)
+    }
+
+    /// The number of the copy that has arrived last.
+    pub(crate) fn arrived(&self) -> Option<u64> {
+        self.arrived
+    }
+
+    /// Takes what has arrived.
+    fn collect(&mut self) -> Result<(), GpuError> {
+        let lost = || GpuError::Lost("a buffer could not be read back".into());
+        for copy in &self.copies {
+            match copy.state.load(Ordering::Acquire) {
+                LOST => return Err(lost()),
+                ARRIVED => {}
+                _ => continue,
+            }
+            if self.arrived.is_none_or(|number| number < copy.number) {
+                let view = copy.staging.get_mapped_range(..).map_err(|_| lost())?;
+                self.latest.clear();
+                match bytemuck::try_cast_slice(&view) {
+                    Ok(values) => self.latest.extend_from_slice(values),
+                    // A value whose alignment is larger than that of mapped memory.
+                    Err(_) => {
+                        let values = view.chunks_exact(size_of::<T>());
+                        self.latest.extend(values.map(bytemuck::pod_read_unaligned::<T>));
+                    }
+                }
+                self.arrived = Some(copy.number);
+            }
+            copy.staging.unmap();
+            copy.state.store(FREE, Ordering::Release);
+        }
+        Ok(())
+    }
+}

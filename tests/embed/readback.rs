@@ -1,0 +1,119 @@
+//! Buffers that are read in each frame without waiting.
+
+use gpu_smooth::{GpuError, ObjectiveValues, Options, Readback, Sweeps, wgpu};
+use wgpu::BufferUsages as Usage;
+
+use crate::app::{App, Vertices, bad_plate};
+
+fn wait(app: &App) {
+    app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+}
+
+#[test]
+fn the_latest_values_are_those_of_the_last_frame_that_is_done() {
+    let app = App::new();
+    let mesh = bad_plate(300);
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let numbers = app.buffer(64, Usage::STORAGE | Usage::COPY_SRC);
+    let objective = sweeps.bind_objective(&numbers, 8).unwrap();
+    let vertices = Vertices::usual(&app, &mesh);
+    let bound = vertices.bind(&device_mesh);
+    let mut values = Readback::<ObjectiveValues>::new(&app.gpu, &numbers, 8, 1).unwrap();
+    let count = mesh.points.len();
+    let mut positions = Readback::<[f32; 3]>::new(&app.gpu, &vertices.buffer, 0, count).unwrap();
+    assert!(values.latest().unwrap().is_none() && values.age().is_none());
+    let mut seen = Vec::new();
+    for frame in 0..8 {
+        app.submit(|encoder| {
+            sweeps.encode_sweeps(encoder, 1);
+            objective.encode_objective(encoder);
+            bound.encode_export(encoder);
+            values.encode_readback(encoder);
+            positions.encode_readback(encoder);
+        });
+        wait(&app);
+        let &[found] = values.latest().unwrap().unwrap() else { panic!("one") };
+        assert_eq!(values.age(), Some(0));
+        assert_eq!(found, app.objective(&sweeps), "frame {frame}");
+        seen.push(found.f);
+        let expected: Vec<u32> = app.read(&vertices.buffer);
+        let found = positions.latest().unwrap().unwrap();
+        assert!(bytemuck::cast_slice::<_, u32>(found) == expected, "frame {frame}");
+    }
+    assert!(seen.windows(2).all(|pair| pair[0] != pair[1]));
+}
+
+#[test]
+fn a_device_that_is_behind_gets_no_more_copies_and_nothing_waits() {
+    let app = App::new();
+    let buffer = app.buffer(4, Usage::COPY_DST | Usage::COPY_SRC);
+    let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    let mut frames = 0u32..;
+    let mut frame = |readback: &mut Readback<u32>| {
+        let number = frames.next().unwrap();
+        app.gpu.queue().write_buffer(&buffer, 0, &number.to_le_bytes());
+        app.submit(|encoder| readback.encode_readback(encoder));
+    };
+    // Nobody polls: the first three are under way.
+    (0..10).for_each(|_| frame(&mut readback));
+    wait(&app);
+    let found = readback.latest().unwrap().map(<[u32]>::to_vec);
+    assert!(found.as_ref().is_some_and(|v| v[0] >= 2), "{found:?}");
+    frame(&mut readback);
+    assert_eq!(readback.latest().unwrap().map(<[u32]>::to_vec), found);
+    assert_eq!(readback.age(), Some(1));
+    wait(&app);
+    assert_eq!(readback.latest().unwrap(), Some(&[10][..]));
+}
+
+#[test]
+fn an_encoder_that_is_dropped_takes_no_copy_with_it() {
+    let app = App::new();
+    let buffer = app.buffer(8, Usage::STORAGE | Usage::COPY_SRC);
+    let mut readback = Readback::<[u32; 2]>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    for _ in 0..10 {
+        let mut encoder = app.encoder();
+        readback.encode_readback(&mut encoder);
+        drop(encoder.finish());
+        readback.encode_readback(&mut app.encoder());
+    }
+    wait(&app);
+    assert_eq!(readback.latest().unwrap(), None);
+    app.submit(|encoder| readback.encode_readback(encoder));
+    wait(&app);
+    assert_eq!(readback.latest().unwrap(), Some(&[[0, 0]][..]));
+}
+
+#[test]
+fn a_lost_device_is_told() {
+    let app = App::new();
+    let buffer = app.buffer(4, Usage::COPY_SRC);
+    let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    app.submit(|encoder| readback.encode_readback(encoder));
+    app.device().destroy();
+    let _ = app.device().poll(wgpu::PollType::Poll);
+    app.submit(|encoder| readback.encode_readback(encoder));
+    let _ = app.device().poll(wgpu::PollType::Poll);
+    assert!(matches!(readback.latest(), Err(GpuError::Lost(_))));
+    app.take_uncaptured();
+}
+
+#[test]
+fn what_cannot_be_read_back_is_refused() {
+    let (app, other) = (App::new(), App::new());
+    let usage = Usage::COPY_SRC;
+    let refused = |buffer: &wgpu::Buffer, offset, count, part: &str| {
+        let error = Readback::<f32>::new(&app.gpu, buffer, offset, count).err().unwrap();
+        assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
+        assert!(error.to_string().contains(part), "{error}");
+    };
+    let good = app.buffer(16, usage);
+    refused(&app.buffer(16, Usage::STORAGE), 0, 1, "needs COPY_SRC as well");
+    refused(&good, 4, 4, "it has 16 bytes, and 16 from byte 4 are needed");
+    refused(&good, u64::MAX - 3, 4, "it has 16 bytes");
+    refused(&good, 0, usize::MAX, "bytes");
+    refused(&good, 2, 1, "must be multiples of 4");
+    refused(&good, 0, 0, "must be multiples of 4");
+    refused(&other.buffer(16, usage), 0, 1, "of another device");
+}
