@@ -137,6 +137,7 @@ fn refused(path: &Path, source: io::Error) -> WriteError {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "Write to a directory that you may change"
         }
+        ErrorKind::FileTooLarge => "Let files be larger (ulimit -f), or write to another place",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "Make room, or write to another disk",
         _ => "Write to another place",
     };

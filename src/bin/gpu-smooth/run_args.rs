@@ -1,6 +1,7 @@
 //! The options of `gpu-smooth IN OUT`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{Derivatives, Desired, Goal, Method, Options, Precision, Scheme, Sharpness};
@@ -65,6 +66,27 @@ pub(crate) struct SmoothArgs {
     /// --fraction: auto]
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
+
+    /// Stop after so many seconds, counted from when the mesh begins to be read, and write the best mesh so far. The time that untangling
+    /// takes counts, but does not end it
+    #[arg(long, value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) time_limit: Option<Duration>,
+    /// Save the state of the run to FILE every five minutes, and where the run is left by Ctrl-C or --time-limit. Removed once a run has
+    /// come to its end. OUT may then not be IN
+    #[arg(long, value_name = "FILE", help_heading = "Stopping", conflicts_with = "out_dir")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// How often the state is saved
+    #[arg(long, default_value = "300", value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) checkpoint_every: Duration,
+    /// Go on with the run that FILE is a checkpoint of, given the same IN and options, to the same mesh as if it had never been left: bit
+    /// for bit, on the CPU or on the GPU that it was left on. The state is saved to FILE again, unless --checkpoint names another
+    #[arg(
+        long = "continue",
+        value_name = "FILE",
+        help_heading = "Stopping",
+        conflicts_with = "out_dir"
+    )]
+    pub(crate) continued: Option<PathBuf>,
 
     /// Sweeps corrected from coarser levels of the mesh (imr, ar, rms and shape-size), over-relaxed sweeps, or the
     /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
@@ -238,4 +260,12 @@ fn desired(text: &str) -> Result<Desired, String> {
         "auto" => Ok(Desired::Auto),
         _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
     }
+}
+
+/// Parses a number of seconds above 0.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let range = "a number of seconds above 0";
+    let seconds = number(text, |s| s > 0.0, range)?;
+    Duration::try_from_secs_f64(seconds)
+        .map_err(|_| format!("it must be {range}, and not so large"))
 }

@@ -1,21 +1,26 @@
 //! A mesh from file to file, for a run by itself and for one of many.
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
-    SmoothError, Smoother, Stop,
+    Backend, Checkpoint, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision,
+    Progress, SmoothError, Smoother, Stop,
 };
 
 use crate::cli::OutputArgs;
 use crate::engine::{self, Taken};
 use crate::explain::{self, BadTriangleReport};
+use crate::follow::Follow;
 use crate::interrupt;
+use crate::keep::{self, Kept};
 use crate::moving::Choice;
 use crate::progress::Stage;
-use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds, UntangleReport};
+use crate::report::{
+    self, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds, UntangleReport,
+};
 use crate::run_args::{History, SmoothArgs};
 use crate::streams;
 use crate::tell;
@@ -27,20 +32,8 @@ pub(crate) struct Task<'a> {
     pub(crate) show: &'a OutputArgs,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
-}
-
-/// Who follows a mesh through its run.
-pub(crate) trait Follow {
-    /// A stage of the run begins.
-    fn stage(&mut self, stage: Stage);
-    /// The mesh has been read. An error ends the run before any work is done.
-    fn has_read(&mut self, file: &MeshFile) -> Result<(), String>;
-    /// Something about the mesh is worth telling.
-    fn remark(&mut self, text: &str);
-    /// Some sweeps were done.
-    fn sweep(&mut self, progress: &Progress);
-    /// The sweeps are over. An error leaves the mesh as it was.
-    fn has_smoothed(&mut self) -> Result<(), String>;
+    /// The checkpoint that the run goes on from.
+    pub(crate) resumed: Option<&'a Checkpoint>,
 }
 
 /// A mesh that was smoothed and written.
@@ -77,7 +70,7 @@ pub(crate) fn carry_out<T>(
     follow: &mut dyn Follow,
     finish: impl FnOnce(Done<'_>) -> Result<T, String>,
 ) -> Result<T, Failure> {
-    let Task { args, show, input, out } = *task;
+    let Task { args, show, input, out, .. } = *task;
     let start = Instant::now();
     let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
     follow.stage(Stage::Reading { bytes });
@@ -127,7 +120,9 @@ pub(crate) fn carry_out<T>(
 
     let options = options(args, &choice, file.precision());
     follow.stage(Stage::Smoothing);
-    let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
+    let prepared_run = (&smoother, &file, taken);
+    let ran = smooth(task, &options, prepared_run, start, follow)?;
+    let Ran { outcome, taken, times, out_of_time } = ran;
     follow.has_smoothed()?;
     let after = smoother.quality(&outcome.points).map_err(told)?;
     let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
@@ -142,6 +137,7 @@ pub(crate) fn carry_out<T>(
 
     follow.stage(Stage::Writing { bytes });
     streams::write(&file, out, &outcome.points, riding.fields())?;
+    keep::clear(args, outcome.stop);
     let written = Instant::now();
 
     let seconds = Seconds {
@@ -152,7 +148,7 @@ pub(crate) fn carry_out<T>(
         total: (written - start).as_secs_f64(),
     };
     let report = Report {
-        engine: engine_report(&taken),
+        engine: engine_report(&taken, &outcome),
         mesh: mesh_report(&file, &smoother),
         untangled: mending.map(|mended| UntangleReport {
             bad_before: mended.bad_before,
@@ -166,7 +162,12 @@ pub(crate) fn carry_out<T>(
         levels_left_out: outcome.levels_left_out,
         best_sweep: outcome.best_sweep,
         remaining: outcome.remaining,
-        stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
+        stop: match choice.nothing_to_do {
+            Some(_) => "nothing-to-do",
+            None if out_of_time => "time-limit",
+            None => outcome.stop.name(),
+        },
+        continued_from: task.resumed.map(Checkpoint::sweeps),
         nothing_to_do: choice.nothing_to_do,
         choices: choice.notes,
         interpolated,
@@ -203,46 +204,69 @@ struct Ran {
     outcome: Outcome,
     taken: Taken,
     times: Vec<(u32, f64)>,
+    /// Whether the time limit ended it.
+    out_of_time: bool,
 }
 
-/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice, or if the GPU fails. The time limit
+/// counts from `began`.
 fn smooth(
-    args: &SmoothArgs,
+    task: &Task<'_>,
     options: &Options,
-    smoother: &Smoother<'_>,
-    file: &MeshFile,
-    mut taken: Taken,
+    (smoother, file, mut taken): (&Smoother<'_>, &MeshFile, Taken),
+    began: Instant,
     follow: &mut dyn Follow,
 ) -> Result<Ran, String> {
+    let Task { args, resumed, .. } = *task;
     let start = Instant::now();
     let mut times = Vec::new();
+    let mut out_of_time = false;
+    let follow = RefCell::new(follow);
+    let mut kept = Kept::new(args, &follow);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {
             times.push((progress.sweep, start.elapsed().as_secs_f64()));
         }
-        follow.sweep(progress);
-        match interrupt::is_requested() {
+        follow.borrow_mut().sweep(progress);
+        out_of_time = args.time_limit.is_some_and(|limit| began.elapsed() >= limit);
+        match interrupt::is_requested() || out_of_time {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     };
     let turn = taken.turn();
-    let mut outcome = smoother.run(options, &taken.backend, &mut observe);
+    let run = |backend: &Backend,
+               kept: &mut Kept<'_, '_>,
+               observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>| {
+        smoother.run_kept(options, backend, resumed, kept, observe)
+    };
+    let mut outcome = run(&taken.backend, &mut kept, &mut observe);
     drop(turn);
     if let Err(error) = &outcome
         && engine::is_open(args)
         && engine::is_too_large(error)
     {
         taken = Taken::new(Backend::Cpu, Some(error.to_string()));
-        outcome = smoother.run(options, &taken.backend, &mut observe);
+        outcome = run(&taken.backend, &mut kept, &mut observe);
     }
     if let Ok(outcome) = &outcome {
         times.retain(|time| time.0 < outcome.sweeps);
         times.push((outcome.sweeps, start.elapsed().as_secs_f64()));
+        if outcome.stop == Stop::Cancelled {
+            kept.left();
+        }
     }
-    let ran = outcome.map(|outcome| Ran { outcome, taken, times });
+    let ran = outcome.map(|outcome| {
+        let out_of_time =
+            out_of_time && outcome.stop == Stop::Cancelled && !interrupt::is_requested();
+        Ran { outcome, taken, times, out_of_time }
+    });
     ran.map_err(|error: SmoothError| match &error {
         SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        SmoothError::Checkpoint(_) => {
+            let path = args.continued.as_deref().unwrap_or(Path::new(""));
+            format!("{}: {error}", path.display())
+        }
         error if engine::is_too_large(error) => {
             format!("{error}. Smooth on the CPU: --engine cpu")
         }
@@ -265,7 +289,7 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
     Failure { message, triangles }
 }
 
-fn engine_report(taken: &Taken) -> EngineReport {
+fn engine_report(taken: &Taken, outcome: &Outcome) -> EngineReport {
     let adapter = match &*taken.backend {
         Backend::Cpu => None,
         Backend::Gpu(gpu) => Some(gpu.adapter()),
@@ -275,6 +299,10 @@ fn engine_report(taken: &Taken) -> EngineReport {
         adapter: adapter.map(|adapter| adapter.name.clone()),
         driver: adapter.map(|adapter| adapter.driver.clone()),
         reason: taken.reason.clone(),
+        fault: outcome
+            .device_fault
+            .as_ref()
+            .map(|fault| FaultReport { sweep: fault.sweep, error: fault.error.to_string() }),
     }
 }
 
