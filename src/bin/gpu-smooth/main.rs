@@ -17,6 +17,7 @@ mod moving;
 mod numbers;
 mod picture;
 mod progress;
+mod proof;
 mod quality;
 mod report;
 mod riding;

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
 use crate::numbers::{percent, six};
+use crate::proof::Certificate;
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -53,6 +54,9 @@ pub(crate) struct Report {
     pub(crate) returned: usize,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
+    /// What the files alone say, where the mesh was written to a file and a report is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) certificate: Option<Certificate>,
     pub(crate) history: Vec<SweepReport>,
     pub(crate) seconds: Seconds,
 }

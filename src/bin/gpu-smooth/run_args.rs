@@ -120,7 +120,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
-    /// Write a report with the history of every sweep, as JSON; if inverted or flat triangles keep the mesh from
+    /// Write a report with the history of every sweep, as JSON, and a certificate: the mesh is read again after it was written, and proved to
+    /// be what `gpu-smooth compare` proves, with hashes of both; if inverted or flat triangles keep the mesh from
     /// being smoothed, a list of them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,

@@ -18,9 +18,11 @@ use crate::interrupt;
 use crate::keep::{self, Kept};
 use crate::moving::Choice;
 use crate::progress::Stage;
+use crate::proof::{self, Certificate, FileHash, Proof};
 use crate::report::{
     self, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds, UntangleReport,
 };
+use crate::riding::Riding;
 use crate::run_args::{History, SmoothArgs};
 use crate::streams;
 use crate::tell;
@@ -136,7 +138,12 @@ pub(crate) fn carry_out<T>(
     let smoothed = Instant::now();
 
     follow.stage(Stage::Writing { bytes });
+    let input = if args.report.is_some() { proof::hashes(&file) } else { Vec::new() };
     streams::write(&file, out, &outcome.points, riding.fields())?;
+    let certificate = match args.report.is_some() && !streams::is_standard(out) {
+        true => Some(certificate(args, &file, &riding, input, (out, &smoother))?),
+        false => None,
+    };
     keep::clear(args, outcome.stop);
     let written = Instant::now();
 
@@ -177,11 +184,39 @@ pub(crate) fn carry_out<T>(
         returned: outcome.returned,
         before: (&before).into(),
         after: (&after).into(),
+        certificate,
         history: report::history(&outcome, &args.scheme, args.history == History::All),
         seconds,
     };
     let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };
     Ok(finish(done)?)
+}
+
+/// Reads the mesh again that was written, and proves from the files alone that it is what it should be.
+fn certificate(
+    args: &SmoothArgs,
+    file: &MeshFile,
+    riding: &Riding,
+    input: Vec<FileHash>,
+    (out, smoother): (&Path, &Smoother<'_>),
+) -> Result<Certificate, String> {
+    let after = streams::read(out)?;
+    let mut theirs = args.riding.choose(&after)?;
+    theirs.add_parameters(&after, &after.mesh().points)?;
+    let proof = Proof::of([file, &after], [riding, &theirs]).map_err(told)?;
+    if let Some(problem) = proof.problem() {
+        return Err(format!("{}: it was written, and then read again: {problem}", out.display()));
+    }
+    let f = smoother.quality(&after.mesh().points).map_err(told)?.f(args.scheme.base());
+    Ok(Certificate {
+        connectivity_identical: proof.difference.is_none(),
+        moved: proof.moved.len(),
+        fixed_moved: proof.held.len(),
+        inverted: proof.bad.len(),
+        f,
+        input,
+        output: proof::hashes(&after),
+    })
 }
 
 /// A mesh that can be smoothed, or that was made so.
