@@ -1,5 +1,7 @@
 //! What ties a checkpoint to the run that it is of.
 
+use glam::DVec2;
+
 use crate::error::SmoothError;
 use crate::mesh::Mesh;
 use crate::run::{About, Checkpoint, Options};
@@ -9,9 +11,18 @@ pub(crate) fn about(mesh: &Mesh, options: &Options) -> About {
     About { mesh: hash(mesh), options: format!("{options:#?}"), goal: None, opened: None }
 }
 
-/// Checks that a checkpoint is of a run on the same mesh with the same options.
-pub(crate) fn check(own: &About, checkpoint: &Checkpoint) -> Result<(), SmoothError> {
-    if own.mesh != checkpoint.about.mesh {
+/// Checks that a checkpoint is of a run on the same mesh, of which triangles use so many vertices, with the same options.
+pub(crate) fn check(
+    own: &About,
+    checkpoint: &Checkpoint,
+    vertices: usize,
+) -> Result<(), SmoothError> {
+    let fits = |points: &[DVec2]| points.len() == vertices && points.iter().all(|p| p.is_finite());
+    let opened = checkpoint.about.opened.as_ref();
+    let is_whole = opened.is_none_or(|opened| {
+        !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
+    });
+    if own.mesh != checkpoint.about.mesh || !is_whole {
         return Err(foreign());
     }
     let mut lines = own.options.lines().zip(checkpoint.about.options.lines());
@@ -136,6 +147,78 @@ mod tests {
             if let Backend::Gpu(_) = backend {
                 assert!(matches!(first.told[..], [GpuError::NotFinite { .. }]), "{:?}", first.told);
             }
+        }
+    }
+
+    /// Bytes that are no checkpoint's, under a checksum that is right: refused, or a run that ends with a sound mesh.
+    #[test]
+    fn a_hostile_checkpoint_does_no_harm() {
+        let mesh = lattice(6);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let gpu = Backend::Gpu(Gpu::open(None).unwrap());
+        let mut state = 1_u64;
+        let (mut refused, mut went_on) = (0, 0);
+        let mut random = |below: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % below
+        };
+        for (backend, scheme, rounds) in [
+            (&Backend::Cpu, "imr", 150),
+            (&Backend::Cpu, "edge+imr", 150),
+            (&gpu, "imr", 12),
+            (&gpu, "edge+imr", 12),
+        ] {
+            let options =
+                Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
+            let mut kept = Latest::default();
+            smoother.run_kept(&options, backend, None, &mut kept, &mut go_on).unwrap();
+            let bytes = kept.0.unwrap().to_bytes();
+            for _ in 0..rounds {
+                let mut hostile = bytes[..bytes.len() - 4].to_vec();
+                for _ in 0..=random(2) {
+                    let word =
+                        [0, 1, 7, u64::MAX, f64::NAN.to_bits(), 1e300_f64.to_bits(), 1 << 40]
+                            [random(7)];
+                    // Half of them in what comes before the long lists.
+                    let most = if random(2) == 0 { hostile.len() } else { hostile.len().min(3000) };
+                    let at = random(most - 8);
+                    hostile[at..at + 8].copy_from_slice(&word.to_le_bytes());
+                }
+                let mut sum = flate2::Crc::new();
+                sum.update(&hostile);
+                hostile.extend(sum.sum().to_le_bytes());
+                let Some(from) = Checkpoint::from_bytes(&hostile) else {
+                    refused += 1;
+                    continue;
+                };
+                let mut none = Latest::default();
+                match smoother.run_kept(&options, backend, Some(&from), &mut none, &mut go_on) {
+                    Ok(outcome) => {
+                        let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
+                        assert!(bad.is_empty(), "{bad:?}");
+                        went_on += 1;
+                    }
+                    Err(SmoothError::Checkpoint(_)) => refused += 1,
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+        assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
+    }
+
+    /// Keeps the latest checkpoint.
+    #[derive(Default)]
+    struct Latest(Option<Checkpoint>);
+
+    impl Keeper for Latest {
+        fn wants_checkpoint(&mut self, _: bool) -> bool {
+            true
+        }
+
+        fn checkpoint(&mut self, checkpoint: Checkpoint) {
+            self.0 = Some(checkpoint);
         }
     }
 

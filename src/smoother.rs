@@ -240,7 +240,9 @@ impl<'a> Smoother<'a> {
             }
         }
         let mut about = resume::about(self.mesh, options);
-        let resumed = from.map(|from| resume::check(&about, from).map(|()| from)).transpose()?;
+        let resumed = from
+            .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
+            .transpose()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         if !initial.is_finite() {
@@ -445,7 +447,7 @@ impl Run<'_> {
             about.opened.clone_from(&opened);
         }
         let done = opened.as_ref().map_or(0, Opened::sweeps);
-        plan.stop.max_sweeps -= done;
+        plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(done);
         let from = opened.as_ref().map_or(from, |opened| &opened.positions);
         let corrected = options.is_multilevel();
         let must = options.method == Method::Multilevel;

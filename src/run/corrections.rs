@@ -181,10 +181,15 @@ impl<'a> Corrections<'a> {
         else {
             return false;
         };
-        let small = |word: &u64| u32::try_from(*word).ok();
-        let (Some(attempts), Some(taken), Some(proposed), Some(refused), Some(at)) =
-            (small(attempts), small(taken), small(proposed), small(refused), small(at))
-        else {
+        // Nothing can have happened more often than there were sweeps.
+        let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
+        let (Some(attempts), Some(taken), Some(proposed), Some(refused), Some(at)) = (
+            small(attempts),
+            small(taken),
+            small(proposed),
+            small(refused),
+            u32::try_from(*at).ok(),
+        ) else {
             return false;
         };
         let (since, length) = (at as usize, f64::from_bits(*length));
