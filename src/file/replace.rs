@@ -27,7 +27,8 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 ///
 /// The first file takes its place last, when all others have theirs: so it should be the one without which they are no mesh. Where the
 /// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
-/// the same with other coordinates, every moment is the old or the new one.
+/// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
+/// out of its place until they have: no moment is a mixture.
 pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
     replace_all_on(&System, jobs)
 }
@@ -38,11 +39,18 @@ pub(crate) fn replace_all_on(disk: &dyn Disk, jobs: &[Job<'_>]) -> Result<(), Wr
     // Declared before what it protects, so that it is dropped after it.
     let _committing = lock(&COMMITTING);
     let mut staged = staged;
+    let Some((first, others)) = staged.split_first_mut() else { return Ok(()) };
+    if others.iter().any(Staged::changes) {
+        first.set_aside(disk).map_err(|source| refused(&first.target, source))?;
+    }
     for next in (0..staged.len()).rev() {
         let more_follow = next > 0;
         if let Err(source) = staged[next].commit(disk, more_follow) {
             let error = refused(&staged[next].target, source);
-            let lost: Vec<_> = staged[next + 1..].iter_mut().filter_map(Staged::revert).collect();
+            let is_touched = |(i, it): &(usize, &mut Staged<'_>)| *i > next || it.is_aside;
+            let touched = staged.iter_mut().enumerate().filter(is_touched);
+            // The first one last, as it makes a mesh of them.
+            let lost: Vec<_> = touched.rev().filter_map(|(_, it)| it.revert()).collect();
             return Err(with_lost(error, &lost));
         }
     }
@@ -170,6 +178,8 @@ struct Staged<'d> {
     /// None if the content went straight to a device or pipe.
     content: Option<Temporary<'d>>,
     existed: bool,
+    /// Whether the file that stood there has been given its other name, and there is none.
+    is_aside: bool,
     /// A second name of the file that stood there, or a copy where there are no second names, as long as it may have to be
     /// restored.
     previous: Option<Temporary<'d>>,
@@ -187,7 +197,7 @@ fn stage<'d>(
             let mut out = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
             content(&mut out)?;
             out.flush()?;
-            return Ok(Staged { target, content: None, existed, previous: None });
+            return Ok(Staged { target, content: None, existed, is_aside: false, previous: None });
         }
         let (temporary, file) = Temporary::create(disk, directory_of(&target))?;
         let mut out = BufWriter::with_capacity(1 << 18, file);
@@ -198,12 +208,35 @@ fn stage<'d>(
         }
         // Otherwise a crash could leave the new name with none of the content.
         file.sync()?;
-        Ok(Staged { target, content: Some(temporary), existed, previous: None })
+        Ok(Staged { target, content: Some(temporary), existed, is_aside: false, previous: None })
     };
     attempt().map_err(|source| refused(path, source))
 }
 
 impl<'d> Staged<'d> {
+    /// Whether the file that stands there has another content.
+    fn changes(&self) -> bool {
+        let read = |path: &Path| fs::read(path).ok();
+        match &self.content {
+            Some(content) => self.existed && read(&self.target) != read(&content.path),
+            None => false,
+        }
+    }
+
+    /// Gives the file that stands there another name.
+    fn set_aside(&mut self, disk: &'d dyn Disk) -> io::Result<()> {
+        // What is no file stays in the way, and is told as that.
+        if self.content.is_some() && self.target.is_file() {
+            let directory = directory_of(&self.target);
+            let previous = Temporary::named(disk, directory);
+            disk.rename(&self.target, &previous.path)?;
+            self.previous = Some(previous);
+            self.is_aside = true;
+            let _ = disk.sync_directory(directory);
+        }
+        Ok(())
+    }
+
     fn commit(&mut self, disk: &'d dyn Disk, revertible: bool) -> io::Result<()> {
         let Some(content) = &self.content else { return Ok(()) };
         let directory = directory_of(&self.target);
@@ -228,7 +261,7 @@ impl<'d> Staged<'d> {
             Some(previous) => {
                 content.disk.rename(&previous.path, &self.target).err()?;
                 let kept = previous.keep();
-                Some(format!("{target} has its new content, its old one is in {}", kept.display()))
+                Some(format!("{target} is not as it was: its old content is in {}", kept.display()))
             }
             None if self.existed => None,
             None => {

@@ -90,6 +90,60 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
     assert_eq!(left_old + left_new + left_none, kills);
 }
 
+/// A mesh that replaces one of other triangles: the old one, the new one, or none that can be read.
+#[test]
+fn a_killed_process_leaves_no_mixture_of_two_meshes() {
+    let kills: usize = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let began = Instant::now();
+    assert!(start(&folder, "in").wait().unwrap().success());
+    let whole = began.elapsed();
+    let new = ["out.node", "out.ele"].map(|name| fs::read(folder.path(name)).ok());
+    // As many vertices, and other triangles: a mixture could be read.
+    let mut other = disturbed();
+    other.triangles.rotate_left(7);
+    let old = support::triangle_text(&other, "another").map(|text| Some(text.into_bytes()));
+    let (mut left_old, mut left_new, mut left_none) = (0, 0, 0);
+    let mut random = SplitMix64::new(6);
+    for kill in 0..kills {
+        for (name, content) in PARTS.iter().zip(&old) {
+            fs::write(folder.path(name), content.as_ref().unwrap()).unwrap();
+        }
+        let mut run = start(&folder, "in");
+        std::thread::sleep(whole.mul_f64(random.range(0.5, 1.1)));
+        let _ = run.kill();
+        run.wait().unwrap();
+        let found = ["out.node", "out.ele"].map(|name| fs::read(folder.path(name)).ok());
+        if found == old {
+            left_old += 1;
+        } else if found == new {
+            left_new += 1;
+        } else {
+            assert!(found[0].is_none(), "kill {kill} left a mixture");
+            left_none += 1;
+            // Nothing is lost: the old files are still there, by other names.
+            let entries =
+                fs::read_dir(&folder.0).unwrap().map(|entry| fs::read(entry.unwrap().path()).ok());
+            let there: Vec<_> = entries.collect();
+            assert!(
+                old.iter().all(|content| there.contains(content)),
+                "kill {kill} lost the old mesh"
+            );
+        }
+        for (path, _) in folder.content() {
+            if path.extension().is_some_and(|ending| ending == "tmp") {
+                fs::remove_file(path).unwrap();
+            }
+        }
+    }
+    let _ = writeln!(
+        std::io::stdout(),
+        "{kills} kills: {left_old} left the old mesh, {left_new} the new one, {left_none} neither, with the old files kept"
+    );
+    assert_eq!(left_old + left_new + left_none, kills);
+}
+
 /// The limit of a file's size stands for a full disk, which needs root to make: see `tests/full-disk`.
 #[test]
 fn a_mesh_that_does_not_fit_leaves_the_old_one() {

@@ -60,7 +60,7 @@ pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
-            format!("{name}: there is no such checkpoint. Without --continue the run starts anew")
+            format!("{name}: there is no such checkpoint; a run that has come to its end removes its own. Without --continue the run starts anew")
         }
         _ => format!("{name}: {error}"),
     })?;
@@ -137,5 +137,50 @@ pub(crate) fn clear(args: &SmoothArgs, stop: Stop) {
     if stop != Stop::Cancelled && begins(path) == Some(true) {
         // It does no harm.
         let _ = fs::remove_file(path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::Cli;
+    use crate::progress::Stage;
+    use clap::Parser;
+    use gpu_smooth::{MeshFile, Progress};
+
+    /// Keeps what is remarked.
+    #[derive(Default)]
+    struct Remarks(Vec<String>);
+
+    impl Follow for Remarks {
+        fn stage(&mut self, _: Stage) {}
+
+        fn has_read(&mut self, _: &MeshFile) -> Result<(), String> {
+            Ok(())
+        }
+
+        fn remark(&mut self, text: &str) {
+            self.0.push(text.to_owned());
+        }
+
+        fn sweep(&mut self, _: &Progress) {}
+
+        fn has_smoothed(&mut self) -> Result<(), String> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_device_that_fails_is_told_once_and_one_without_room_at_the_start_is_not() {
+        let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();
+        let mut remarks = Remarks::default();
+        let follow: RefCell<&mut dyn Follow> = RefCell::new(&mut remarks);
+        let mut kept = Kept::new(&cli.smooth, &follow);
+        assert!(!kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 0));
+        assert!(kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 7));
+        assert!(kept.goes_on_without(&GpuError::Lost("gone".into()), 0));
+        assert!(!kept.wants_checkpoint(true), "no file was named");
+        let told = "the GPU failed: the device is out of memory: full. The run goes on on the CPU, from sweep 7";
+        assert_eq!(remarks.0, [told]);
     }
 }
