@@ -87,9 +87,9 @@ fn an_interrupted_run_goes_on() {
     run.first_of("gpu-smooth: sweep ");
     run.signal("-INT");
     let (code, _, err) = run.end();
-    // It may have been done before the signal came.
-    if code == Some(130) {
-        assert_holds(&err, &["to go on with the run from here, add --continue run.ckpt"]);
+    // The sweeps may have been over before the signal came.
+    if err.contains("to go on with the run from here, add --continue run.ckpt") {
+        assert_eq!(code, Some(130));
         folder.line(&format!("{LONG} --continue run.ckpt")).clean();
     }
     assert_eq!(folder.text("out.node"), expected);

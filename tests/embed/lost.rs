@@ -103,7 +103,7 @@ fn run_with_a_loss(
 /// the environment variable ROUNDS.
 #[test]
 fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
-    let rounds = std::env::var("ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
+    let rounds = std::env::var("ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         let mesh = bad_plate(500);

@@ -65,7 +65,8 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
-        for scheme in all_schemes() {
+        let every = if matches!(backend, Backend::Cpu) { 1 } else { 3 };
+        for scheme in all_schemes().into_iter().step_by(every) {
             let options = Options { scheme, max_sweeps: 40, ..Options::default() };
             assert_goes_on(&smoother, &options, backend, 2);
         }
