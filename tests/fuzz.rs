@@ -1,5 +1,5 @@
 //! A short round of what the fuzzer does (`fuzz/`), on any toolchain and with the same inputs each time. `FUZZ_ROUNDS`, a factor,
-//! makes it longer. Every input that failed once is here literally.
+//! makes it longer. An input that fails is to be added literally; none has failed yet.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
