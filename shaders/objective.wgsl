@@ -3,6 +3,13 @@
 // these; finish.wgsl joins them. Further parts of the triangles continue the sums of the parts before. There is no
 // barrier, as barriers are slow on software adapters.
 
+// The value of a triangle whose edges are no finite numbers. A metric may pass over them, as maxima and minima do.
+const NOT_FINITE: f32 = 3.0e38;
+
+fn edge_is_finite(edge: vec2<f32>) -> bool {
+    return is_finite(edge.x) && is_finite(edge.y);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn objective(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -27,8 +34,9 @@ fn objective(
         let b = edge(p, position(corners.z));
         let corner = shown(Corner(a, b, params.mean_area), map_of(corners));
         let values = tracked_values(corner);
+        let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {
-            sums[i] = pair_accumulate(sums[i], values[i]);
+            sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], seen));
         }
         worst = max(worst, shape_excess(corner));
     }

@@ -296,6 +296,9 @@ pub enum SmoothError {
         /// What the value should be.
         remedy: &'static str,
     },
+    /// A checkpoint is not of this run.
+    #[error("the checkpoint cannot be used: {0}")]
+    Checkpoint(String),
     /// The GPU engine failed.
     #[error(transparent)]
     Gpu(#[from] crate::error::GpuError),
@@ -384,6 +387,12 @@ pub enum GpuError {
     /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),
+    /// A sweep made the objective a number that is not finite, which no sweep should.
+    #[error("sweep {sweep} made a number that is not finite")]
+    NotFinite {
+        /// The sweep.
+        sweep: u32,
+    },
     /// The device was lost or destroyed, and the run with it.
     #[error("the device was lost: {0}")]
     Lost(String),

@@ -100,6 +100,7 @@ mod mesh;
 mod metric;
 mod parallel;
 mod quality;
+mod resume;
 mod run;
 pub mod select;
 mod smoother;
@@ -146,10 +147,10 @@ pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use quality::Quality;
 pub use run::{
-    Derivatives, Desired, Goal, Method, Objectives, Observer, Options, Phase, Progress, Sharpness,
-    Stop,
+    Checkpoint, Derivatives, Desired, Goal, Keeper, Method, Objectives, Observer, Options, Phase,
+    Progress, Sharpness, Stop,
 };
-pub use smoother::{Backend, GoalOutcome, Outcome, Smoother, smooth};
+pub use smoother::{Backend, DeviceFault, GoalOutcome, Outcome, Smoother, smooth};
 pub use targets::{Surface, Targets};
 pub use topology::{Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};

@@ -8,7 +8,7 @@ use glam::DVec2;
 use web_time::Instant;
 
 use crate::cpu::{CpuEngine, held_back, mean_excess};
-use crate::error::{MeshError, SmoothError};
+use crate::error::{GpuError, MeshError, SmoothError};
 use crate::gpu::{Gpu, GpuEngine, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
@@ -16,10 +16,12 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::quality::Quality;
+use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    Derivatives, Desired, Goal, JITTER, Method, NOISE, Objectives, Observer, Options, Phase, Plan,
-    Sharpness, Stop, Strategy, drive, shape_guard,
+    CPU, Checkpoint, Course, Derivatives, Desired, DriveError, End, Goal, History, JITTER, Keeper,
+    Keeping, Method, NOISE, NoKeeper, Objectives, Observer, Options, Phase, Plan, Saved, Sharpness,
+    Stop, Strategy, drive, shape_guard,
 };
 use crate::targets::Targets;
 use crate::topology::{Topology, certify};
@@ -79,8 +81,19 @@ pub struct Outcome {
     pub goal: Option<GoalOutcome>,
     /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
     pub returned: usize,
+    /// The fault of the device after which the run went on on the CPU, if there was one.
+    pub device_fault: Option<DeviceFault>,
     /// Time spent in the run, the search for a desired objective included.
     pub smooth: Duration,
+}
+
+/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`].
+#[derive(Clone, Debug)]
+pub struct DeviceFault {
+    /// The last sweep on the device whose result was kept.
+    pub sweep: u32,
+    /// What was wrong.
+    pub error: GpuError,
 }
 
 /// How far a run went toward its [`Goal`].
@@ -178,8 +191,8 @@ impl<'a> Smoother<'a> {
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
-    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
-    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
+    /// does not fit the device, [`GpuError::Limit`] or
+    /// [`GpuError::TooLarge`] before anything is done.
     pub fn run(
         &self,
         options: &Options,
@@ -190,7 +203,29 @@ impl<'a> Smoother<'a> {
             Backend::Cpu => None,
             Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
         };
-        pollster::block_on(self.run_at(options, device, observe))
+        pollster::block_on(self.run_at(options, device, None, &mut NoKeeper, observe))
+    }
+
+    /// Smooths the mesh as [`run`](Self::run) does, and lets `keeper` decide what is kept of the run meanwhile: checkpoints to go on
+    /// from later, and whether it goes on on the CPU if the device fails. With `from`, it goes on from a checkpoint of a run on the
+    /// same mesh with the same options: on the engine that took the checkpoint, to the same bits as if that run had never been left.
+    /// A run that was left on the CPU goes on there whatever the backend.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run), and [`SmoothError::Checkpoint`] if the checkpoint is of another run.
+    pub fn run_kept(
+        &self,
+        options: &Options,
+        backend: &Backend,
+        from: Option<&Checkpoint>,
+        keeper: &mut (impl Keeper + ?Sized),
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Outcome, SmoothError> {
+        let device = match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
+        };
+        pollster::block_on(self.run_at(options, device, from, keeper, observe))
     }
 
     /// Smooths the mesh on a device without blocking the thread while the device works.
@@ -207,13 +242,15 @@ impl<'a> Smoother<'a> {
         gpu: &Gpu,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
-        self.run_at(options, Some((gpu, Waiting::Await)), observe).await
+        self.run_at(options, Some((gpu, Waiting::Await)), None, &mut NoKeeper, observe).await
     }
 
-    async fn run_at(
+    async fn run_at<K: Keeper + ?Sized>(
         &self,
         options: &Options,
-        device: Option<(&Gpu, Waiting)>,
+        mut device: Option<(&Gpu, Waiting)>,
+        from: Option<&Checkpoint>,
+        keeper: &mut K,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
@@ -223,10 +260,20 @@ impl<'a> Smoother<'a> {
             let remedy = "with targets take exact ones";
             return Err(SmoothError::Option { option, value, remedy });
         }
+        let mut fault = None;
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
-            gpu.arithmetic_checked(waiting).await?;
+            if let Err(error) = gpu.arithmetic_checked(waiting).await {
+                if !keeper.goes_on_without(&error, 0) {
+                    return Err(error.into());
+                }
+                (device, fault) = (None, Some(DeviceFault { sweep: 0, error }));
+            }
         }
+        let mut about = resume::about(self.mesh, self.problem.targets(), options);
+        let resumed = from
+            .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
+            .transpose()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         if !initial.is_finite() {
@@ -234,18 +281,26 @@ impl<'a> Smoother<'a> {
             let metric = base.properties().name;
             return Err(MeshError::BeyondPrecision { triangle, metric }.into());
         }
-        let goal = match options.goal {
-            Some(goal) => match self.aim(goal, options, device, observe).await? {
+        let known = resumed.and_then(|resumed| resumed.about.goal.clone());
+        let goal = match (options.goal, known) {
+            (Some(Goal { fraction, .. }), Some((desired, origin))) => {
+                Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
+            }
+            (Some(goal), None) => match self.aim(goal, options, device, keeper, observe).await? {
                 Some(aimed) => Some(aimed),
                 None => return Ok(self.unchanged(base, initial, start)),
             },
-            None => None,
+            (None, _) => None,
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
         let run = Run { problem: &self.problem, device, phase: Phase::Smoothing };
         let monotone = options.plan_to(target).is_monotone();
-        let end = run.sweep(options, target, self.problem.positions(), observe).await?;
+        about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
+        let mut keeping = Keeping::new(keeper);
+        keeping.about = Some(about);
+        let positions = self.problem.positions();
+        let end = run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?;
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
             end.history.len() - 1
@@ -294,6 +349,7 @@ impl<'a> Smoother<'a> {
             history: end.history,
             goal,
             returned,
+            device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
     }
@@ -316,6 +372,7 @@ impl<'a> Smoother<'a> {
             history: vec![objectives],
             goal: None,
             returned: 0,
+            device_fault: None,
             smooth: start.elapsed(),
         }
     }
@@ -327,11 +384,12 @@ impl<'a> Smoother<'a> {
 
     /// Determines the desired objective of a goal, by runs to convergence if it is not given; `None` if the observer
     /// ended one of them.
-    async fn aim(
+    async fn aim<K: Keeper + ?Sized>(
         &self,
         goal: Goal,
         options: &Options,
         device: Option<(&Gpu, Waiting)>,
+        keeper: &mut K,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Option<GoalOutcome>, SmoothError> {
         let Goal { fraction, desired } = goal;
@@ -352,7 +410,8 @@ impl<'a> Smoother<'a> {
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
-            let after_imr = run.sweep(&imr, None, start, observe).await?;
+            let mut keeping = Keeping::new(&mut *keeper);
+            let after_imr = run.sweep(&imr, None, (start, None), &mut keeping, observe).await?;
             if after_imr.stop == Stop::Cancelled {
                 return Ok(None);
             }
@@ -361,7 +420,8 @@ impl<'a> Smoother<'a> {
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let end = run.sweep(&full(base), None, &start, observe).await?;
+            let (options, mut keeping) = (full(base), Keeping::new(&mut *keeper));
+            let end = run.sweep(&options, None, (&start, None), &mut keeping, observe).await?;
             if end.stop == Stop::Cancelled {
                 return Ok(None);
             }
@@ -392,39 +452,71 @@ struct Ran {
     remaining: Option<f64>,
     held_back: usize,
     stop: Stop,
+    fault: Option<DeviceFault>,
 }
 
 impl Run<'_> {
-    /// Sweeps from some positions until the run ends.
-    async fn sweep(
+    /// Sweeps from some positions, or from a checkpoint of a run that began there, until the run ends.
+    async fn sweep<K: Keeper + ?Sized>(
         &self,
         options: &Options,
         target: Option<f64>,
-        from: &[DVec2],
+        (from, resumed): (&[DVec2], Option<&Checkpoint>),
+        keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Ran, SmoothError> {
         let problem = self.problem;
         let mut plan = options.plan_to(target);
         plan.shape_guard = shape_guard(problem, from, &plan.scheme);
-        let (device, opened) = self.opened(&plan, from).await?;
+        let (device, opened) = match resumed {
+            Some(Checkpoint { about, saved }) => {
+                (self.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
+            }
+            None => self.opened(&plan, from).await?,
+        };
+        if let Some(about) = &mut keeping.about {
+            about.opened.clone_from(&opened);
+        }
         let done = opened.as_ref().map_or(0, Opened::sweeps);
-        plan.stop.max_sweeps -= done;
+        plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(done);
         let from = opened.as_ref().map_or(from, |opened| &opened.positions);
         let corrected = options.is_multilevel();
         let must = options.method == Method::Multilevel;
-        let strategy = Strategy::new(problem, &plan, corrected);
-        let at = (self.phase, done);
-        let end = match device {
-            None => {
-                let engine = CpuEngine::new(problem, from.to_vec(), &plan);
-                drive(engine, &plan, strategy, must, at, observe).await?
-            }
-            Some((gpu, waiting)) => {
-                let steps = Strategy::steps(&plan, corrected);
-                // The host judges a run with corrections, so the device must not end it.
-                let judged = if corrected { plan.clone().endless() } else { plan.clone() };
-                let engine = GpuEngine::new(gpu, problem, from, judged, steps, waiting)?;
-                drive(engine, &plan, strategy, must, at, observe).await?
+        keeping.last = resumed.map(|resumed| resumed.saved.clone());
+        let (mut place, mut fault) = (device, None);
+        let end = loop {
+            let last = keeping.last.clone();
+            let course = Course { plan: &plan, must, phase: self.phase, done, from: last };
+            let strategy = Strategy::new(problem, &plan, corrected);
+            let driven = match place {
+                None => {
+                    let engine = CpuEngine::new(problem, from.to_vec(), &plan);
+                    drive(engine, course, strategy, keeping, observe).await
+                }
+                Some((gpu, waiting)) => {
+                    let steps = Strategy::steps(&plan, corrected);
+                    // The host judges a run with corrections, so the device must not end it.
+                    let judged = if corrected { plan.clone().endless() } else { plan.clone() };
+                    match GpuEngine::new(gpu, problem, from, judged, steps, waiting) {
+                        Ok(engine) => drive(engine, course, strategy, keeping, observe).await,
+                        Err(error) => Err(error.into()),
+                    }
+                }
+            };
+            let error = match driven {
+                Ok(end) => break end,
+                Err(DriveError::Device(error)) => error,
+                Err(DriveError::NotFinite { sweep }) => GpuError::NotFinite { sweep },
+                Err(DriveError::LeftOut(error)) => return Err(error.into()),
+                Err(DriveError::Foreign) => return Err(resume::foreign()),
+            };
+            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + done;
+            if place.is_some() && keeping.keeper.goes_on_without(&error, kept) {
+                (place, fault) = (None, Some(DeviceFault { sweep: kept, error }));
+            } else if matches!(error, GpuError::NotFinite { .. }) {
+                break self.undone(&plan, from, keeping.last.take());
+            } else {
+                return Err(error.into());
             }
         };
         let remaining = end.history.remaining();
@@ -442,7 +534,7 @@ impl Run<'_> {
             None => (end.history.into_log(), end.positions),
         };
         let opening_sweeps = match (self.device, device) {
-            (Some(_), None) => history.len() as u32 - 1,
+            (Some(_), None) if resumed.is_none() => history.len() as u32 - 1,
             _ => done,
         };
         Ok(Ran {
@@ -454,7 +546,27 @@ impl Run<'_> {
             remaining,
             held_back: held,
             stop,
+            fault,
         })
+    }
+
+    /// The end of a run in the state that was last kept, or at its start, because a sweep since then made f a number that is not
+    /// finite.
+    fn undone(&self, plan: &Plan, from: &[DVec2], last: Option<Saved>) -> End {
+        let (log, positions) = match last {
+            Some(Saved { log, engine, .. }) => (log, engine.best.unwrap_or(engine.positions)),
+            None => {
+                let mut start = Objectives::untracked();
+                for metric in plan.tracked() {
+                    let excess = mean_excess(metric, self.problem, from);
+                    start.set(metric, metric.ideal_squared() + excess);
+                }
+                (vec![start], from.to_vec())
+            }
+        };
+        let history = History::resumed(plan, &log, None);
+        let (stop, corrections) = (Stop::NotFinite, 0);
+        End { history, positions, corrections, levels_left_out: false, stop }
     }
 
     /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these

@@ -14,7 +14,7 @@ use crate::layout::Problem;
 use crate::metric::{Metric, TargetMap};
 use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
-use crate::run::{Engine, History, Objectives, Plan, Proposal, Step};
+use crate::run::{CPU, Engine, EngineState, History, Objectives, Plan, Proposal, Step};
 
 /// Number of vertices of one task.
 const CHUNK: usize = 1 << 12;
@@ -188,5 +188,38 @@ impl Engine for CpuEngine<'_> {
             }
         });
         Ok(())
+    }
+
+    async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {
+        let mut state = EngineState {
+            engine: CPU.to_owned(),
+            positions: self.positions.clone(),
+            best: self.best.clone(),
+            ..EngineState::default()
+        };
+        if whole {
+            state.roots = self.hierarchy.as_ref().map(Hierarchy::recipe).unwrap_or_default();
+            if let Some(secants) = &self.secants {
+                secants.save(&mut state);
+            }
+        }
+        Ok(state)
+    }
+
+    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+        let fits = |points: &Vec<DVec2>| {
+            points.len() == self.positions.len() && points.iter().all(|p| p.is_finite())
+        };
+        let best = state.best.as_ref().unwrap_or(&state.positions);
+        if !fits(&state.positions) || !fits(best) {
+            return Ok(false);
+        }
+        self.positions.clone_from(&state.positions);
+        if let Some(kept) = &mut self.best {
+            kept.clone_from(best);
+        }
+        self.hierarchy = Hierarchy::of_recipe(self.problem, &state.roots);
+        self.secants = Secants::saved_in(state, self.problem.free_count());
+        Ok(self.hierarchy.is_some() || state.roots.is_empty())
     }
 }

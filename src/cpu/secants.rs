@@ -3,10 +3,16 @@
 use glam::{DVec2, Vec2};
 
 use crate::parallel::{for_each_chunk, map_parts};
+use crate::run::EngineState;
 use crate::run::secant::Products;
 
 /// Number of vertices of one task.
 const CHUNK: usize = 1 << 12;
+
+/// The names of what a state of the engine holds of the pairs.
+const VECTORS: [&str; 5] = ["step", "older step", "change", "older change", "start, low"];
+const PRODUCTS: &str = "products of secants";
+const IS_OPEN: &str = "secant is open";
 
 /// Two secant pairs at the free vertices, the newer one first, in single precision.
 ///
@@ -58,6 +64,41 @@ impl Secants {
         };
         self.open(positions, gradient);
         direction
+    }
+
+    /// Adds the pairs to a state of the engine.
+    pub(crate) fn save(&self, state: &mut EngineState) {
+        let Self { steps, changes, low, products, is_open } = self;
+        let pairs = [&steps[0], &steps[1], &changes[0], &changes[1], low];
+        for (name, vectors) in VECTORS.iter().zip(pairs) {
+            state.add::<[f32; 2]>(name, &vectors.iter().map(Vec2::to_array).collect::<Vec<_>>());
+        }
+        let Products { along, curvature, across } = products;
+        state.add(PRODUCTS, &[along[0], along[1], curvature[0], curvature[1], *across]);
+        state.add(IS_OPEN, &[u8::from(*is_open)]);
+    }
+
+    /// The pairs at so many free vertices that a state holds, if it does.
+    pub(crate) fn saved_in(state: &EngineState, free: usize) -> Option<Self> {
+        let vectors = |i: usize| {
+            let name = VECTORS[i];
+            // A pair that has not been there yet is empty.
+            let found = state.own::<[f32; 2]>(name, free).or_else(|| state.own(name, 0))?;
+            Some(found.into_iter().map(Vec2::from_array).collect::<Vec<_>>())
+        };
+        let products = state.own::<f64>(PRODUCTS, 5)?;
+        let [a, b, c, d, across] = <[f64; 5]>::try_from(products).ok()?;
+        let low = vectors(4)?;
+        let [step, change] = [vectors(0)?, vectors(2)?];
+        let is_open = state.own::<u8>(IS_OPEN, 1)?.contains(&1);
+        let is_whole = [&low, &step, &change].iter().all(|v| v.len() == free) || !is_open;
+        is_whole.then_some(Self {
+            steps: [step, vectors(1)?],
+            changes: [change, vectors(3)?],
+            low,
+            products: Products { along: [a, b], curvature: [c, d], across },
+            is_open,
+        })
     }
 
     fn close(&mut self, positions: &[DVec2], gradient: &[Vec2]) {

@@ -206,6 +206,14 @@ impl MeshFile {
         self.sources.iter().map(|source| source.path.as_path())
     }
 
+    /// All files that were read, in the order of [`paths`](Self::paths), with their bytes as they were read.
+    pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
+        self.sources.iter().map(|source| {
+            let bytes = source.packed.as_ref().map_or(&source.bytes, |packed| &packed.bytes);
+            (source.path.as_path(), &bytes[..])
+        })
+    }
+
     /// The mesh, vertices and triangles in the order of the file.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh

@@ -7,7 +7,10 @@ mod column;
 mod compare;
 mod convert;
 mod detect;
+mod disk;
 mod families;
+#[cfg(test)]
+mod faults;
 mod field;
 mod fields;
 mod format;

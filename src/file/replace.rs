@@ -2,7 +2,8 @@
 //! replaced together or not at all.
 
 use crate::error::WriteError;
-use std::fs::{self, File, OpenOptions};
+use crate::file::disk::{Disk, NewFile, System};
+use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -23,20 +24,47 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 }
 
 /// Writes all of the files, each as [`replace`] does, or leaves what stood there as it was.
+///
+/// The first file takes its place last, when all others have theirs: so it should be the one without which they are no mesh. Where the
+/// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
+/// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
+/// out of its place until they have: no moment is a mixture.
 pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
-    let staged = jobs.iter().map(|(path, content)| stage(path, content));
+    replace_all_on(&System, jobs)
+}
+
+pub(crate) fn replace_all_on(disk: &dyn Disk, jobs: &[Job<'_>]) -> Result<(), WriteError> {
+    let staged = jobs.iter().map(|(path, content)| stage(disk, path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;
     // Declared before what it protects, so that it is dropped after it.
     let _committing = lock(&COMMITTING);
     let mut staged = staged;
-    for next in 0..staged.len() {
-        let more_follow = next + 1 < staged.len();
-        if let Err(source) = staged[next].commit(more_follow) {
-            staged[..next].iter().for_each(Staged::revert);
-            return Err(refused(&staged[next].target, source));
+    let Some((first, others)) = staged.split_first_mut() else { return Ok(()) };
+    if others.iter().any(Staged::changes) {
+        first.set_aside(disk).map_err(|source| refused(&first.target, source))?;
+    }
+    for next in (0..staged.len()).rev() {
+        let more_follow = next > 0;
+        if let Err(source) = staged[next].commit(disk, more_follow) {
+            let error = refused(&staged[next].target, source);
+            let is_touched = |(i, it): &(usize, &mut Staged<'_>)| *i > next || it.is_aside;
+            let touched = staged.iter_mut().enumerate().filter(is_touched);
+            // The first one last, as it makes a mesh of them.
+            let lost: Vec<_> = touched.rev().filter_map(|(_, it)| it.revert()).collect();
+            return Err(with_lost(error, &lost));
         }
     }
     Ok(())
+}
+
+/// The error of a write after which some files could not be brought back either.
+fn with_lost(error: WriteError, lost: &[String]) -> WriteError {
+    match error {
+        WriteError::Io { path, source, remedy } if !lost.is_empty() => {
+            WriteError::Io { path, source, remedy: format!("{remedy}. {}", lost.join(". ")) }
+        }
+        error => error,
+    }
 }
 
 /// Held while written files take their places.
@@ -95,7 +123,7 @@ pub fn check(path: &Path) -> Result<(), WriteError> {
             remedy: "Create the directory first, or write to another one".into(),
         });
     }
-    Temporary::create(directory).map(drop).map_err(|source| refused(directory, source))
+    Temporary::create(&System, directory).map(drop).map_err(|source| refused(directory, source))
 }
 
 /// Whether two paths lead to one file, also by another spelling, a symbolic link or a hard link. The file need not exist
@@ -137,6 +165,7 @@ fn refused(path: &Path, source: io::Error) -> WriteError {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "Write to a directory that you may change"
         }
+        ErrorKind::FileTooLarge => "Let files be larger (ulimit -f), or write to another place",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "Make room, or write to another disk",
         _ => "Write to another place",
     };
@@ -144,19 +173,23 @@ fn refused(path: &Path, source: io::Error) -> WriteError {
 }
 
 /// A written file that waits to take its place.
-struct Staged {
+struct Staged<'d> {
     target: PathBuf,
     /// None if the content went straight to a device or pipe.
-    content: Option<Temporary>,
+    content: Option<Temporary<'d>>,
     existed: bool,
-    /// A second name of the file that stood there, as long as it may have to be restored.
-    previous: Option<Temporary>,
+    /// Whether the file that stood there has been given its other name, and there is none.
+    is_aside: bool,
+    /// A second name of the file that stood there, or a copy where there are no second names, as long as it may have to be
+    /// restored.
+    previous: Option<Temporary<'d>>,
 }
 
-fn stage(
+fn stage<'d>(
+    disk: &'d dyn Disk,
     path: &Path,
     content: &dyn Fn(&mut (dyn Write + Send)) -> io::Result<()>,
-) -> Result<Staged, WriteError> {
+) -> Result<Staged<'d>, WriteError> {
     let attempt = || {
         let (target, existing) = resolve(path)?;
         let existed = existing.is_some();
@@ -164,9 +197,9 @@ fn stage(
             let mut out = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
             content(&mut out)?;
             out.flush()?;
-            return Ok(Staged { target, content: None, existed, previous: None });
+            return Ok(Staged { target, content: None, existed, is_aside: false, previous: None });
         }
-        let (temporary, file) = Temporary::create(directory_of(&target))?;
+        let (temporary, file) = Temporary::create(disk, directory_of(&target))?;
         let mut out = BufWriter::with_capacity(1 << 18, file);
         content(&mut out)?;
         let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -174,58 +207,106 @@ fn stage(
             file.set_permissions(existing.permissions())?;
         }
         // Otherwise a crash could leave the new name with none of the content.
-        file.sync_all()?;
-        Ok(Staged { target, content: Some(temporary), existed, previous: None })
+        file.sync()?;
+        Ok(Staged { target, content: Some(temporary), existed, is_aside: false, previous: None })
     };
     attempt().map_err(|source| refused(path, source))
 }
 
-impl Staged {
-    fn commit(&mut self, revertible: bool) -> io::Result<()> {
-        let Some(content) = &self.content else { return Ok(()) };
-        let directory = directory_of(&self.target);
-        if revertible && self.existed {
-            let previous = Temporary::unused_name(directory);
-            // Where there are no hard links the file cannot be brought back, yet nothing has failed so far.
-            if fs::hard_link(&self.target, &previous).is_ok() {
-                self.previous = Some(Temporary(previous));
-            }
+impl<'d> Staged<'d> {
+    /// Whether the file that stands there has another content.
+    fn changes(&self) -> bool {
+        let read = |path: &Path| fs::read(path).ok();
+        match &self.content {
+            Some(content) => self.existed && read(&self.target) != read(&content.path),
+            None => false,
         }
-        fs::rename(&content.0, &self.target)?;
-        // So that the new name outlasts a crash too. Not every system lets a directory be opened for that.
-        if let Ok(directory) = File::open(directory) {
-            let _ = directory.sync_all();
+    }
+
+    /// Gives the file that stands there another name.
+    fn set_aside(&mut self, disk: &'d dyn Disk) -> io::Result<()> {
+        // What is no file stays in the way, and is told as that.
+        if self.content.is_some() && self.target.is_file() {
+            let directory = directory_of(&self.target);
+            let previous = Temporary::named(disk, directory);
+            disk.rename(&self.target, &previous.path)?;
+            self.previous = Some(previous);
+            self.is_aside = true;
+            let _ = disk.sync_directory(directory);
         }
         Ok(())
     }
 
-    fn revert(&self) {
-        // The error that led here is the one to report.
-        let _ = match &self.previous {
-            Some(previous) => fs::rename(&previous.0, &self.target),
-            None if self.content.is_some() && !self.existed => fs::remove_file(&self.target),
-            None => Ok(()),
-        };
+    fn commit(&mut self, disk: &'d dyn Disk, revertible: bool) -> io::Result<()> {
+        let Some(content) = &self.content else { return Ok(()) };
+        let directory = directory_of(&self.target);
+        if revertible && self.existed {
+            let previous = Temporary::named(disk, directory);
+            // Not every system has second names.
+            disk.hard_link(&self.target, &previous.path)
+                .or_else(|_| disk.copy(&self.target, &previous.path))?;
+            self.previous = Some(previous);
+        }
+        disk.rename(&content.path, &self.target)?;
+        // So that the new name outlasts a crash too. Not every system lets a directory be opened for that.
+        let _ = disk.sync_directory(directory);
+        Ok(())
+    }
+
+    /// Brings back what stood there. Says what to do if the system refuses.
+    fn revert(&mut self) -> Option<String> {
+        let content = self.content.as_ref()?;
+        let target = self.target.display();
+        match self.previous.take() {
+            Some(previous) => {
+                content.disk.rename(&previous.path, &self.target).err()?;
+                let kept = previous.keep();
+                Some(format!("{target} is not as it was: its old content is in {}", kept.display()))
+            }
+            None if self.existed => None,
+            None => {
+                content.disk.remove(&self.target).err()?;
+                Some(format!("{target} is there, and should not be"))
+            }
+        }
     }
 }
 
 /// The path of a temporary file. Dropping it removes the file, unless the file was renamed.
-struct Temporary(PathBuf);
+struct Temporary<'d> {
+    path: PathBuf,
+    disk: &'d dyn Disk,
+    is_kept: bool,
+}
 
-impl Temporary {
-    fn create(directory: &Path) -> io::Result<(Temporary, File)> {
+impl<'d> Temporary<'d> {
+    fn create(
+        disk: &'d dyn Disk,
+        directory: &Path,
+    ) -> io::Result<(Temporary<'d>, Box<dyn NewFile>)> {
         loop {
             let path = Self::unused_name(directory);
             let mut temporaries = lock(&TEMPORARIES);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
+            match disk.create_new(&path) {
                 Ok(file) => {
                     temporaries.push(path.clone());
-                    return Ok((Temporary(path), file));
+                    return Ok((Temporary { path, disk, is_kept: false }, file));
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
         }
+    }
+
+    /// A name that a file may be given.
+    fn named(disk: &'d dyn Disk, directory: &Path) -> Self {
+        Temporary { path: Self::unused_name(directory), disk, is_kept: false }
+    }
+
+    /// Leaves the file where it is.
+    fn keep(mut self) -> PathBuf {
+        self.is_kept = true;
+        self.path.clone()
     }
 
     /// An unused name. It is short, as the destination's own name may be as long as names can be.
@@ -236,10 +317,12 @@ impl Temporary {
     }
 }
 
-impl Drop for Temporary {
+impl Drop for Temporary<'_> {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-        lock(&TEMPORARIES).retain(|path| *path != self.0);
+        if !self.is_kept {
+            let _ = self.disk.remove(&self.path);
+        }
+        lock(&TEMPORARIES).retain(|path| *path != self.path);
     }
 }
 
@@ -306,7 +389,7 @@ mod tests {
         fs::write(&a, "old").unwrap();
         // No file can take the place of a directory.
         fs::create_dir(&c).unwrap();
-        let jobs = [job(a.clone(), "new"), job(b.clone(), "new"), job(c, "new")];
+        let jobs = [job(c, "new"), job(b.clone(), "new"), job(a.clone(), "new")];
         assert!(replace_all(&jobs).is_err());
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert!(!b.exists());

@@ -6,12 +6,14 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
-use crate::error::{GpuError, SmoothError};
+use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::run::corrections::Corrections;
 use crate::run::engine::Engine;
 use crate::run::history::History;
+use crate::run::keeper::{Keeper, Keeping};
 use crate::run::plan::Plan;
+use crate::run::saved::Saved;
 use crate::run::step::Step;
 use crate::run::stop::Stop;
 use crate::run::sweeps;
@@ -76,6 +78,37 @@ impl<'a> Strategy<'a> {
         }
     }
 
+    /// What decides on corrections, for a state that is kept.
+    fn saved(&self) -> Option<Vec<u64>> {
+        match self {
+            Strategy::Sweeps => None,
+            Strategy::Corrected(corrections) => Some(corrections.save()),
+        }
+    }
+
+    /// Goes on from a state, of which the history is returned.
+    fn restored(
+        &mut self,
+        engine: &mut impl Engine,
+        plan: &Plan,
+        saved: Saved,
+    ) -> Result<History, DriveError> {
+        let Saved { log, remaining, corrections, engine: state } = saved;
+        let history = History::resumed(plan, &log, remaining);
+        let fits = match (self, corrections) {
+            (Strategy::Sweeps, None) => true,
+            (Strategy::Corrected(strategy), Some(words)) => {
+                strategy.restore(&words, log.len(), !state.roots.is_empty())
+            }
+            _ => false,
+        };
+        let is_finite = !log.is_empty() && history.first_not_finite(0).is_none();
+        match fits && is_finite && engine.restore(&state)? {
+            true => Ok(history),
+            false => Err(DriveError::Foreign),
+        }
+    }
+
     /// The positions of the best state: with corrections the last one, as no correction raises the objective.
     async fn best_positions(&self, engine: &mut impl Engine) -> Result<Vec<DVec2>, GpuError> {
         match self {
@@ -94,42 +127,80 @@ pub(crate) struct End {
     pub(crate) stop: Stop,
 }
 
-/// Sweeps on an engine until the run ends. `done` is the number of sweeps before this run, for the observer. If `must`
-/// is set, it is an error that the engine has no room for the coarser levels.
-pub(crate) async fn drive(
+/// What is to be done on an engine, and from where.
+pub(crate) struct Course<'a> {
+    pub(crate) plan: &'a Plan,
+    /// Whether it is an error that the engine has no room for the coarser levels.
+    pub(crate) must: bool,
+    pub(crate) phase: Phase,
+    /// Number of sweeps before this run, for the observer.
+    pub(crate) done: u32,
+    /// The state that the run goes on from, if it is not its start.
+    pub(crate) from: Option<Saved>,
+}
+
+/// Sweeps on an engine until the run ends.
+pub(crate) async fn drive<K: Keeper + ?Sized>(
     mut engine: impl Engine,
-    plan: &Plan,
+    course: Course<'_>,
     mut strategy: Strategy<'_>,
-    must: bool,
-    (phase, done): (Phase, u32),
+    keeping: &mut Keeping<'_, K>,
     observe: &mut (impl Observer + ?Sized),
-) -> Result<End, SmoothError> {
-    let mut history = History::new(plan);
+) -> Result<End, DriveError> {
+    let Course { plan, must, phase, done, from } = course;
+    let mut history = match from {
+        Some(saved) => strategy.restored(&mut engine, plan, saved)?,
+        None => History::new(plan),
+    };
     // One sweep at first: its duration is not known yet, and drivers kill submissions that take seconds.
     let mut batch = 1;
     let stop = loop {
-        let start = Instant::now();
+        let (start, known) = (Instant::now(), history.f().len());
         strategy.advance(&mut engine, plan, &mut history, batch).await?;
         batch = next_batch(batch, start.elapsed());
+        if let Some(sweep) = history.first_not_finite(known) {
+            return Err(DriveError::NotFinite { sweep: done + sweep });
+        }
         if let (true, Strategy::Corrected(corrections)) = (must, &strategy)
             && let Some(error) = corrections.left_out()
         {
-            return Err(error.clone().into());
+            return Err(DriveError::LeftOut(error.clone()));
         }
         if let Some(stop) = history.stop() {
             break stop;
         }
         let sweep = done + history.sweeps();
-        if observe(&Progress { phase, sweep, f: history.last() }).is_break() {
+        let is_ending = observe(&Progress { phase, sweep, f: history.last() }).is_break();
+        let corrections = || strategy.saved();
+        keeping.after_sweeps(&mut engine, &history, corrections, is_ending).await?;
+        if is_ending {
             break Stop::Cancelled;
         }
     };
     let positions = strategy.best_positions(&mut engine).await?;
     let (corrections, levels_left_out) = match &strategy {
         Strategy::Sweeps => (0, false),
-        Strategy::Corrected(corrections) => (corrections.taken(), corrections.left_out().is_some()),
+        Strategy::Corrected(corrections) => (corrections.taken(), corrections.is_left_out()),
     };
     Ok(End { history, positions, corrections, levels_left_out, stop })
+}
+
+/// Why a run could not be driven to its end.
+pub(crate) enum DriveError {
+    /// The device failed.
+    Device(GpuError),
+    /// The device has no room for the coarser levels, and the run must have them.
+    LeftOut(GpuError),
+    /// f is not a finite number after this sweep.
+    NotFinite { sweep: u32 },
+    /// The state to go on from is of another mesh.
+    Foreign,
+}
+
+impl From<GpuError> for DriveError {
+    fn from(error: GpuError) -> Self {
+        Self::Device(error)
+    }
 }
 
 /// The number of sweeps to ask for next, such that the observer is called about ten times a second.

@@ -8,6 +8,7 @@ use crate::error::GpuError;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
+use crate::run::saved::EngineState;
 use crate::run::step::Step;
 
 /// Computes a run, on the CPU or a device: sweeps, objectives, and corrections from coarser levels. Positions are
@@ -66,6 +67,13 @@ pub(crate) trait Engine: Send {
 
     /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
+
+    /// The present state, between two sweeps: if `whole`, all that it takes to go on to the same bits, else the positions.
+    fn save(&mut self, whole: bool) -> impl Future<Output = Result<EngineState, GpuError>> + Send;
+
+    /// Takes on a state, before the first sweep. Returns whether the state is of this mesh and of an engine that this one
+    /// can go on from. A state that is not whole leaves the engine without coarser levels.
+    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
 }
 
 /// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric.

@@ -34,6 +34,21 @@ impl History {
         }
     }
 
+    /// The history of a run that goes on: the objectives so far, and the share of f that is estimated to be left.
+    pub(crate) fn resumed(plan: &Plan, log: &[Objectives], remaining: Option<f64>) -> Self {
+        let mut history = Self::new(plan);
+        for objectives in log {
+            history.add(*objectives);
+        }
+        history.remaining = remaining;
+        history
+    }
+
+    /// The first sweep after `known` evaluations after which the base objective is not a finite number, if there is one.
+    pub(crate) fn first_not_finite(&self, known: usize) -> Option<u32> {
+        (known..self.f.len()).find(|&k| !self.f[k].is_finite()).map(|k| k as u32)
+    }
+
     /// Adds the objectives before the first sweep or after the next one, without applying the stop rule. Returns
     /// whether the base objective is the least so far.
     pub(crate) fn add(&mut self, objectives: Objectives) -> bool {

@@ -1,16 +1,19 @@
 //! The control of a run: options, the steps of a plan, the stop rule, and the loop over sweeps. Computing is left to
 //! an [`Engine`], on the CPU or a device.
 
+mod checkpoint;
 mod corrections;
 mod drive;
 mod engine;
 mod history;
+mod keeper;
 pub(crate) mod line_search;
 pub(crate) mod multilevel;
 mod objectives;
 pub(crate) mod opening;
 mod options;
 mod plan;
+mod saved;
 pub(crate) mod secant;
 mod shape_guard;
 mod step;
@@ -18,13 +21,18 @@ mod stop;
 mod sweeps;
 mod yielding;
 
+pub(crate) use checkpoint::About;
+pub use checkpoint::Checkpoint;
+pub(crate) use drive::{Course, DriveError, End, Strategy, drive};
 pub use drive::{Observer, Phase, Progress};
-pub(crate) use drive::{Strategy, drive};
 pub(crate) use engine::{Engine, Proposal};
 pub(crate) use history::History;
+pub use keeper::Keeper;
+pub(crate) use keeper::{Keeping, NoKeeper};
 pub use objectives::Objectives;
 pub use options::{Desired, Goal, Method, Options};
 pub use plan::Plan;
+pub(crate) use saved::{CPU, EngineState, Saved};
 pub(crate) use shape_guard::shape_guard;
 pub use step::{Derivatives, Sharpness, Step};
 pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE};

@@ -17,6 +17,16 @@ impl Objectives {
         self.0[metric as usize] = value;
     }
 
+    /// The value by each metric, NaN where it was not evaluated.
+    pub(crate) fn values(&self) -> [f64; Metric::ALL.len()] {
+        self.0
+    }
+
+    /// Objectives of these values, NaN where one was not evaluated.
+    pub(crate) fn of_values(values: [f64; Metric::ALL.len()]) -> Self {
+        Self(values)
+    }
+
     /// The objective by `metric`, if it was evaluated.
     pub fn of(&self, metric: Metric) -> Option<f64> {
         Some(self.0[metric as usize]).filter(|f| !f.is_nan())

@@ -33,12 +33,16 @@ const PAIR_ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 const MOST_SWEEPS: u32 = 120;
 
 /// The result of sweeps after which a device can go on.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Opened {
-    history: History,
+    /// The objectives before the first sweep and after each.
+    pub(crate) log: Vec<Objectives>,
+    /// The least base objective among them.
+    pub(crate) least: f64,
     /// The positions after the last sweep.
     pub(crate) positions: Vec<DVec2>,
     /// The best positions by the base metric.
-    best: Vec<DVec2>,
+    pub(crate) best: Vec<DVec2>,
 }
 
 /// What keeps a device from sweeping a mesh.
@@ -91,7 +95,8 @@ pub(crate) async fn open(
         }
         if obstacle(problem, &engine.positions().await?) == Obstacle::None {
             let positions = engine.positions().await?.into_owned();
-            return Ok(Some(Opened { history, positions, best: engine.best_positions().await? }));
+            let (least, best) = (history.least(), engine.best_positions().await?);
+            return Ok(Some(Opened { log: history.into_log(), least, positions, best }));
         }
         yield_now().await;
     }
@@ -101,7 +106,7 @@ pub(crate) async fn open(
 impl Opened {
     /// Number of sweeps done.
     pub(crate) fn sweeps(&self) -> u32 {
-        self.history.sweeps()
+        (self.log.len() as u32).saturating_sub(1)
     }
 
     /// The objectives and best positions of the whole run, given those of the sweeps after the opening.
@@ -110,9 +115,9 @@ impl Opened {
         history: History,
         positions: Vec<DVec2>,
     ) -> (Vec<Objectives>, Vec<DVec2>) {
-        let best = if self.history.least() < history.least() { self.best } else { positions };
+        let best = if self.least < history.least() { self.best } else { positions };
         // The first entry evaluates the positions at which the opening ended, which are in its history already.
         let rest = history.into_log().into_iter().skip(1);
-        (self.history.into_log().into_iter().chain(rest).collect(), best)
+        (self.log.into_iter().chain(rest).collect(), best)
     }
 }

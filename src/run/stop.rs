@@ -19,6 +19,9 @@ pub enum Stop {
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
     Cancelled,
+    /// A sweep made f a number that is not finite, which no sweep should. It was undone, with those before it back to the state that was
+    /// last kept.
+    NotFinite,
 }
 
 impl Stop {
@@ -39,6 +42,7 @@ impl Stop {
             Stop::HeldBack => "held-back",
             Stop::MaxSweeps => "max-sweeps",
             Stop::Cancelled => "cancelled",
+            Stop::NotFinite => "not-finite",
         }
     }
 }

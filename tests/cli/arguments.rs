@@ -128,3 +128,109 @@ fn help_and_version_go_to_standard_output() {
         assert_holds(&folder.line(line).clean().out, &parts);
     }
 }
+
+/// Command lines of any words: an exit code that means something, nothing that panics, and no file left that should not be. How many
+/// times as often is in the environment variable FUZZ_ROUNDS.
+#[test]
+fn command_lines_of_any_words_neither_panic_nor_damage_files() {
+    const WORDS: [&str; 62] = [
+        "in",
+        "in.node",
+        "in.ele",
+        "out",
+        "out.node",
+        "out.msh",
+        "out.vtk.gz",
+        "none",
+        "-",
+        "",
+        ".",
+        "/",
+        "é\u{301}\u{7f}",
+        "quality",
+        "groups",
+        "compare",
+        "convert",
+        "metrics",
+        "completions",
+        "bash",
+        "man",
+        "--engine",
+        "cpu",
+        "gpu",
+        "--scheme",
+        "edge+imr",
+        "imr+",
+        "--max-sweeps",
+        "3",
+        "0",
+        "-1",
+        "1e400",
+        "nan",
+        "99999999999999999999",
+        "--tolerance",
+        "1e-3",
+        "--fraction",
+        "0.9",
+        "--desired",
+        "auto",
+        "1.2",
+        "--method",
+        "paper",
+        "--omega",
+        "1.5",
+        "--fix",
+        "--fix-box",
+        "0,0,1,1",
+        "--only-bad",
+        "2",
+        "--report",
+        "r.json",
+        "--checkpoint",
+        "c.ckpt",
+        "--continue",
+        "--time-limit",
+        "-q",
+        "-v",
+        "--untangle",
+        "--to",
+        "su2",
+        "--interpolate",
+    ];
+    let factor = std::env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
+    let mut random = super::support::SplitMix64::new(21);
+    let folder = small();
+    let kept = ["in.node", "in.ele"].map(|name| folder.text(name));
+    let mut codes = std::collections::BTreeSet::new();
+    for _ in 0..60 * factor.unwrap_or(1) {
+        let mut words = Vec::new();
+        // Half of them begin as a command line does.
+        if random.below(2) == 0 {
+            words.extend(["in", "out", "--engine", "cpu", "--max-sweeps", "3"]);
+        }
+        words.extend((0..random.below(6)).map(|_| WORDS[random.below(WORDS.len())]));
+        let run = folder.run(&words);
+        let code = run.code.unwrap_or(-1);
+        assert!([0, 1, 2].contains(&code), "{words:?}: {code}\n{}", run.err);
+        assert!(!run.err.contains("panicked"), "{words:?}\n{}", run.err);
+        assert!(code == 0 || !run.err.is_empty(), "{words:?}: nothing is told");
+        codes.insert(code);
+        for (path, _) in folder.content() {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            assert!(!name.ends_with(".tmp"), "{words:?} leaves {name}");
+            if ["in.node", "in.ele"].contains(&&*name) {
+                continue;
+            }
+            if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
+                .unwrap();
+        }
+        // Smoothed in place, if it was named as OUT.
+        if words.iter().filter(|word| word.starts_with("in")).count() < 2 {
+            assert!(kept == ["in.node", "in.ele"].map(|name| folder.text(name)), "{words:?}");
+        }
+        for (name, text) in ["in.node", "in.ele"].iter().zip(&kept) {
+            std::fs::write(folder.path(name), text).unwrap();
+        }
+    }
+    assert_eq!(codes.len(), 3);
+}

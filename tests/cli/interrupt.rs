@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A command that a test sends signals to.
-struct Started {
+pub(crate) struct Started {
     child: Child,
     err: BufReader<ChildStderr>,
     /// Dropped when the child has ended.
@@ -21,7 +21,7 @@ struct Started {
 }
 
 impl Started {
-    fn new(folder: &Folder, args: &[&str]) -> Self {
+    pub(crate) fn new(folder: &Folder, args: &[&str]) -> Self {
         let mut command = folder.command();
         command.args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
@@ -54,7 +54,7 @@ impl Started {
     }
 
     /// The next line on standard error that starts so; lines on what comes before it are passed over.
-    fn first_of(&mut self, start: &str) -> String {
+    pub(crate) fn first_of(&mut self, start: &str) -> String {
         loop {
             let line = self.line();
             if line.starts_with(start) || line.is_empty() {
@@ -73,13 +73,25 @@ impl Started {
         }
     }
 
-    fn signal(&self, name: &str) {
+    pub(crate) fn signal(&self, name: &str) {
         let id = self.child.id().to_string();
         assert!(Command::new("kill").args([name, &id]).status().unwrap().success());
     }
 
+    pub(crate) fn has_ended(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_some()
+    }
+
+    /// Sends a signal unless the command has ended meanwhile.
+    pub(crate) fn signal_if_running(&mut self, name: &str) {
+        if !self.has_ended() {
+            self.signal(name);
+            self.child.wait().unwrap();
+        }
+    }
+
     /// Exit code, standard output, and the rest of standard error.
-    fn end(mut self) -> (Option<i32>, String, String) {
+    pub(crate) fn end(mut self) -> (Option<i32>, String, String) {
         let (mut out, mut err) = (String::new(), String::new());
         self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
         self.err.read_to_string(&mut err).unwrap();
@@ -98,7 +110,7 @@ fn make_pipe(folder: &Folder, name: &str) {
     assert!(Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
 }
 
-fn names(folder: &Folder) -> Vec<String> {
+pub(crate) fn names(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(&folder.0).unwrap();
     let mut names: Vec<_> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

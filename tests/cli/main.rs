@@ -16,6 +16,8 @@ mod groups;
 mod html;
 mod interpolate;
 mod interrupt;
+mod killed;
+mod long;
 mod many;
 mod moving;
 mod options;

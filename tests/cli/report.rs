@@ -44,6 +44,7 @@ fn report_holds_the_documented_keys() {
                 "returned",
                 "before",
                 "after",
+                "certificate",
                 "history",
                 "seconds",
             ],
@@ -144,5 +145,41 @@ fn goal_is_in_the_report_of_a_run_that_has_one() {
         assert!(number(&goal["best_fraction"]) > number(&goal["fraction"]));
         assert_eq!(text(&goal["origin"]) == "given", given);
         assert_eq!(number(&goal["desired"]) == 1.05, given);
+    }
+}
+
+/// What the report says of the files, against the files and another program.
+#[cfg(unix)]
+#[test]
+fn the_certificate_holds_of_the_files() {
+    let folder = small();
+    let files = ["in.node", "in.ele", "out.node", "out.ele"];
+    for options in ["", "--scheme edge+imr", "--fix-box 0,0,3,3 -q", "--engine gpu"] {
+        let engine = if options.contains("gpu") { "" } else { "--engine cpu" };
+        folder.line(&format!("in out {options} {engine} --report r.json"));
+        let report = folder.json("r.json");
+        let certificate = &report["certificate"];
+        let keys =
+            ["connectivity_identical", "moved", "fixed_moved", "inverted", "f", "input", "output"];
+        assert_keys(certificate, &keys);
+        assert_eq!(certificate["connectivity_identical"], true);
+        assert_eq!([&certificate["fixed_moved"], &certificate["inverted"]], [0, 0]);
+        assert!(certificate["moved"].as_u64().unwrap() > 10);
+        let base = if options.contains("edge") { "edge" } else { "imr" };
+        let (read, told) = (number(&certificate["f"]), number(&report["after"]["f"][base]));
+        assert!((read - told).abs() <= 1e-12 * told, "{read} was read, {told} was told");
+        let sums =
+            std::process::Command::new("sha256sum").args(files).current_dir(&folder.0).output();
+        let sums = String::from_utf8(sums.unwrap().stdout).unwrap();
+        let listed = certificate["input"].as_array().unwrap().iter();
+        let listed = listed.chain(certificate["output"].as_array().unwrap());
+        let mine: String = listed
+            .map(|file| format!("{}  {}\n", text(&file["sha256"]), text(&file["path"])))
+            .collect();
+        assert_eq!(mine, sums);
+        // The command that needs nothing but the files prints the same.
+        let choice = if options.contains("box") { "--fix-box 0,0,3,3" } else { "" };
+        let compared = folder.line(&format!("compare in out {choice}"));
+        assert!(compared.out.contains(&sums), "{}{}", compared.out, compared.err);
     }
 }

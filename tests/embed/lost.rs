@@ -7,12 +7,12 @@ use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Gpu, GpuError, Mesh, Options, Progress, Readback, Smoother, Sweeps,
-    VertexBuffer, wgpu,
+    Backend, DeviceMesh, Gpu, GpuError, Keeper, Mesh, Options, Outcome, Progress, Readback, Scheme,
+    Smoother, Stop, Sweeps, VertexBuffer, wgpu,
 };
 
 use crate::app::{App, Vertices, bad_plate, gpu_error};
-use crate::support::f_imr;
+use crate::support::{SplitMix64, check, f_imr};
 
 /// Fails instead of hanging.
 fn within_a_minute<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
@@ -58,6 +58,118 @@ fn a_run_says_that_the_device_was_lost() {
         // And every later one.
         let error = smoother.run(&endless(), &backend, &mut observe).unwrap_err();
         assert_lost(&gpu_error(error));
+    });
+}
+
+/// Goes on on the CPU when the device fails.
+struct GoesOn {
+    interval: Duration,
+    told: Vec<(GpuError, u32)>,
+}
+
+impl Keeper for GoesOn {
+    fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
+        self.told.push((error.clone(), from));
+        true
+    }
+
+    fn interval(&self) -> Duration {
+        self.interval
+    }
+}
+
+/// Smooths on a device that another thread destroys after a while.
+fn run_with_a_loss(
+    smoother: &Smoother<'_>,
+    options: &Options,
+    after: Duration,
+) -> (Outcome, GoesOn) {
+    let app = App::new();
+    let backend = Backend::Gpu(app.another_gpu());
+    let device = app.device().clone();
+    let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
+    let killer = std::thread::spawn(move || {
+        std::thread::sleep(after);
+        device.destroy();
+    });
+    let outcome = smoother
+        .run_kept(options, &backend, None, &mut keeper, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
+    killer.join().unwrap();
+    (outcome, keeper)
+}
+
+/// The device is destroyed by another thread at any moment: the run ends on the CPU as well as it would have. How often is in
+/// the environment variable ROUNDS.
+#[test]
+fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
+    let rounds = std::env::var("ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
+    let (sender, receiver) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mesh = bad_plate(500);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let mut random = SplitMix64::new(17);
+        let mut lost = 0;
+        for round in 0..rounds {
+            let scheme: Scheme = ["imr", "edge+imr", "rms"][round % 3].parse().unwrap();
+            let base = scheme.base();
+            let options = Options { scheme, ..Options::default() };
+            let on_cpu =
+                smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+            let after = Duration::from_secs_f64(0.4 * random.unit());
+            let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
+            let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(base);
+            let smoothed = Mesh { points: outcome.points.clone(), ..mesh.clone() };
+            assert!(check::is_valid(&smoothed) && check::same_orientations(&mesh, &smoothed));
+            assert_eq!(outcome.stop, on_cpu.stop, "round {round}");
+            assert!((f(&outcome) - f(&on_cpu)).abs() < 2e-3 * f(&on_cpu), "round {round}");
+            let Some(fault) = &outcome.device_fault else {
+                assert!(keeper.told.is_empty());
+                continue;
+            };
+            lost += 1;
+            assert_lost(&fault.error);
+            assert_eq!(keeper.told.len(), 1);
+            assert!(fault.sweep <= outcome.sweeps && keeper.told[0].1 == fault.sweep);
+            assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);
+        }
+        sender.send(lost).unwrap();
+    });
+    let lost = receiver.recv_timeout(Duration::from_secs(60 + 10 * rounds as u64));
+    assert!(lost.expect("it hangs, or has failed") > rounds / 4);
+}
+
+/// Positions that were kept in memory are where the run goes on.
+#[test]
+fn a_run_goes_on_from_what_was_kept() {
+    within_a_minute(|| {
+        let mesh = bad_plate(500);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let options = Options { max_sweeps: 60, ..endless() };
+        for (interval, from) in [(Duration::ZERO, 6), (Duration::MAX, 0)] {
+            let app = App::new();
+            let backend = Backend::Gpu(app.another_gpu());
+            let mut keeper = GoesOn { interval, told: Vec::new() };
+            let mut lost_at = None;
+            let mut observe = |progress: &Progress| {
+                // The state of the observer's sweep is kept after it was told, so the loss shows one sweep later.
+                if progress.sweep >= 6 && lost_at.is_none() {
+                    lost_at = Some(progress.sweep);
+                    app.device().destroy();
+                }
+                ControlFlow::Continue(())
+            };
+            let outcome =
+                smoother.run_kept(&options, &backend, None, &mut keeper, &mut observe).unwrap();
+            assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, 60));
+            let fault = outcome.device_fault.unwrap();
+            assert_lost(&fault.error);
+            if from == 0 {
+                assert_eq!(fault.sweep, 0);
+            } else {
+                assert!((1..=lost_at.unwrap()).contains(&fault.sweep), "{}", fault.sweep);
+            }
+        }
     });
 }
 

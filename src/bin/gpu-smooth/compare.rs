@@ -1,8 +1,9 @@
 //! `gpu-smooth compare BEFORE AFTER`.
 
-use gpu_smooth::{MeshFile, Topology};
+use gpu_smooth::MeshFile;
 
 use crate::cli::{CompareArgs, OutputArgs};
+use crate::proof::{self, FileHash, Proof};
 use crate::streams::read;
 use crate::tell;
 
@@ -23,35 +24,16 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
     mine.add_parameters(&before, &before.mesh().points)?;
     theirs.add_parameters(&after, &after.mesh().points)?;
-    let fields = [mine.fields(), theirs.fields()];
-    if let Some(difference) = before.difference_besides(&after, fields) {
-        let (place, other) = (&difference.place, &difference.other_place);
-        let what = &difference.what;
-        return Err(format!("{place} and {other}: more than coordinates is different: {what}"));
-    }
     let told = |error: gpu_smooth::MeshError| format!("{}: {error}", args.before.display());
-    let topology = Topology::new(before.mesh()).map_err(told)?;
+    let proof = Proof::of([&before, &after], [&mine, &theirs]).map_err(told)?;
+    if proof.difference.is_some() {
+        return Err(proof.problem().unwrap_or_default());
+    }
     let (old, new) = (&before.mesh().points, &after.mesh().points);
-    let bits = |point: &[f64; 2]| point.map(f64::to_bits);
-    let moved: Vec<u32> = (0..)
-        .zip(old.iter().zip(new))
-        .filter(|(_, (old, new))| bits(old) != bits(new))
-        .map(|(vertex, _)| vertex)
-        .collect();
-    let held: Vec<u32> =
-        moved.iter().copied().filter(|&vertex| !topology.free()[vertex as usize]).collect();
-    let bad = topology.bad_triangles(new).map_err(told)?;
-    let (mut problems, mut list) = (mine.implausible(&theirs, &moved), String::new());
-    match held.len() {
-        0 => {}
-        1 => problems.push("1 vertex has moved that must not".to_owned()),
-        count => problems.push(format!("{count} vertices have moved that must not")),
-    }
-    match bad.len() {
-        0 => {}
-        1 => problems.push("1 triangle is inverted or flat".to_owned()),
-        count => problems.push(format!("{count} triangles are inverted or flat")),
-    }
+    let Proof { moved, held, bad, .. } = &proof;
+    let mut problems = mine.implausible(&theirs, moved);
+    problems.extend(proof.problem());
+    let mut list = String::new();
     for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
         list += &format!("\n  {place}: vertex {}", place.label);
     }
@@ -62,7 +44,11 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
     }
     if !show.quiet {
-        tell::say(&summary(&after, old, new, &moved));
+        tell::say(&summary(&after, old, new, moved));
+        for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
+        {
+            tell::say(&format!("{sha256}  {path}"));
+        }
         if let Some(text) = mine.compared() {
             tell::say(&text);
         }

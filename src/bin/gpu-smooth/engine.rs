@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use gpu_smooth::{Backend, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
+use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
 use crate::run_args::{EngineChoice, SmoothArgs};
 
@@ -49,6 +49,20 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
 pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
     let (backend, reason) = Backend::auto(size, &args.options(Precision::Double));
     Taken::new(backend, Some(worded(&reason)))
+}
+
+/// The engine that a run was left on, if the command line leaves the choice open.
+pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
+    let Some(name) = checkpoint.adapter() else {
+        return Taken::new(Backend::Cpu, Some("where the run was left".into()));
+    };
+    match Gpu::open(Some(name)) {
+        Ok(gpu) => Taken::new(Backend::Gpu(gpu), Some("where the run was left".into())),
+        Err(error) => {
+            let reason = format!("the run was left on {name}, which does not open: {error}");
+            Taken::new(Backend::Cpu, Some(reason))
+        }
+    }
 }
 
 /// The reason of a choice, and the option that makes another.
@@ -152,10 +166,10 @@ fn refusal(error: GpuError) -> String {
 
 /// Whether the GPU cannot hold the mesh.
 pub(crate) fn is_too_large(error: &SmoothError) -> bool {
-    matches!(
-        error,
-        SmoothError::Gpu(
-            GpuError::Limit { .. } | GpuError::TooLarge { .. } | GpuError::OutOfMemory(_)
-        )
-    )
+    matches!(error, SmoothError::Gpu(error) if is_too_large_for_device(error))
+}
+
+/// Whether a device has no room for what is asked of it.
+pub(crate) fn is_too_large_for_device(error: &GpuError) -> bool {
+    matches!(error, GpuError::Limit { .. } | GpuError::TooLarge { .. } | GpuError::OutOfMemory(_))
 }

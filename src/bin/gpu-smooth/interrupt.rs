@@ -23,6 +23,16 @@ static REQUESTED: AtomicI32 = AtomicI32::new(0);
 /// Held while a file other than the mesh is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
+/// From now on a write beyond the file size that the user may have (`ulimit -f`) is an error like that of a full disk, where it would end
+/// the process at once and leave a temporary file.
+pub(crate) fn survive_large_files() {
+    #[cfg(unix)]
+    {
+        // Where the system does not let it, the process ends as usual.
+        let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    }
+}
+
 /// Handles the signals from now on. Where the system does not let it, they end the process as usual.
 pub(crate) fn watch(quiet: bool) {
     let register = |signal| {

@@ -7,14 +7,17 @@ mod compare;
 mod convert;
 mod engine;
 mod explain;
+mod follow;
 mod groups;
 mod html;
 mod interrupt;
+mod keep;
 mod many;
 mod moving;
 mod numbers;
 mod picture;
 mod progress;
+mod proof;
 mod quality;
 mod report;
 mod riding;
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
     if cli.output.log == LogForm::Json {
         tell::log_json();
     }
+    interrupt::survive_large_files();
     let done = match &cli.command {
         Some(Command::Quality(args)) => quality::run(args),
         Some(Command::Groups(args)) => groups::run(args),

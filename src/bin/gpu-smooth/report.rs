@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
 use crate::numbers::{percent, six};
+use crate::proof::Certificate;
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -32,8 +33,11 @@ pub(crate) struct Report {
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
-    /// reached, converged, stalled, held-back, max-sweeps, cancelled or nothing-to-do.
+    /// reached, converged, stalled, held-back, max-sweeps, cancelled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
+    /// The sweep after which the run was left before, if it goes on from a checkpoint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) continued_from: Option<u32>,
     /// Why there was nothing to do.
     #[serde(skip)]
     pub(crate) nothing_to_do: Option<String>,
@@ -54,6 +58,9 @@ pub(crate) struct Report {
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
+    /// What the files alone say, where the mesh was written to a file and a report is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) certificate: Option<Certificate>,
     pub(crate) history: Vec<SweepReport>,
     pub(crate) seconds: Seconds,
 }
@@ -75,6 +82,16 @@ pub(crate) struct EngineReport {
     pub(crate) driver: Option<String>,
     /// Why this engine was taken, if the command line left that open.
     pub(crate) reason: Option<String>,
+    /// The fault of the GPU after which the run went on on the CPU.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fault: Option<FaultReport>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct FaultReport {
+    /// The last sweep on the GPU that was kept.
+    pub(crate) sweep: u32,
+    pub(crate) error: String,
 }
 
 #[derive(Serialize)]
@@ -195,6 +212,9 @@ impl From<&Quality> for QualityReport {
         }
     }
 }
+
+/// How a run ends that should not.
+const NOT_FINITE: &str = "undone: a sweep made a number that is not finite, which is a mistake of this program; the mesh is of the last good state";
 
 /// The history of a run, sweep by sweep.
 pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
@@ -391,6 +411,12 @@ impl Report {
                     (false, "stalled") => {
                         format!("not reached: no more progress after {sweeps}, {went}")
                     }
+                    (false, "time-limit") => {
+                        format!("ended by --time-limit after {sweeps}, {went}")
+                    }
+                    (false, "not-finite") => {
+                        format!("{NOT_FINITE}, after {sweeps}, {went}")
+                    }
                     (false, "cancelled") => format!("interrupted after {sweeps}, {went}"),
                     (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
@@ -404,6 +430,8 @@ impl Report {
                 };
                 format!("held back by the shape guard at {vertices} after {sweeps}")
             }
+            ("time-limit", None) => format!("ended by --time-limit after {sweeps}{}", self.left()),
+            ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),
             ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => {
                 format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
@@ -413,6 +441,9 @@ impl Report {
             text.push_str("; nothing was gained, so the mesh is written as it was");
         } else if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
+        }
+        if let Some(FaultReport { sweep, error }) = &self.engine.fault {
+            let _ = write!(text, "; on the CPU from sweep {sweep} on, as the GPU failed: {error}");
         }
         if self.opening_sweeps > 0 {
             let n = self.opening_sweeps;

@@ -1,6 +1,7 @@
 //! The options of `gpu-smooth IN OUT`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{
@@ -65,6 +66,27 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
+    /// Stop after so many seconds, counted from when the mesh begins to be read, and write the best mesh so far. The time that untangling
+    /// takes counts, but does not end it
+    #[arg(long, value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) time_limit: Option<Duration>,
+    /// Save the state of the run to FILE every five minutes, and where the run is left by Ctrl-C or --time-limit. Removed once a run has
+    /// come to its end. OUT may then not be IN
+    #[arg(long, value_name = "FILE", help_heading = "Stopping", conflicts_with = "out_dir")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// How often the state is saved
+    #[arg(long, default_value = "300", value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) checkpoint_every: Duration,
+    /// Go on with the run that FILE is a checkpoint of, given the same IN and options, to the same mesh as if it had never been left: bit
+    /// for bit, on the CPU or on the GPU that it was left on. The state is saved to FILE again, unless --checkpoint names another
+    #[arg(
+        long = "continue",
+        value_name = "FILE",
+        help_heading = "Stopping",
+        conflicts_with = "out_dir"
+    )]
+    pub(crate) continued: Option<PathBuf>,
+
     /// Sweeps corrected from coarser levels of the mesh (all but edge, area), over-relaxed sweeps, or the
     /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
     #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
@@ -100,7 +122,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
-    /// Write a report with the history of every sweep, as JSON; if inverted or flat triangles keep the mesh from
+    /// Write a report with the history of every sweep, as JSON, and a certificate: the mesh is read again after it was written, and proved to
+    /// be what `gpu-smooth compare` proves, with hashes of both; if inverted or flat triangles keep the mesh from
     /// being smoothed, a list of them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
@@ -256,4 +279,12 @@ fn desired(text: &str) -> Result<Desired, String> {
         "auto" => Ok(Desired::Auto),
         _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
     }
+}
+
+/// Parses a number of seconds above 0.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let range = "a number of seconds above 0";
+    let seconds = number(text, |s| s > 0.0, range)?;
+    Duration::try_from_secs_f64(seconds)
+        .map_err(|_| format!("it must be {range}, and not so large"))
 }

@@ -1,21 +1,28 @@
 //! A mesh from file to file, for a run by itself and for one of many.
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Change, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision, Progress,
-    Quality, SmoothError, Smoother, Stop,
+    Backend, Change, Checkpoint, MeshError, MeshFile, MeshSize, Options, Outcome, Phase, Precision,
+    Progress, Quality, SmoothError, Smoother, Stop,
 };
 
 use crate::cli::OutputArgs;
 use crate::engine::{self, Taken};
 use crate::explain::{self, BadTriangleReport};
+use crate::follow::Follow;
 use crate::interrupt;
+use crate::keep::{self, Kept};
 use crate::moving::Choice;
 use crate::progress::Stage;
-use crate::report::{self, EngineReport, GoalReport, MeshReport, Report, Seconds, UntangleReport};
+use crate::proof::{self, Certificate, FileHash, Proof};
+use crate::report::{
+    self, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds, UntangleReport,
+};
+use crate::riding::Riding;
 use crate::run_args::{History, SmoothArgs};
 use crate::streams;
 use crate::tell;
@@ -27,20 +34,8 @@ pub(crate) struct Task<'a> {
     pub(crate) show: &'a OutputArgs,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
-}
-
-/// Who follows a mesh through its run.
-pub(crate) trait Follow {
-    /// A stage of the run begins.
-    fn stage(&mut self, stage: Stage);
-    /// The mesh has been read. An error ends the run before any work is done.
-    fn has_read(&mut self, file: &MeshFile) -> Result<(), String>;
-    /// Something about the mesh is worth telling.
-    fn remark(&mut self, text: &str);
-    /// Some sweeps were done.
-    fn sweep(&mut self, progress: &Progress);
-    /// The sweeps are over. An error leaves the mesh as it was.
-    fn has_smoothed(&mut self) -> Result<(), String>;
+    /// The checkpoint that the run goes on from.
+    pub(crate) resumed: Option<&'a Checkpoint>,
 }
 
 /// A mesh that was smoothed and written.
@@ -77,7 +72,7 @@ pub(crate) fn carry_out<T>(
     follow: &mut dyn Follow,
     finish: impl FnOnce(Done<'_>) -> Result<T, String>,
 ) -> Result<T, Failure> {
-    let Task { args, show, input, out } = *task;
+    let Task { args, show, input, out, .. } = *task;
     let start = Instant::now();
     let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
     follow.stage(Stage::Reading { bytes });
@@ -134,7 +129,9 @@ pub(crate) fn carry_out<T>(
 
     let options = options(args, &choice, file.precision());
     follow.stage(Stage::Smoothing);
-    let Ran { outcome, taken, times } = smooth(args, &options, &smoother, &file, taken, follow)?;
+    let prepared_run = (&smoother, &file, taken);
+    let ran = smooth(task, &options, prepared_run, start, follow)?;
+    let Ran { outcome, taken, times, out_of_time } = ran;
     follow.has_smoothed()?;
     let after = quality(&outcome.points)?;
     let change =
@@ -153,7 +150,13 @@ pub(crate) fn carry_out<T>(
     let smoothed = Instant::now();
 
     follow.stage(Stage::Writing { bytes });
+    let input = if args.report.is_some() { proof::hashes(&file) } else { Vec::new() };
     streams::write(&file, out, &outcome.points, riding.fields())?;
+    let certificate = match args.report.is_some() && !streams::is_standard(out) {
+        true => Some(certificate(args, &file, &riding, input, (out, &smoother))?),
+        false => None,
+    };
+    keep::clear(args, outcome.stop);
     let written = Instant::now();
 
     let seconds = Seconds {
@@ -164,7 +167,7 @@ pub(crate) fn carry_out<T>(
         total: (written - start).as_secs_f64(),
     };
     let report = Report {
-        engine: engine_report(&taken),
+        engine: engine_report(&taken, &outcome),
         mesh: mesh_report(&file, &smoother),
         target: args.target.report([f_before, f_after]),
         untangled: mending.map(|mended| UntangleReport {
@@ -179,7 +182,12 @@ pub(crate) fn carry_out<T>(
         levels_left_out: outcome.levels_left_out,
         best_sweep: outcome.best_sweep,
         remaining: outcome.remaining,
-        stop: choice.nothing_to_do.as_ref().map_or(outcome.stop.name(), |_| "nothing-to-do"),
+        stop: match choice.nothing_to_do {
+            Some(_) => "nothing-to-do",
+            None if out_of_time => "time-limit",
+            None => outcome.stop.name(),
+        },
+        continued_from: task.resumed.map(Checkpoint::sweeps),
         nothing_to_do: choice.nothing_to_do,
         choices: choice.notes,
         interpolated,
@@ -190,11 +198,41 @@ pub(crate) fn carry_out<T>(
         change: change.into(),
         before: (&before).into(),
         after: (&after).into(),
+        certificate,
         history: report::history(&outcome, &args.scheme(), args.history == History::All),
         seconds,
     };
     let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };
     Ok(finish(done)?)
+}
+
+/// Reads the mesh again that was written, and proves from the files alone that it is what it should be.
+fn certificate(
+    args: &SmoothArgs,
+    file: &MeshFile,
+    riding: &Riding,
+    input: Vec<FileHash>,
+    (out, smoother): (&Path, &Smoother<'_>),
+) -> Result<Certificate, String> {
+    let after = streams::read(out)?;
+    let mut theirs = args.riding.choose(&after)?;
+    theirs.add_parameters(&after, &after.mesh().points)?;
+    let proof = Proof::of([file, &after], [riding, &theirs]).map_err(told)?;
+    if let Some(problem) = proof.problem() {
+        return Err(format!("{}: it was written, and then read again: {problem}", out.display()));
+    }
+    let surface = args.target.surface();
+    let quality = Quality::on(surface, &after.mesh().points, smoother.topology()).map_err(told)?;
+    let f = quality.f(args.scheme().base());
+    Ok(Certificate {
+        connectivity_identical: proof.difference.is_none(),
+        moved: proof.moved.len(),
+        fixed_moved: proof.held.len(),
+        inverted: proof.bad.len(),
+        f,
+        input,
+        output: proof::hashes(&after),
+    })
 }
 
 /// A mesh that can be smoothed, or that was made so.
@@ -217,46 +255,69 @@ struct Ran {
     outcome: Outcome,
     taken: Taken,
     times: Vec<(u32, f64)>,
+    /// Whether the time limit ended it.
+    out_of_time: bool,
 }
 
-/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice.
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice, or if the GPU fails. The time limit
+/// counts from `began`.
 fn smooth(
-    args: &SmoothArgs,
+    task: &Task<'_>,
     options: &Options,
-    smoother: &Smoother<'_>,
-    file: &MeshFile,
-    mut taken: Taken,
+    (smoother, file, mut taken): (&Smoother<'_>, &MeshFile, Taken),
+    began: Instant,
     follow: &mut dyn Follow,
 ) -> Result<Ran, String> {
+    let Task { args, resumed, .. } = *task;
     let start = Instant::now();
     let mut times = Vec::new();
+    let mut out_of_time = false;
+    let follow = RefCell::new(follow);
+    let mut kept = Kept::new(args, &follow);
     let mut observe = |progress: &Progress| {
         if progress.phase == Phase::Smoothing {
             times.push((progress.sweep, start.elapsed().as_secs_f64()));
         }
-        follow.sweep(progress);
-        match interrupt::is_requested() {
+        follow.borrow_mut().sweep(progress);
+        out_of_time = args.time_limit.is_some_and(|limit| began.elapsed() >= limit);
+        match interrupt::is_requested() || out_of_time {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     };
     let turn = taken.turn();
-    let mut outcome = smoother.run(options, &taken.backend, &mut observe);
+    let run = |backend: &Backend,
+               kept: &mut Kept<'_, '_>,
+               observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>| {
+        smoother.run_kept(options, backend, resumed, kept, observe)
+    };
+    let mut outcome = run(&taken.backend, &mut kept, &mut observe);
     drop(turn);
     if let Err(error) = &outcome
         && engine::is_open(args)
         && engine::is_too_large(error)
     {
         taken = Taken::new(Backend::Cpu, Some(error.to_string()));
-        outcome = smoother.run(options, &taken.backend, &mut observe);
+        outcome = run(&taken.backend, &mut kept, &mut observe);
     }
     if let Ok(outcome) = &outcome {
         times.retain(|time| time.0 < outcome.sweeps);
         times.push((outcome.sweeps, start.elapsed().as_secs_f64()));
+        if outcome.stop == Stop::Cancelled {
+            kept.left();
+        }
     }
-    let ran = outcome.map(|outcome| Ran { outcome, taken, times });
+    let ran = outcome.map(|outcome| {
+        let out_of_time =
+            out_of_time && outcome.stop == Stop::Cancelled && !interrupt::is_requested();
+        Ran { outcome, taken, times, out_of_time }
+    });
     ran.map_err(|error: SmoothError| match &error {
         SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        SmoothError::Checkpoint(_) => {
+            let path = args.continued.as_deref().unwrap_or(Path::new(""));
+            format!("{}: {error}", path.display())
+        }
         error if engine::is_too_large(error) => {
             format!("{error}. Smooth on the CPU: --engine cpu")
         }
@@ -279,7 +340,7 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
     Failure { message, triangles }
 }
 
-fn engine_report(taken: &Taken) -> EngineReport {
+fn engine_report(taken: &Taken, outcome: &Outcome) -> EngineReport {
     let adapter = match &*taken.backend {
         Backend::Cpu => None,
         Backend::Gpu(gpu) => Some(gpu.adapter()),
@@ -289,6 +350,10 @@ fn engine_report(taken: &Taken) -> EngineReport {
         adapter: adapter.map(|adapter| adapter.name.clone()),
         driver: adapter.map(|adapter| adapter.driver.clone()),
         reason: taken.reason.clone(),
+        fault: outcome
+            .device_fault
+            .as_ref()
+            .map(|fault| FaultReport { sweep: fault.sweep, error: fault.error.to_string() }),
     }
 }
 

@@ -50,7 +50,7 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
         mapped_at_creation: !is_large,
     });
     if is_large {
-        write_by_pieces(gpu, &buffer, bytes);
+        write_by_pieces(gpu, &buffer, 0, bytes);
         return buffer;
     }
     // A device that is lost or out of memory maps nothing. The error scope or a later call reports that, where wgpu's own
@@ -62,11 +62,11 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     buffer
 }
 
-/// Fills a large buffer piece by piece. Until the device has a piece, it takes its size in memory again: so only a few
+/// Writes to a large buffer piece by piece, from the byte `first` on. Until the device has a piece, it takes its size in memory again: so only a few
 /// are under way at once.
-fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: &[u8]) {
+pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, bytes: &[u8]) {
     let mut under_way = VecDeque::new();
-    for (at, piece) in (0..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
+    for (at, piece) in (first..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
         if under_way.len() == UNDER_WAY {
             let submission_index = under_way.pop_front();
             // If the device is lost, reading back the results reports it.

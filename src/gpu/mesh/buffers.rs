@@ -5,7 +5,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::{bytes, filled, rows};
+use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::uniforms::split;
@@ -31,7 +31,12 @@ impl MeshBuffers {
         let parts = Parts::new(problem, &gpu.device.limits())?;
         let positions = laid_out(positions, problem.targets(), parts.low_positions);
         scoped(&gpu.device, || Self {
-            positions: filled(gpu, "positions", &positions, Usage::STORAGE | Usage::COPY_SRC),
+            positions: filled(
+                gpu,
+                "positions",
+                &positions,
+                Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
+            ),
             ring_start: filled(
                 gpu,
                 "ring starts",
@@ -74,6 +79,24 @@ impl MeshBuffers {
             readback::read(gpu, &self.positions, low + count, waiting).await?;
         let joined = parts.iter().zip(&parts[low..]).map(|(&[x, y], &[a, b])| [x, y, a, b]);
         Ok(joined.collect())
+    }
+
+    /// Writes the first positions, as [`read_positions`](Self::read_positions) gave them.
+    pub(crate) fn write_positions(
+        &self,
+        gpu: &Gpu,
+        positions: &[[f32; 4]],
+    ) -> Result<(), GpuError> {
+        scoped(&gpu.device, || match self.parts.low_positions {
+            None => write_by_pieces(gpu, &self.positions, 0, bytemuck::cast_slice(positions)),
+            Some(low) => {
+                let half = |of: fn(&[f32; 4]) -> [f32; 2]| positions.iter().map(of).collect();
+                let (highs, lows): (Vec<_>, Vec<_>) =
+                    (half(|p| [p[0], p[1]]), half(|p| [p[2], p[3]]));
+                write_by_pieces(gpu, &self.positions, 0, bytemuck::cast_slice(&highs));
+                write_by_pieces(gpu, &self.positions, low, bytemuck::cast_slice(&lows));
+            }
+        })
     }
 
     /// The one-rings of a part.

@@ -156,8 +156,8 @@ impl Dispatches {
                 size_of::<Control>() as u64,
                 Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
             );
-            let best =
-                zeroed(gpu, "best positions", kept * POSITION, Usage::STORAGE | Usage::COPY_SRC);
+            let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+            let best = zeroed(gpu, "best positions", kept * POSITION, usage);
             let bind_groups = (0..mesh.parts.count()).map(|part| {
                 let (positions, beyond) = mesh.bind_positions();
                 let kept = match keep_best {

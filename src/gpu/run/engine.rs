@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::write_by_pieces;
 use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
@@ -18,10 +19,18 @@ use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::multilevel::Hierarchy;
-use crate::run::{Engine, History, Objectives, Plan, Proposal, Step, Stop};
+use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
 
+/// A sum of q² - ideal² that is so large has a triangle in it that is not finite.
+const LEAST_NOT_FINITE: f64 = 1e38;
 /// Number of totals that the objective along a correction leaves.
 const TOTALS: usize = 4;
+
+/// The names of what a state of this engine holds: the free vertices' positions as pairs of floats, those of the best state, and the
+/// control block.
+const POSITIONS: &str = "positions";
+const BEST: &str = "best positions";
+const CONTROL: &str = "control";
 
 /// A mesh that is swept on a device.
 pub(crate) struct GpuEngine<'a> {
@@ -131,7 +140,10 @@ impl<'a> GpuEngine<'a> {
     fn objectives_of(&self, sums: &[[f32; 2]; SLOTS]) -> Objectives {
         let mut values = Objectives::untracked();
         for metric in self.dispatches.plan.tracked() {
-            let excess = unpair(sums[metric as usize]) / self.problem.triangles().len() as f64;
+            let sum = unpair(sums[metric as usize]);
+            // `NOT_FINITE` in objective.wgsl, of one triangle or more. Sums that are left to a device are far smaller.
+            let sum = if sum < LEAST_NOT_FINITE { sum } else { f64::NAN };
+            let excess = sum / self.problem.triangles().len() as f64;
             values.set(metric, metric.ideal_squared() + excess);
         }
         values
@@ -265,5 +277,79 @@ impl Engine for GpuEngine<'_> {
         let Some(levels) = &self.levels else { return Ok(()) };
         levels.set_length(self.gpu, length as f32);
         self.submit(|passes| levels.encode_movement(passes))
+    }
+
+    async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {
+        let (gpu, waiting, free) = (self.gpu, self.waiting, self.problem.free_count());
+        let positions = self.mesh.read_positions(gpu, free, waiting).await?;
+        let mut state =
+            EngineState { engine: gpu.adapter().name.clone(), ..EngineState::default() };
+        if !self.dispatches.plan.is_monotone() {
+            let best = readback::read(gpu, &self.dispatches.best, free, waiting).await?;
+            if whole {
+                state.add(BEST, &best);
+            }
+            state.best = Some(self.moved(best));
+        }
+        if whole {
+            state.add(POSITIONS, &positions);
+            let control: Vec<Control> =
+                readback::read(gpu, &self.dispatches.control, 1, waiting).await?;
+            state.add(CONTROL, &control);
+            state.roots = self.hierarchy.as_ref().map(Hierarchy::recipe).unwrap_or_default();
+            if let Some(secants) = &self.secants {
+                secants.save(gpu, &mut state, waiting).await?;
+            }
+        }
+        state.positions = self.moved(positions);
+        Ok(state)
+    }
+
+    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+        let (gpu, free) = (self.gpu, self.problem.free_count());
+        let Some(positions) = state.own::<[f32; 4]>(POSITIONS, free) else { return Ok(false) };
+        let Some([control]) = state
+            .own::<Control>(CONTROL, 1)
+            .as_deref()
+            .map(<[_; 1]>::try_from)
+            .and_then(Result::ok)
+        else {
+            return Ok(false);
+        };
+        if control.done != 0 || !positions.as_flattened().iter().all(|x| x.is_finite()) {
+            return Ok(false);
+        }
+        self.mesh.write_positions(gpu, &positions)?;
+        self.evaluated = control.evaluated;
+        let best = match self.dispatches.plan.is_monotone() {
+            true => None,
+            false => match state.own::<[f32; 4]>(BEST, free) {
+                None => return Ok(false),
+                best => best,
+            },
+        };
+        scoped(&gpu.device, || {
+            gpu.queue.write_buffer(&self.dispatches.control, 0, bytemuck::bytes_of(&control));
+            if let Some(best) = &best {
+                write_by_pieces(gpu, &self.dispatches.best, 0, bytemuck::cast_slice(best));
+            }
+        })?;
+        if state.roots.is_empty() {
+            return Ok(true);
+        }
+        let Some(hierarchy) = Hierarchy::of_recipe(self.problem, &state.roots) else {
+            return Ok(false);
+        };
+        self.set_hierarchy(hierarchy)?;
+        if let (Some(levels), true) = (&self.levels, Secants::are_in(state)) {
+            let params = &self.dispatches.params;
+            let secants = Secants::new(gpu, &self.mesh, params, levels, free as u32)?;
+            let Some(mut secants) = secants else { return Ok(false) };
+            if !secants.restore(gpu, state)? {
+                return Ok(false);
+            }
+            self.secants = Some(secants);
+        }
+        Ok(true)
     }
 }

@@ -4,7 +4,8 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::device::buffers::{filled, uniform, write_by_pieces, zeroed};
+use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::objective_invocations;
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
@@ -14,14 +15,21 @@ use crate::gpu::kernels::uniforms::{SecantOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::levels::Levels;
 use crate::gpu::scope::scoped;
+use crate::run::EngineState;
 
 /// Scalars in front of the partial sums in the buffer of sums, as in shaders/secants/common.wgsl.
 const SCALARS: u32 = 4;
+
+/// Names of what a state of the engine holds of the pairs.
+const STEPS: &str = "steps";
+const OP: &str = "secants";
 
 /// Two secant pairs bound to a mesh and its levels: encodes, submits nothing.
 pub(crate) struct Secants {
     bind_group: wgpu::BindGroup,
     ops: wgpu::Buffer,
+    /// Steps, changes, low starts and sums.
+    buffers: [wgpu::Buffer; 4],
     /// Bytes from the first uniform to the second.
     stride: u32,
     close: Pipeline,
@@ -58,7 +66,7 @@ impl Secants {
         let op = SecantOp { free, newer: free, partials, ..SecantOp::default() };
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<SecantOp>() as u32).next_multiple_of(alignment);
-        let (bind_group, ops) = scoped(&gpu.device, || {
+        let (bind_group, ops, buffers) = scoped(&gpu.device, || {
             let zeros = vec![0_u8; 2 * stride as usize];
             let ops = filled(gpu, "secant steps", &zeros, Usage::UNIFORM | Usage::COPY_DST);
             let sums = u64::from(SCALARS + 4 * partials) * size_of::<[f32; 2]>() as u64;
@@ -68,7 +76,9 @@ impl Secants {
                 ("secant starts", vector),
                 ("secant sums", sums),
             ]
-            .map(|(label, size)| zeroed(gpu, label, size, Usage::STORAGE));
+            .map(|(label, size)| {
+                zeroed(gpu, label, size, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)
+            });
             let (positions, beyond) = mesh.bind_positions();
             let mut resources =
                 vec![params.as_entire_binding(), uniform::<SecantOp>(&ops), positions];
@@ -77,9 +87,59 @@ impl Secants {
             resources.push(sums.as_entire_binding());
             resources.extend(beyond);
             let form = mesh.parts.form();
-            (gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources), ops)
+            let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources);
+            (bind_group, ops, [steps, changes, low_starts, sums])
         })?;
-        Ok(Some(Self { bind_group, ops, stride, close, sum, bend, multiply, open, op }))
+        Ok(Some(Self { bind_group, ops, buffers, stride, close, sum, bend, multiply, open, op }))
+    }
+
+    /// The names of the buffers in a state of the engine, and how many pairs of floats each has there.
+    fn parts(&self) -> [(&'static str, usize); 4] {
+        let free = self.op.free as usize;
+        // Of the sums only the scalars outlive a correction.
+        [(STEPS, 2 * free), ("changes", 2 * free), ("starts", free), ("sums", SCALARS as usize)]
+    }
+
+    /// Adds the pairs to a state of the engine.
+    pub(crate) async fn save(
+        &self,
+        gpu: &Gpu,
+        state: &mut EngineState,
+        waiting: Waiting,
+    ) -> Result<(), GpuError> {
+        state.add(OP, &[self.op]);
+        for ((name, count), buffer) in self.parts().into_iter().zip(&self.buffers) {
+            state.add::<[f32; 2]>(name, &readback::read(gpu, buffer, count, waiting).await?);
+        }
+        Ok(())
+    }
+
+    /// Whether a state of the engine holds pairs.
+    pub(crate) fn are_in(state: &EngineState) -> bool {
+        state.own.iter().any(|(name, _)| name == STEPS)
+    }
+
+    /// Takes the pairs from a state of the engine. Returns whether it holds them, for as many vertices.
+    pub(crate) fn restore(&mut self, gpu: &Gpu, state: &EngineState) -> Result<bool, GpuError> {
+        let Some([op]) = state.own::<SecantOp>(OP, 1).and_then(|ops| <[_; 1]>::try_from(ops).ok())
+        else {
+            return Ok(false);
+        };
+        let slots = [(op.newer, op.older), (op.older, op.newer)];
+        let is_known = op.free == self.op.free
+            && op.partials == self.op.partials
+            && op.pairs <= 2
+            && slots.contains(&(0, self.op.free));
+        if !is_known {
+            return Ok(false);
+        }
+        for ((name, count), buffer) in self.parts().into_iter().zip(&self.buffers) {
+            let Some(values) = state.own::<[f32; 2]>(name, count) else { return Ok(false) };
+            let write = || write_by_pieces(gpu, buffer, 0, bytemuck::cast_slice(&values));
+            scoped(&gpu.device, write)?;
+        }
+        self.op = op;
+        Ok(true)
     }
 
     /// Encodes a correction by the levels and the pairs. Closes the open pair, and opens the next one.

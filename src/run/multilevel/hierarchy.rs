@@ -32,6 +32,8 @@ pub(crate) struct Hierarchy {
     member_start: Vec<u32>,
     member: Vec<u32>,
     root: Vec<f32>,
+    /// The roots that the levels were built from, if they were fitted to others since.
+    built_from: Option<Vec<f32>>,
     inverse_diagonal: Vec<f32>,
     levels: Vec<Level>,
 }
@@ -80,6 +82,7 @@ impl Hierarchy {
             member_start,
             member,
             root,
+            built_from: None,
             inverse_diagonal: Vec::new(),
             levels: Vec::new(),
         };
@@ -101,7 +104,8 @@ impl Hierarchy {
         let mut factors = collect(start.len() - 1, |aggregate| {
             mean(&self.member[start[aggregate] as usize..start[aggregate + 1] as usize])
         });
-        self.root = root;
+        let before = std::mem::replace(&mut self.root, root);
+        self.built_from.get_or_insert(before);
         self.inverse_diagonal = self.diagonal_inverted(problem);
         for Level { operator, inverse_diagonal, coarser } in &mut self.levels {
             operator.scale_couplings(&factors);
@@ -113,6 +117,22 @@ impl Hierarchy {
             }
         }
         self
+    }
+
+    /// All that it takes to make the same levels again: the roots that they were built from, and those that they were
+    /// fitted to, if they were.
+    pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
+        self.built_from.iter().chain([&self.root]).cloned().collect()
+    }
+
+    /// The levels of a [`recipe`](Self::recipe); `None` if it is empty or of another mesh.
+    pub(crate) fn of_recipe(problem: &Problem, recipe: &[Vec<f32>]) -> Option<Self> {
+        let (built_from, fitted_to) = recipe.split_first()?;
+        if recipe.iter().any(|roots| roots.len() != problem.free_count()) {
+            return None;
+        }
+        let built = Self::new(problem, built_from.clone());
+        Some(fitted_to.iter().fold(built, |levels, roots| levels.fitted_to(problem, roots.clone())))
     }
 
     /// The reciprocal of each free vertex's diagonal entry, from the weights.

@@ -13,11 +13,12 @@ use gpu_smooth::{MeshFile, Progress, output};
 use crate::cli::{LogForm, OutputArgs};
 use crate::columns;
 use crate::engine::Engines;
+use crate::follow::Follow;
 use crate::interrupt;
 use crate::progress::{Stage, Tally};
 use crate::run_args::SmoothArgs;
 use crate::smooth::check_report;
-use crate::task::{Follow, Task, carry_out};
+use crate::task::{Task, carry_out};
 use crate::tell;
 use entry::{Entry, Told};
 use listing::Listed;
@@ -111,7 +112,7 @@ impl Watch for Watched<'_> {
 
 /// One of the meshes.
 fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
-    let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out };
+    let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
     let mut follow = Followed { mesh, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
     match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use gpu_smooth::{MeshFile, output};
 
 use crate::html;
+use crate::keep;
 use crate::picture;
 use crate::run_args::SmoothArgs;
 use crate::streams::is_standard;
@@ -30,7 +31,17 @@ pub(crate) fn check(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<()
     picture::check(&args.picture, of_meshes().chain(report))?;
     let others = of_meshes().chain(report).chain(args.picture.picture.as_deref());
     html::check(args.html.as_deref(), others)?;
-    check_report(args, of_meshes())
+    check_report(args, of_meshes())?;
+    let named = [report, args.picture.picture.as_deref(), args.html.as_deref()];
+    keep::check(args, of_meshes().chain(named.into_iter().flatten()))?;
+    let is_own = |path: &PathBuf| file.paths().any(|own| output::same_file(own, path));
+    match (keep::file(args), written.iter().find(|path| is_own(path))) {
+        (Some(_), Some(path)) => Err(format!(
+            "{}: a run can only be continued while IN is as it was. With a checkpoint, OUT must be another file",
+            path.display()
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a report that cannot be written, or is named as a mesh or as one of these files.

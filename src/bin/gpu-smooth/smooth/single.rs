@@ -8,15 +8,17 @@ use serde_json::json;
 
 use crate::cli::OutputArgs;
 use crate::engine;
+use crate::follow::Follow;
 use crate::html;
 use crate::interrupt;
+use crate::keep;
 use crate::picture::{self, Shot};
 use crate::progress::{Display, Stage};
 use crate::report::{Refusal, Report};
 use crate::run_args::SmoothArgs;
 use crate::smooth::destinations;
 use crate::streams;
-use crate::task::{Done, Failure, Follow, Task, carry_out};
+use crate::task::{Done, Failure, Task, carry_out};
 use crate::tell;
 
 pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
@@ -24,7 +26,9 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         return Err("IN and OUT are needed".into());
     };
     interrupt::watch(show.quiet);
-    let task = Task { args, show, input, out };
+    let resumed = keep::resumed(args)?;
+    let resumed = resumed.as_ref();
+    let task = Task { args, show, input, out, resumed };
     let display = Display::new(show, args.estimated_end(), args.max_sweeps);
     let mut follow = Shown { args, show, out, display: &display };
     // The driver starts while the mesh is read, or while it is prepared if its size decides on the engine.
@@ -34,7 +38,10 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
             Some(opening) => {
                 opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())?
             }
-            None => Ok(engine::choose(args, size)),
+            None => Ok(match resumed {
+                Some(checkpoint) => engine::of_checkpoint(checkpoint),
+                None => engine::choose(args, size),
+            }),
         };
         carry_out(&task, engine, &mut follow, |done| {
             display.clear();

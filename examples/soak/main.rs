@@ -1,0 +1,95 @@
+//! Whether memory, file descriptors and threads stay as they are in a process that lives long: `soak RUNS FRAMES` does so many
+//! runs on the GPU engine, on one device and each fourth on a device of its own, and then so many frames of an application that
+//! encodes sweeps itself. Tells how much of each is in use ten times on the way, and fails if it grows.
+#![allow(clippy::print_stdout)]
+
+#[path = "../../tests/support/mod.rs"]
+mod support;
+
+use std::error::Error;
+use std::fs;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use gpu_smooth::{Backend, DeviceMesh, Gpu, Options, Smoother, Sweeps, VertexBuffer, wgpu};
+
+/// What the process has in use: resident memory in kB, file descriptors, threads. Zeros where the system does not tell.
+fn in_use() -> [u64; 3] {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let of = |name: &str| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name));
+        line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+    };
+    let files = fs::read_dir("/proc/self/fd").map_or(0, |entries| entries.count() as u64);
+    [of("VmRSS:"), files, of("Threads:")]
+}
+
+/// Does something `count` times. An error if more is in use at the end than after the first tenth.
+fn soak(
+    what: &str,
+    count: usize,
+    mut once: impl FnMut(usize) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    let start = Instant::now();
+    let mut first = None;
+    for done in 0..count {
+        once(done)?;
+        if (done + 1) % count.div_ceil(10) == 0 || done + 1 == count {
+            let [memory, files, threads] = in_use();
+            let (done, seconds) = (done + 1, start.elapsed().as_secs_f64());
+            println!(
+                "{done:>8} {what}: {memory} kB, {files} files, {threads} threads, {seconds:.0} s"
+            );
+            first.get_or_insert([memory, files, threads]);
+        }
+    }
+    let (Some([memory, files, threads]), now) = (first, in_use()) else { return Ok(()) };
+    // Memory is given back in steps, and a tenth and two megabytes are one.
+    if now[0] > memory + memory / 10 + 2048 || now[1] > files || now[2] > threads {
+        return Err(format!("{what}: more is in use than after the first tenth").into());
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut numbers = std::env::args().skip(1).map(|text| text.parse::<usize>());
+    let runs = numbers.next().transpose()?.unwrap_or(1000);
+    let frames = numbers.next().transpose()?.unwrap_or(10_000);
+    let mesh = support::perturb_random(&support::lattice(12, 12), 0.8, 1);
+    let smoother = Smoother::new(&mesh)?;
+    let backend = Backend::Gpu(Gpu::open(None)?);
+    let run = |backend: &Backend| {
+        smoother.run(&Options::default(), backend, &mut |_| ControlFlow::Continue(()))
+    };
+    let expected = run(&backend)?.points;
+    soak("runs", runs, |done| {
+        let points = match done % 4 {
+            0 => run(&Backend::Gpu(Gpu::open(None)?))?.points,
+            _ => run(&backend)?.points,
+        };
+        if points == expected { Ok(()) } else { Err("other points than the first time".into()) }
+    })?;
+    let Backend::Gpu(gpu) = &backend else { return Ok(()) };
+    let device_mesh = DeviceMesh::new(gpu, &mesh)?;
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default())?;
+    let vertices = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("vertices"),
+        size: 8 * mesh.points.len() as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
+        mapped_at_creation: false,
+    });
+    let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
+    soak("frames", frames, |done| {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        sweeps.encode(&mut encoder, 1);
+        bound.encode_export(&mut encoder);
+        gpu.queue().submit([encoder.finish()]);
+        // As an application that waits for its frames.
+        if done % 3 == 2 {
+            gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
+        }
+        Ok(())
+    })?;
+    println!("f is the same after each run; nothing grew");
+    Ok(())
+}

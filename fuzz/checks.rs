@@ -1,0 +1,236 @@
+//! What has to hold whatever a file or a mesh is. The fuzzer's targets and `tests/fuzz.rs` share these checks: each panics
+//! where something does not hold.
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use gpu_smooth::{
+    Backend, Conversion, Derivatives, Mesh, MeshError, MeshFile, Method, Metric, Options,
+    Precision, Scheme, Sharpness, SmoothError, Smoother, untangle, validity,
+};
+
+/// Reads any bytes as a mesh file of any format but Triangle's, and does with it all that needs no second file.
+pub(crate) fn any_file(bytes: &[u8]) {
+    match MeshFile::from_bytes(Path::new("fuzzed"), bytes.to_vec()) {
+        Ok(file) => {
+            use_file(&file);
+            let mut written = Vec::new();
+            file.write_to(Path::new("again"), &mut written, &file.mesh().points).unwrap();
+            assert!(written == bytes, "a file that has not changed is written otherwise");
+        }
+        Err(error) => assert_told(&error.to_string()),
+    }
+}
+
+/// Reads any bytes as the two or three files of a Triangle mesh, which a byte that no text holds parts.
+pub(crate) fn any_triangle_files(folder: &Path, bytes: &[u8]) {
+    let mut parts = bytes.splitn(3, |byte| *byte == 0xFF);
+    for ending in ["node", "ele", "poly"] {
+        let path = folder.join("fuzzed").with_extension(ending);
+        match parts.next() {
+            Some(part) => fs::write(path, part).unwrap(),
+            None => drop(fs::remove_file(path)),
+        }
+    }
+    match MeshFile::read(&folder.join("fuzzed.node")) {
+        Ok(file) => use_file(&file),
+        Err(error) => assert_told(&error.to_string()),
+    }
+}
+
+/// A message of a line, not longer than one can read.
+fn assert_told(message: &str) {
+    assert!(message.contains("fuzzed") && message.len() < 600, "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+}
+
+fn use_file(file: &MeshFile) {
+    let mesh = file.mesh();
+    let vertices = mesh.points.len();
+    let mut named = mesh.triangles.iter().flatten().chain(&mesh.fixed);
+    assert!(named.all(|&v| (v as usize) < vertices), "a vertex that does not exist");
+    assert_eq!(file.vertex_places(0..vertices as u32).len(), vertices);
+    assert_eq!(file.triangle_places(0..mesh.triangles.len()).len(), mesh.triangles.len());
+    if let Ok(groups) = file.groups() {
+        for group in groups.iter() {
+            assert!(group.vertices().iter().all(|&v| (v as usize) < vertices));
+            assert!(group.triangles().iter().all(|&t| (t as usize) < mesh.triangles.len()));
+        }
+    }
+    if let Ok(fields) = file.point_fields(None) {
+        assert!(fields.iter().all(|f| f.values().len() == vertices * f.components()));
+    }
+    let _ = file.plane_parameters(&mesh.points);
+    assert!(file.difference(file).is_none());
+    for (name, format) in Conversion::targets() {
+        let Ok(Some(conversion)) = Conversion::new(file, format) else { continue };
+        let Some(text) = conversion.text() else { continue };
+        match MeshFile::from_bytes(Path::new("fuzzed"), text.into_bytes()) {
+            Ok(again) => {
+                let triangles = again.mesh().triangles.len();
+                assert_eq!(triangles, mesh.triangles.len(), "written as {name}");
+            }
+            // Not every mesh that can be read is one in each format.
+            Err(error) => assert_told(&error.to_string()),
+        }
+    }
+    if mesh.triangles.len() < 2000 {
+        smooth(mesh, &Options { max_sweeps: 3, ..Options::default() }, &Backend::Cpu);
+    }
+}
+
+/// Bytes as numbers, zeros where they have ended.
+struct Bytes<'b>(std::slice::Iter<'b, u8>);
+
+impl Bytes<'_> {
+    fn byte(&mut self) -> u8 {
+        self.0.next().copied().unwrap_or_default()
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        usize::from(self.byte()) % n
+    }
+}
+
+/// A small mesh by any bytes, whole or with holes, sound or tangled, small or large or stretched, and what is to be done with it.
+pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
+    let mut bytes = Bytes(bytes.iter());
+    let options = options(&mut bytes);
+    let mesh = mesh(&mut bytes, options.stored);
+    smooth(&mesh, &options, backend)
+}
+
+/// What becomes of a mesh.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Became {
+    Refused,
+    Smoothed,
+    Untangled,
+    StillTangled,
+}
+
+fn options(bytes: &mut Bytes<'_>) -> Options {
+    let metric = |i: usize| Metric::ALL[i % Metric::ALL.len()].name();
+    let first = bytes.below(256);
+    let scheme: Scheme = match first % 3 {
+        0 => [metric(first), metric(first / 7)].join("+").parse().unwrap(),
+        _ => metric(first / 3).parse().unwrap(),
+    };
+    let flags = bytes.byte();
+    let mut options = Options {
+        scheme,
+        max_sweeps: bytes.below(25) as u32,
+        method: if flags & 1 == 0 { Method::Auto } else { Method::Sweeps },
+        stored: if flags & 14 == 2 { Precision::Single } else { Precision::Double },
+        inner: if flags & 48 == 16 { 3 } else { 1 },
+        ..Options::default()
+    };
+    if flags & 192 == 64 {
+        options.sharpness = Sharpness::CONTINUED;
+    }
+    if flags & 192 == 128 {
+        options.derivatives = Derivatives::FiniteDifference;
+    }
+    options
+}
+
+fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
+    let (columns, rows) = (1 + bytes.below(7), 1 + bytes.below(7));
+    let stretch = 2f64.powi(i32::from(bytes.byte() as i8) / 12);
+    let size = 2f64.powi(i32::from(bytes.byte() as i8) / 4);
+    let offset = [0.0, 0.0, 1.0, 1e3, 1e6, -1e9][bytes.below(6)] * size;
+    let disturbed = [0.0, 0.2, 0.5, 1.0, 4.0][bytes.below(5)];
+    let mut mesh = Mesh::default();
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let mut away = || f64::from(bytes.byte() as i8) / 128.0 * disturbed;
+            let (x, y) = (column as f64 + away(), row as f64 + away());
+            let point = [x * size * stretch + offset, y * size - offset];
+            mesh.points.push(point.map(|x| stored.rounded(x)));
+        }
+    }
+    for row in 0..rows {
+        for column in 0..columns {
+            let a = (row * (columns + 1) + column) as u32;
+            let (b, c) = (a + 1, a + columns as u32 + 1);
+            let what = bytes.byte();
+            let halves = match what & 1 {
+                0 => [[a, b, c], [b, c + 1, c]],
+                _ => [[a, b, c + 1], [a, c + 1, c]],
+            };
+            for (half, mut triangle) in halves.into_iter().enumerate() {
+                // A hole, or another winding.
+                if what >> (2 + half) & 7 == 7 {
+                    continue;
+                }
+                if what >> (5 + half) & 3 == 3 {
+                    triangle.swap(0, 1);
+                }
+                mesh.triangles.push(triangle);
+            }
+        }
+    }
+    // Now and then vertices that are held, named twice, or of no mesh of the plane.
+    for _ in 0..bytes.below(6) {
+        mesh.fixed.push(bytes.below(mesh.points.len()) as u32);
+    }
+    if bytes.byte() > 250 {
+        let corner = || bytes.below(mesh.points.len()) as u32;
+        let corners: Vec<u32> = std::iter::repeat_with(corner).take(3).collect();
+        mesh.triangles.push([corners[0], corners[1], corners[2]]);
+    }
+    mesh
+}
+
+fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
+    let smoother = match Smoother::new(mesh) {
+        Ok(smoother) => smoother,
+        Err(MeshError::Infeasible { .. }) => return untangled(mesh, options),
+        Err(_) => return Became::Refused,
+    };
+    let run = || smoother.run(options, backend, &mut |_| ControlFlow::Continue(()));
+    let outcome = match run() {
+        Ok(outcome) => outcome,
+        Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => return Became::Refused,
+        Err(error) => panic!("{error}"),
+    };
+    let again = run().unwrap();
+    let bits = |points: &[[f64; 2]]| points.iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
+    let (before, after) = (bits(&mesh.points), bits(&outcome.points));
+    assert!(after == bits(&again.points), "other bits the second time");
+    let topology = smoother.topology();
+    for (vertex, (old, new)) in before.iter().zip(&after).enumerate() {
+        assert!(topology.free()[vertex] || old == new, "vertex {vertex} is fixed and has moved");
+    }
+    let bad = validity::infeasible(&outcome.points, topology.triangles()).unwrap();
+    assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(options.scheme.base());
+    let (start, end) = (f(&mesh.points), f(&outcome.points));
+    assert!(end <= start * (1.0 + 1e-12), "f rose from {start} to {end}");
+    assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);
+    Became::Smoothed
+}
+
+/// A mesh with inverted triangles: what untangling makes of it is never worse, and what is called sound is.
+fn untangled(mesh: &Mesh, options: &Options) -> Became {
+    let mut go_on = |_: &gpu_smooth::Untangling| ControlFlow::Continue(());
+    let Ok(untangled) = untangle(mesh, options.stored, &mut go_on) else { return Became::Refused };
+    assert!(untangled.left.len() <= untangled.bad_before);
+    let mended = Mesh { points: untangled.points, ..mesh.clone() };
+    match Smoother::new(&mended) {
+        Ok(smoother) => {
+            assert!(untangled.left.is_empty());
+            for (vertex, free) in smoother.topology().free().iter().enumerate() {
+                let bits = |mesh: &Mesh| mesh.points[vertex].map(f64::to_bits);
+                assert!(*free || bits(mesh) == bits(&mended), "vertex {vertex} has moved");
+            }
+            Became::Untangled
+        }
+        Err(MeshError::Infeasible { .. }) => {
+            assert!(!untangled.left.is_empty());
+            Became::StillTangled
+        }
+        Err(_) => Became::Refused,
+    }
+}

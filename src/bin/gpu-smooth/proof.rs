@@ -1,0 +1,95 @@
+//! What two files of a mesh prove: that one is the other with vertices moved.
+
+use gpu_smooth::{BadTriangle, Difference, MeshError, MeshFile, Topology};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use crate::riding::Riding;
+
+/// What is found when two files of a mesh are compared. Nothing of it rests on what a run says it did.
+pub(crate) struct Proof {
+    /// The first difference that is not in coordinates, or in data that may change.
+    pub(crate) difference: Option<Difference>,
+    /// Vertices that have other bits, ascending.
+    pub(crate) moved: Vec<u32>,
+    /// Those of them that must not.
+    pub(crate) held: Vec<u32>,
+    /// Triangles that are inverted or flat in the second file, by exact predicates.
+    pub(crate) bad: Vec<BadTriangle>,
+}
+
+impl Proof {
+    /// Compares two files, of which the first says what may move. `riding` is the data of both that may change.
+    pub(crate) fn of(
+        [before, after]: [&MeshFile; 2],
+        [mine, theirs]: [&Riding; 2],
+    ) -> Result<Self, MeshError> {
+        let fields = [mine.fields(), theirs.fields()];
+        let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
+        let difference = before.difference_besides(after, fields);
+        if difference.is_none() {
+            let topology = Topology::new(before.mesh())?;
+            let (old, new) = (&before.mesh().points, &after.mesh().points);
+            let bits = |point: &[f64; 2]| point.map(f64::to_bits);
+            let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
+            moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
+            held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
+            bad = topology.bad_triangles(new)?;
+        }
+        Ok(Self { difference, moved, held, bad })
+    }
+
+    /// What is wrong, in a sentence; `None` if nothing is.
+    pub(crate) fn problem(&self) -> Option<String> {
+        if let Some(Difference { place, other_place, what }) = &self.difference {
+            return Some(format!(
+                "{place} and {other_place}: more than coordinates is different: {what}"
+            ));
+        }
+        let mut problems = Vec::new();
+        match self.held.len() {
+            0 => {}
+            1 => problems.push("1 vertex has moved that must not".to_owned()),
+            count => problems.push(format!("{count} vertices have moved that must not")),
+        }
+        match self.bad.len() {
+            0 => {}
+            1 => problems.push("1 triangle is inverted or flat".to_owned()),
+            count => problems.push(format!("{count} triangles are inverted or flat")),
+        }
+        (!problems.is_empty()).then(|| problems.join(", "))
+    }
+}
+
+/// A file, and the hash of its bytes as `sha256sum` prints it.
+#[derive(Serialize)]
+pub(crate) struct FileHash {
+    pub(crate) path: String,
+    pub(crate) sha256: String,
+}
+
+/// The hash of each file of a mesh, as it was read.
+pub(crate) fn hashes(file: &MeshFile) -> Vec<FileHash> {
+    let hash = |(path, bytes): (&std::path::Path, &[u8])| {
+        let hex = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        FileHash { path: path.display().to_string(), sha256: hex }
+    };
+    file.contents().map(hash).collect()
+}
+
+/// What the report states of the files alone, after the mesh that was written has been read again.
+#[derive(Serialize)]
+pub(crate) struct Certificate {
+    /// Whether nothing but coordinates, and data that were interpolated, is different.
+    pub(crate) connectivity_identical: bool,
+    /// Vertices with other bits.
+    pub(crate) moved: usize,
+    /// Vertices with other bits that must not move.
+    pub(crate) fixed_moved: usize,
+    /// Triangles that are inverted or flat, by exact predicates.
+    pub(crate) inverted: usize,
+    /// The objective by the first metric, of the mesh as it was read again.
+    pub(crate) f: f64,
+    pub(crate) input: Vec<FileHash>,
+    pub(crate) output: Vec<FileHash>,
+}

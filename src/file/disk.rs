@@ -1,0 +1,67 @@
+//! What the writing of files asks of the system, so that tests can let each request fail.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A disk, or what plays one.
+pub(crate) trait Disk {
+    /// Makes a file that is not there yet, to write to.
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>>;
+    /// Gives a file a second name.
+    fn hard_link(&self, path: &Path, second: &Path) -> io::Result<()>;
+    /// Copies the content of a file, forced to the disk.
+    fn copy(&self, from: &Path, to: &Path) -> io::Result<()>;
+    /// Gives a file another name, in the place of any file that has it.
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
+    fn remove(&self, path: &Path) -> io::Result<()>;
+    /// Forces the names in a directory to the disk.
+    fn sync_directory(&self, path: &Path) -> io::Result<()>;
+}
+
+/// A file that is being written.
+pub(crate) trait NewFile: Write + Send {
+    fn set_permissions(&self, permissions: Permissions) -> io::Result<()>;
+    /// Forces the content to the disk.
+    fn sync(&self) -> io::Result<()>;
+}
+
+/// The disks of this system.
+pub(crate) struct System;
+
+impl Disk for System {
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>> {
+        Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(path)?))
+    }
+
+    fn hard_link(&self, path: &Path, second: &Path) -> io::Result<()> {
+        fs::hard_link(path, second)
+    }
+
+    fn copy(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::copy(from, to)?;
+        OpenOptions::new().write(true).open(to)?.sync_all()
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::rename(from, to)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        fs::remove_file(path)
+    }
+
+    fn sync_directory(&self, path: &Path) -> io::Result<()> {
+        File::open(path)?.sync_all()
+    }
+}
+
+impl NewFile for File {
+    fn set_permissions(&self, permissions: Permissions) -> io::Result<()> {
+        File::set_permissions(self, permissions)
+    }
+
+    fn sync(&self) -> io::Result<()> {
+        self.sync_all()
+    }
+}

@@ -1,0 +1,251 @@
+//! What ties a checkpoint to the run that it is of.
+
+use glam::DVec2;
+
+use crate::error::SmoothError;
+use crate::mesh::Mesh;
+use crate::run::{About, Checkpoint, Options};
+
+/// What a checkpoint of a run on this mesh, with the target maps of its vertices, says of it.
+pub(crate) fn about(mesh: &Mesh, targets: Option<&[[f32; 3]]>, options: &Options) -> About {
+    About { mesh: hash(mesh, targets), options: format!("{options:#?}"), goal: None, opened: None }
+}
+
+/// Checks that a checkpoint is of a run on the same mesh, of which triangles use so many vertices, with the same options.
+pub(crate) fn check(
+    own: &About,
+    checkpoint: &Checkpoint,
+    vertices: usize,
+) -> Result<(), SmoothError> {
+    let fits = |points: &[DVec2]| points.len() == vertices && points.iter().all(|p| p.is_finite());
+    let opened = checkpoint.about.opened.as_ref();
+    let is_whole = opened.is_none_or(|opened| {
+        !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
+    });
+    if own.mesh != checkpoint.about.mesh || !is_whole {
+        return Err(foreign());
+    }
+    let mut lines = own.options.lines().zip(checkpoint.about.options.lines());
+    match lines.find(|(now, then)| now != then) {
+        None if own.options == checkpoint.about.options => Ok(()),
+        None => Err(foreign()),
+        Some((now, then)) => {
+            let told = |line: &str| line.trim().trim_end_matches(',').to_owned();
+            Err(SmoothError::Checkpoint(format!(
+                "it is of a run with {}, and this one has {}: go on with the same options",
+                told(then),
+                told(now)
+            )))
+        }
+    }
+}
+
+/// The error of a checkpoint that is of another mesh.
+pub(crate) fn foreign() -> SmoothError {
+    SmoothError::Checkpoint(
+        "it is of another mesh, or vertices were held or targets set otherwise: go on with the mesh that the run began with".to_owned(),
+    )
+}
+
+/// A hash of all that a run depends on in a mesh: FNV-1a over words of 64 bits.
+fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>) -> u64 {
+    let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
+    let points = mesh.points.as_flattened().iter().map(|x| x.to_bits());
+    let indices = mesh.triangles.as_flattened().iter().chain(&mesh.fixed).map(|&i| u64::from(i));
+    let targets = targets.unwrap_or_default().as_flattened().iter().map(|x| x.to_bits().into());
+    let words = counts.into_iter().map(|n| n as u64).chain(points).chain(indices).chain(targets);
+    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
+        let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+        mixed ^ (mixed >> 32)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::run::{Keeper, Progress, Stop};
+    use crate::{Backend, Gpu, GpuError, Outcome, Smoother, validity};
+
+    /// Takes the first checkpoint, and goes on on the CPU if asked to.
+    #[derive(Default)]
+    struct First {
+        checkpoint: Option<Checkpoint>,
+        goes_on: bool,
+        told: Vec<GpuError>,
+    }
+
+    impl Keeper for First {
+        fn wants_checkpoint(&mut self, _: bool) -> bool {
+            self.checkpoint.is_none()
+        }
+
+        fn checkpoint(&mut self, checkpoint: Checkpoint) {
+            self.checkpoint = Some(checkpoint);
+        }
+
+        fn goes_on_without(&mut self, error: &GpuError, _: u32) -> bool {
+            self.told.push(error.clone());
+            self.goes_on
+        }
+    }
+
+    fn go_on(_: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// A lattice of squares cut in two, its inner vertices moved about.
+    fn lattice(n: u32) -> Mesh {
+        let mut points = Vec::new();
+        for (row, column) in (0..=n).flat_map(|row| (0..=n).map(move |column| (row, column))) {
+            let is_inner = |i| 0 < i && i < n;
+            let away = if is_inner(row) && is_inner(column) { 0.3 } else { 0.0 };
+            let wave = f64::from(7 * row + 3 * column).sin();
+            points.push([f64::from(column) + away * wave, f64::from(row) - away * wave]);
+        }
+        let of_square = |(row, column)| {
+            let a = row * (n + 1) + column;
+            [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
+        };
+        let squares = (0..n).flat_map(|row| (0..n).map(move |column| (row, column)));
+        Mesh { points, triangles: squares.flat_map(of_square).collect(), fixed: Vec::new() }
+    }
+
+    /// A position that overflows comes in with a checkpoint, as if memory had failed. What shows it is undone, and the mesh
+    /// that is returned is no worse than before the run.
+    #[test]
+    fn a_sweep_that_makes_a_number_that_is_not_finite_is_undone() {
+        let mesh = lattice(12);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let gpu = Backend::Gpu(Gpu::open(None).unwrap());
+        for (backend, scheme) in
+            [(&Backend::Cpu, "imr"), (&Backend::Cpu, "edge+imr"), (&gpu, "imr"), (&gpu, "edge+imr")]
+        {
+            let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
+            let mut first = First::default();
+            let whole = smoother.run_kept(&options, backend, None, &mut first, &mut go_on).unwrap();
+            let mut spoiled = first.checkpoint.clone().unwrap();
+            let engine = &mut spoiled.saved.engine;
+            engine.positions[0].x = 1e200;
+            for (name, bytes) in &mut engine.own {
+                if name == "positions" {
+                    bytes[..4].copy_from_slice(&3e38_f32.to_le_bytes());
+                }
+            }
+            let check = |outcome: &Outcome| {
+                let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
+                assert!(bad.is_empty(), "{bad:?}");
+                let f = |p| smoother.quality(p).unwrap().f(options.scheme.base());
+                assert!(f(&outcome.points) <= f(&mesh.points), "{scheme}");
+            };
+            let from = Some(&spoiled);
+            let outcome =
+                smoother.run_kept(&options, backend, from, &mut first, &mut go_on).unwrap();
+            assert_eq!(outcome.stop, Stop::NotFinite, "{scheme}");
+            check(&outcome);
+            assert!(outcome.sweeps < whole.sweeps);
+            if let Backend::Gpu(_) = backend {
+                assert!(matches!(first.told[..], [GpuError::NotFinite { .. }]), "{:?}", first.told);
+            }
+        }
+    }
+
+    /// Bytes that are no checkpoint's, under a checksum that is right: refused, or a run that ends with a sound mesh.
+    #[test]
+    fn a_hostile_checkpoint_does_no_harm() {
+        let mesh = lattice(6);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let gpu = Backend::Gpu(Gpu::open(None).unwrap());
+        let mut state = 1_u64;
+        let (mut refused, mut went_on) = (0, 0);
+        let mut random = |below: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % below
+        };
+        for (backend, scheme, rounds) in [
+            (&Backend::Cpu, "imr", 150),
+            (&Backend::Cpu, "edge+imr", 150),
+            (&gpu, "imr", 12),
+            (&gpu, "edge+imr", 12),
+        ] {
+            let options =
+                Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
+            let mut kept = Latest::default();
+            smoother.run_kept(&options, backend, None, &mut kept, &mut go_on).unwrap();
+            let bytes = kept.0.unwrap().to_bytes();
+            for _ in 0..rounds {
+                let mut hostile = bytes[..bytes.len() - 4].to_vec();
+                for _ in 0..=random(2) {
+                    let word =
+                        [0, 1, 7, u64::MAX, f64::NAN.to_bits(), 1e300_f64.to_bits(), 1 << 40]
+                            [random(7)];
+                    // Half of them in what comes before the long lists.
+                    let most = if random(2) == 0 { hostile.len() } else { hostile.len().min(3000) };
+                    let at = random(most - 8);
+                    hostile[at..at + 8].copy_from_slice(&word.to_le_bytes());
+                }
+                let mut sum = flate2::Crc::new();
+                sum.update(&hostile);
+                hostile.extend(sum.sum().to_le_bytes());
+                let Some(from) = Checkpoint::from_bytes(&hostile) else {
+                    refused += 1;
+                    continue;
+                };
+                let mut none = Latest::default();
+                match smoother.run_kept(&options, backend, Some(&from), &mut none, &mut go_on) {
+                    Ok(outcome) => {
+                        let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
+                        assert!(bad.is_empty(), "{bad:?}");
+                        went_on += 1;
+                    }
+                    Err(SmoothError::Checkpoint(_)) => refused += 1,
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+        assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
+    }
+
+    /// Keeps the latest checkpoint.
+    #[derive(Default)]
+    struct Latest(Option<Checkpoint>);
+
+    impl Keeper for Latest {
+        fn wants_checkpoint(&mut self, _: bool) -> bool {
+            true
+        }
+
+        fn checkpoint(&mut self, checkpoint: Checkpoint) {
+            self.0 = Some(checkpoint);
+        }
+    }
+
+    #[test]
+    fn any_change_of_a_mesh_changes_its_hash() {
+        let mesh = Mesh {
+            points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            fixed: vec![2],
+        };
+        let changes: [fn(&mut Mesh); 5] = [
+            |mesh| mesh.points[3][1] += f64::EPSILON,
+            |mesh| mesh.points[0][0] = -0.0,
+            |mesh| mesh.triangles[1] = [2, 3, 0],
+            |mesh| mesh.fixed[0] = 1,
+            |mesh| mesh.fixed.clear(),
+        ];
+        let targets = [[1.0, 0.0, 1.0]; 4];
+        let mut hashes = vec![hash(&mesh, None), hash(&mesh, Some(&targets))];
+        for change in changes {
+            let mut changed = mesh.clone();
+            change(&mut changed);
+            hashes.push(hash(&changed, None));
+        }
+        hashes.sort_unstable();
+        hashes.dedup();
+        assert_eq!(hashes.len(), 7);
+    }
+}

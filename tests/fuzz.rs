@@ -1,0 +1,122 @@
+//! A short round of what the fuzzer does (`fuzz/`), on any toolchain and with the same inputs each time. `FUZZ_ROUNDS`, a factor,
+//! makes it longer. An input that fails is to be added literally; none has failed yet.
+
+#[path = "../fuzz/checks.rs"]
+mod checks;
+#[path = "support/mod.rs"]
+mod support;
+
+use std::env;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use checks::Became;
+use gpu_smooth::{Backend, Conversion, Gpu, MeshFile};
+use support::SplitMix64;
+
+/// How many rounds, given how many make a second or so.
+fn rounds(usual: usize) -> usize {
+    let factor = env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
+    usual * factor.unwrap_or(1)
+}
+
+fn any_bytes(random: &mut SplitMix64, most: usize) -> Vec<u8> {
+    let length = random.below(most + 1);
+    (0..length).map(|_| random.below(256) as u8).collect()
+}
+
+/// Random bytes cut, replaced, inserted and doubled.
+fn damaged(content: &[u8], random: &mut SplitMix64) -> Vec<u8> {
+    let bytes = b"0123456789 \n\r\t#$<>/=-+.eEnaif\"\0\x01\x7F\xFF";
+    let mut damaged = content.to_vec();
+    for _ in 0..=random.below(3) {
+        let at = random.below(damaged.len());
+        let byte = bytes[random.below(bytes.len())];
+        match random.below(6) {
+            0 => damaged.truncate(at + 1),
+            1 => damaged[at] = byte,
+            2 => damaged.insert(at, byte),
+            3 => damaged[at] ^= 1 << random.below(8),
+            4 => damaged.extend_from_within(at..),
+            _ => drop(damaged.drain(at..(at + 1 + random.below(9)).min(damaged.len() - 1).max(at))),
+        }
+    }
+    damaged
+}
+
+/// A small mesh as text of each format that is written, and as Triangle's files.
+fn samples() -> &'static (Vec<Vec<u8>>, Vec<u8>) {
+    static SAMPLES: OnceLock<(Vec<Vec<u8>>, Vec<u8>)> = OnceLock::new();
+    SAMPLES.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = support::perturb_random(&support::lattice(3, 3), 0.3, 1);
+        let [node, ele] = support::triangle_text(&mesh, "made for a test");
+        std::fs::write(folder.path().join("a.node"), &node).unwrap();
+        std::fs::write(folder.path().join("a.ele"), &ele).unwrap();
+        let file = MeshFile::read(&folder.path().join("a.node")).unwrap();
+        let text = |(_, format)| Conversion::new(&file, format).unwrap().unwrap().text();
+        let texts = Conversion::targets().filter_map(text).map(String::into_bytes).collect();
+        let poly = "0 2 0 0\n1 0\n1 5 6\n0\n";
+        (texts, [node.as_bytes(), ele.as_bytes(), poly.as_bytes()].join(&0xFF))
+    })
+}
+
+#[test]
+fn files_of_any_bytes() {
+    let mut random = SplitMix64::new(11);
+    let (texts, _) = samples();
+    assert!(texts.len() > 8);
+    texts.iter().for_each(|text| checks::any_file(text));
+    for round in 0..rounds(600) {
+        checks::any_file(&damaged(&texts[round % texts.len()], &mut random));
+    }
+}
+
+#[test]
+fn triangle_files_of_any_bytes() {
+    let mut random = SplitMix64::new(12);
+    let folder = tempfile::tempdir().unwrap();
+    let (_, parts) = samples();
+    checks::any_triangle_files(folder.path(), parts);
+    assert!(MeshFile::read(&folder.path().join("fuzzed.node")).is_ok());
+    for _ in 0..rounds(150) {
+        checks::any_triangle_files(folder.path(), &damaged(parts, &mut random));
+    }
+}
+
+#[test]
+fn meshes_of_any_shape() {
+    let mut random = SplitMix64::new(13);
+    let became = |bytes: &[u8]| checks::any_mesh(bytes, &Backend::Cpu);
+    let all: Vec<Became> = (0..rounds(400)).map(|_| became(&any_bytes(&mut random, 260))).collect();
+    // Each of them is more than a twentieth.
+    for kind in [Became::Refused, Became::Smoothed, Became::Untangled, Became::StillTangled] {
+        let count = all.iter().filter(|became| **became == kind).count();
+        assert!(20 * count > all.len(), "{count} of {}", all.len());
+    }
+}
+
+#[test]
+fn meshes_of_any_shape_on_a_gpu() {
+    let mut random = SplitMix64::new(14);
+    let gpu = Backend::Gpu(Gpu::open(None).unwrap());
+    for _ in 0..rounds(15) {
+        checks::any_mesh(&any_bytes(&mut random, 260), &gpu);
+    }
+}
+
+/// Writes what the fuzzer begins with, if the environment variable FUZZ_CORPUS names a folder.
+#[test]
+fn the_corpus_can_be_written() {
+    let Some(folder) = env::var_os("FUZZ_CORPUS") else { return };
+    let write = |target: &str, name: usize, bytes: &[u8]| {
+        let folder = Path::new(&folder).join(target);
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join(name.to_string()), bytes).unwrap();
+    };
+    let (texts, parts) = samples();
+    texts.iter().enumerate().for_each(|(name, text)| write("read", name, text));
+    write("read_triangle", 0, parts);
+    let mut random = SplitMix64::new(15);
+    (0..40).for_each(|name| write("smooth", name, &any_bytes(&mut random, 260)));
+}

@@ -1,0 +1,220 @@
+//! Runs that are left between two sweeps and go on later.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use gpu_smooth::{
+    Backend, Checkpoint, Desired, Goal, Keeper, Mesh, Method, Metric, Options, Outcome, Progress,
+    SmoothError, Smoother, Stop,
+};
+
+use super::{all_schemes, backends, name, perturbed, plate, support, with_points};
+
+/// Takes a checkpoint whenever it can.
+#[derive(Default)]
+struct All(Vec<Checkpoint>);
+
+impl Keeper for All {
+    fn wants_checkpoint(&mut self, _: bool) -> bool {
+        true
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        let bytes = checkpoint.to_bytes();
+        self.0.push(Checkpoint::from_bytes(&bytes).unwrap());
+    }
+}
+
+fn go_on(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+#[track_caller]
+fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
+    let bits = |outcome: &Outcome| -> Vec<[u64; 2]> {
+        outcome.points.iter().map(|point| point.map(f64::to_bits)).collect()
+    };
+    assert!(bits(a) == bits(b), "{what}: other positions");
+    // Values that were not evaluated are no numbers.
+    assert_eq!(format!("{:?}", a.history), format!("{:?}", b.history), "{what}");
+    let told = |o: &Outcome| (o.stop, o.sweeps, o.corrections, o.best_sweep, o.remaining, o.lost);
+    assert_eq!(told(a), told(b), "{what}");
+    let more = |o: &Outcome| (o.opening_sweeps, o.levels_left_out, o.held_back, o.goal.clone());
+    assert_eq!(more(a), more(b), "{what}");
+}
+
+/// Leaves a run after each of some sweeps, and goes on to the same end.
+fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
+    let whole = smoother.run(options, backend, &mut go_on).unwrap();
+    let mut all = All::default();
+    let kept = smoother.run_kept(options, backend, None, &mut all, &mut go_on).unwrap();
+    let what = format!("{} on the {}", options.scheme, name(backend));
+    assert_same(&whole, &kept, &what);
+    assert!(!all.0.is_empty(), "{what}: no checkpoint");
+    for checkpoint in all.0.iter().step_by(every) {
+        let what = format!("{what}, from sweep {}", checkpoint.sweeps());
+        let mut none = All::default();
+        let from = Some(checkpoint);
+        let end = smoother.run_kept(options, backend, from, &mut none, &mut go_on).unwrap();
+        assert_same(&whole, &end, &what);
+    }
+}
+
+#[test]
+fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for backend in backends() {
+        let every = if matches!(backend, Backend::Cpu) { 1 } else { 3 };
+        for scheme in all_schemes().into_iter().step_by(every) {
+            let options = Options { scheme, max_sweeps: 40, ..Options::default() };
+            assert_goes_on(&smoother, &options, backend, 2);
+        }
+    }
+}
+
+/// Hard meshes: sweeps that open flat triangles for a device, corrections accelerated by secant pairs, levels fitted again.
+#[test]
+fn a_hard_run_goes_on_to_the_same_bits() {
+    let stretched = |mesh: &Mesh| -> Vec<[f64; 2]> {
+        mesh.points.iter().map(|&[x, y]| [30.0 * x, y]).collect()
+    };
+    let lattice = support::perturb_random(&support::lattice(24, 24), 0.6, 4);
+    let thin = with_points(&lattice, &stretched(&lattice));
+    for (mesh, accelerated) in [(perturbed().clone(), false), (thin, true)] {
+        let smoother = Smoother::new(&mesh).unwrap();
+        for backend in backends() {
+            let options = Options::default();
+            let mut all = All::default();
+            let kept = smoother.run_kept(&options, backend, None, &mut all, &mut go_on).unwrap();
+            assert!(kept.corrections > 2, "{} corrections", kept.corrections);
+            // Secant pairs take as much again as the rest.
+            let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
+            let per_vertex = sizes.iter().max().unwrap() / mesh.points.len();
+            assert!(!accelerated || per_vertex > 35, "{per_vertex} bytes a vertex: no pairs");
+            assert_goes_on(&smoother, &options, backend, 2);
+        }
+    }
+}
+
+#[test]
+fn the_goal_is_not_sought_again() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let goal = Some(Goal { fraction: 0.999, desired: Desired::Auto });
+    let options = Options { goal, method: Method::Sweeps, ..Options::default() };
+    let mut all = All::default();
+    let whole = smoother.run_kept(&options, &Backend::Cpu, None, &mut all, &mut go_on).unwrap();
+    assert_eq!(whole.stop, Stop::Reached);
+    let mut references = 0;
+    let mut observe = |progress: &Progress| {
+        references += usize::from(progress.phase == gpu_smooth::Phase::Reference);
+        ControlFlow::Continue(())
+    };
+    let end = smoother
+        .run_kept(&options, &Backend::Cpu, all.0.last(), &mut All::default(), &mut observe)
+        .unwrap();
+    assert_same(&whole, &end, "a goal");
+    assert_eq!(references, 0);
+}
+
+#[test]
+fn a_run_that_was_cancelled_goes_on() {
+    struct Last(Option<Checkpoint>);
+    impl Keeper for Last {
+        fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
+            is_ending
+        }
+        fn checkpoint(&mut self, checkpoint: Checkpoint) {
+            assert!(self.0.replace(checkpoint).is_none());
+        }
+    }
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options::default();
+    let whole = smoother.run(&options, &Backend::Cpu, &mut go_on).unwrap();
+    let mut last = Last(None);
+    let mut cancel = |progress: &Progress| match progress.sweep {
+        0..4 => ControlFlow::Continue(()),
+        _ => ControlFlow::Break(()),
+    };
+    let left = smoother.run_kept(&options, &Backend::Cpu, None, &mut last, &mut cancel).unwrap();
+    assert_eq!(left.stop, Stop::Cancelled);
+    let from = last.0.take();
+    assert_eq!(from.as_ref().map(Checkpoint::sweeps), Some(left.sweeps));
+    let end =
+        smoother.run_kept(&options, &Backend::Cpu, from.as_ref(), &mut last, &mut go_on).unwrap();
+    assert_same(&whole, &end, "cancelled");
+}
+
+/// A run left on a GPU goes on on the CPU, and one left on the CPU goes on there whatever the backend.
+#[test]
+fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let [cpu, gpu] = backends();
+    for scheme in ["imr", "edge+imr"] {
+        let options = Options { scheme: super::scheme(scheme), ..Options::default() };
+        let on_cpu = smoother.run(&options, cpu, &mut go_on).unwrap();
+        let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(options.scheme.base());
+        for (left_on, goes_on_on) in [(gpu, cpu), (cpu, gpu)] {
+            let mut all = All::default();
+            smoother.run_kept(&options, left_on, None, &mut all, &mut go_on).unwrap();
+            let from = &all.0[all.0.len() / 2];
+            assert_eq!(from.adapter().is_some(), matches!(left_on, Backend::Gpu(_)));
+            let mut all = All::default();
+            let end =
+                smoother.run_kept(&options, goes_on_on, Some(from), &mut all, &mut go_on).unwrap();
+            assert!(all.0.iter().all(|checkpoint| checkpoint.adapter().is_none()));
+            assert!((f(&end) - f(&on_cpu)).abs() < 1e-3 * f(&on_cpu), "{scheme}");
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options::default();
+    let mut all = All::default();
+    smoother.run_kept(&options, &Backend::Cpu, None, &mut all, &mut go_on).unwrap();
+    let from = all.0.first();
+    let refused = |smoother: &Smoother<'_>, options: &Options| {
+        let mut none = All::default();
+        let error =
+            smoother.run_kept(options, &Backend::Cpu, from, &mut none, &mut go_on).unwrap_err();
+        assert!(matches!(error, SmoothError::Checkpoint(_)), "{error:?}");
+        error.to_string()
+    };
+    let other = Options { tolerance: 1e-3, ..options.clone() };
+    let error = refused(&smoother, &other);
+    assert!(error.contains("tolerance: 1e-6, and this one has tolerance: 0.001"), "{error}");
+    let other = Options { scheme: Metric::Rms.into(), ..options.clone() };
+    refused(&smoother, &other);
+    let mut held = mesh.clone();
+    held.fixed.push(mesh.points.len() as u32 - 1);
+    let error = refused(&Smoother::new(&held).unwrap(), &options);
+    assert!(error.contains("of another mesh"), "{error}");
+}
+
+/// The moments at which positions are kept in memory change nothing.
+#[test]
+fn keeping_positions_changes_no_bit() {
+    struct Often;
+    impl Keeper for Often {
+        fn interval(&self) -> Duration {
+            Duration::ZERO
+        }
+    }
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for backend in backends() {
+        for scheme in ["imr", "edge+imr"] {
+            let options =
+                Options { scheme: super::scheme(scheme), max_sweeps: 40, ..Options::default() };
+            let whole = smoother.run(&options, backend, &mut go_on).unwrap();
+            let kept = smoother.run_kept(&options, backend, None, &mut Often, &mut go_on).unwrap();
+            assert_same(&whole, &kept, scheme);
+        }
+    }
+}
