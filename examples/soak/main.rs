@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
     soak("frames", frames, |done| {
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
-        sweeps.encode(&mut encoder, 1);
+        sweeps.encode_sweeps(&mut encoder, 1);
         bound.encode_export(&mut encoder);
         gpu.queue().submit([encoder.finish()]);
         // As an application that waits for its frames.
