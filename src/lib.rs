@@ -88,6 +88,7 @@
 //! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
 //! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
+mod attempt;
 mod choice;
 mod cpu;
 mod error;
@@ -98,6 +99,7 @@ mod layout;
 mod measure;
 mod mesh;
 mod metric;
+mod outcome;
 mod parallel;
 mod quality;
 mod resume;
@@ -145,12 +147,13 @@ pub use measure::{
 };
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
+pub use outcome::{DeviceFault, GoalOutcome, Outcome};
 pub use quality::Quality;
 pub use run::{
     Checkpoint, Derivatives, Desired, Goal, Keeper, Method, Objectives, Observer, Options, Phase,
     Progress, Sharpness, Stop,
 };
-pub use smoother::{Backend, DeviceFault, GoalOutcome, Outcome, Smoother, smooth};
+pub use smoother::{Backend, Smoother, smooth};
 pub use targets::{Surface, Targets};
 pub use topology::{Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};

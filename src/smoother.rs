@@ -1,34 +1,29 @@
-//! A prepared mesh, and the outcome of a run.
+//! A prepared mesh, and its runs.
 
-use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use glam::DVec2;
 use web_time::Instant;
 
-use crate::cpu::{CpuEngine, held_back, mean_excess};
-use crate::error::{GpuError, MeshError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, MeshSize, Waiting};
+use crate::attempt::Attempt;
+use crate::cpu::mean_excess;
+use crate::error::{MeshError, SmoothError};
+use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
+use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::quality::Quality;
 use crate::resume;
-use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Course, Derivatives, Desired, DriveError, End, Goal, History, JITTER, Keeper,
-    Keeping, Method, NOISE, NoKeeper, Objectives, Observer, Options, Phase, Plan, Saved, Sharpness,
-    Stop, Strategy, drive, shape_guard,
+    Checkpoint, Derivatives, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives,
+    Observer, Options, Phase, Sharpness, Stop,
 };
 use crate::targets::Targets;
 use crate::topology::{Topology, certify};
-
-/// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
-/// powers of what they are made of.
-const MOST_ON_DEVICE: f64 = 1e15;
 
 /// The processor that does the sweeps.
 pub enum Backend {
@@ -44,70 +39,6 @@ pub struct Smoother<'a> {
     topology: Topology<'a>,
     problem: Problem,
     prepare: Duration,
-}
-
-/// The result of a run.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
-    /// the run if f of that state is not lower by more than rounding (1e-9 of f). No triangle is inverted or flat, by
-    /// exact predicates on these values.
-    pub points: Vec<[f64; 2]>,
-    /// Why the run ended.
-    pub stop: Stop,
-    /// Number of sweeps done.
-    pub sweeps: u32,
-    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`].
-    pub corrections: u32,
-    /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
-    /// single precision: the first sweeps, or all if the first ones did not open every triangle.
-    pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`] did without corrections because the coarser levels do not fit the
-    /// device's limits.
-    pub levels_left_out: bool,
-    /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.
-    pub best_sweep: u32,
-    /// Objectives before the first sweep and after each.
-    pub history: Vec<Objectives>,
-    /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
-    /// if they do not decay or are too few.
-    pub remaining: Option<f64>,
-    /// Number of vertices that the shape guard keeps from moving on, if that is why the run ended ([`Stop::HeldBack`]).
-    pub held_back: usize,
-    /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
-    /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.
-    pub lost: f64,
-    /// How far the run went toward its goal, if it had one.
-    pub goal: Option<GoalOutcome>,
-    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
-    pub returned: usize,
-    /// The fault of the device after which the run went on on the CPU, if there was one.
-    pub device_fault: Option<DeviceFault>,
-    /// Time spent in the run, the search for a desired objective included.
-    pub smooth: Duration,
-}
-
-/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`].
-#[derive(Clone, Debug)]
-pub struct DeviceFault {
-    /// The last sweep on the device whose result was kept.
-    pub sweep: u32,
-    /// What was wrong.
-    pub error: GpuError,
-}
-
-/// How far a run went toward its [`Goal`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct GoalOutcome {
-    /// The share that [`Goal::fraction`] asked for.
-    pub fraction: f64,
-    /// The desired objective.
-    pub desired: f64,
-    /// Where the desired objective comes from: "given", or a description of the runs that found it.
-    pub origin: String,
-    /// The share of the way from the initial to the desired objective that [`Outcome::points`] have gone; 1 if both
-    /// were equal from the start.
-    pub best_fraction: f64,
 }
 
 impl<'a> Smoother<'a> {
@@ -294,7 +225,7 @@ impl<'a> Smoother<'a> {
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
-        let run = Run { problem: &self.problem, device, phase: Phase::Smoothing };
+        let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing };
         let monotone = options.plan_to(target).is_monotone();
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut keeping = Keeping::new(keeper);
@@ -405,7 +336,7 @@ impl<'a> Smoother<'a> {
             sharpness: Sharpness::CONTINUED,
             ..Options::default()
         };
-        let run = Run { problem: &self.problem, device, phase: Phase::Reference };
+        let run = Attempt { problem: &self.problem, device, phase: Phase::Reference };
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
@@ -432,176 +363,6 @@ impl<'a> Smoother<'a> {
         }
         let origin = format!("runs to convergence; {}", describe.join("; "));
         Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }))
-    }
-}
-
-/// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
-struct Run<'s> {
-    problem: &'s Problem,
-    device: Option<(&'s Gpu, Waiting)>,
-    phase: Phase,
-}
-
-/// The result of a [`Run`], including the sweeps that opened flat triangles.
-struct Ran {
-    history: Vec<Objectives>,
-    positions: Vec<DVec2>,
-    corrections: u32,
-    opening_sweeps: u32,
-    levels_left_out: bool,
-    remaining: Option<f64>,
-    held_back: usize,
-    stop: Stop,
-    fault: Option<DeviceFault>,
-}
-
-impl Run<'_> {
-    /// Sweeps from some positions, or from a checkpoint of a run that began there, until the run ends.
-    async fn sweep<K: Keeper + ?Sized>(
-        &self,
-        options: &Options,
-        target: Option<f64>,
-        (from, resumed): (&[DVec2], Option<&Checkpoint>),
-        keeping: &mut Keeping<'_, K>,
-        observe: &mut (impl Observer + ?Sized),
-    ) -> Result<Ran, SmoothError> {
-        let problem = self.problem;
-        let mut plan = options.plan_to(target);
-        plan.shape_guard = shape_guard(problem, from, &plan.scheme);
-        let (device, opened) = match resumed {
-            Some(Checkpoint { about, saved }) => {
-                (self.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
-            }
-            None => self.opened(&plan, from).await?,
-        };
-        if let Some(about) = &mut keeping.about {
-            about.opened.clone_from(&opened);
-        }
-        let done = opened.as_ref().map_or(0, Opened::sweeps);
-        plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(done);
-        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
-        let corrected = options.is_multilevel();
-        let must = options.method == Method::Multilevel;
-        keeping.last = resumed.map(|resumed| resumed.saved.clone());
-        let (mut place, mut fault) = (device, None);
-        let end = loop {
-            let last = keeping.last.clone();
-            let course = Course { plan: &plan, must, phase: self.phase, done, from: last };
-            let strategy = Strategy::new(problem, &plan, corrected);
-            let driven = match place {
-                None => {
-                    let engine = CpuEngine::new(problem, from.to_vec(), &plan);
-                    drive(engine, course, strategy, keeping, observe).await
-                }
-                Some((gpu, waiting)) => {
-                    let steps = Strategy::steps(&plan, corrected);
-                    // The host judges a run with corrections, so the device must not end it.
-                    let judged = if corrected { plan.clone().endless() } else { plan.clone() };
-                    match GpuEngine::new(gpu, problem, from, judged, steps, waiting) {
-                        Ok(engine) => drive(engine, course, strategy, keeping, observe).await,
-                        Err(error) => Err(error.into()),
-                    }
-                }
-            };
-            let error = match driven {
-                Ok(end) => break end,
-                Err(DriveError::Device(error)) => error,
-                Err(DriveError::NotFinite { sweep }) => GpuError::NotFinite { sweep },
-                Err(DriveError::LeftOut(error)) => return Err(error.into()),
-                Err(DriveError::Foreign) => return Err(resume::foreign()),
-            };
-            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + done;
-            if place.is_some() && keeping.keeper.goes_on_without(&error, kept) {
-                (place, fault) = (None, Some(DeviceFault { sweep: kept, error }));
-            } else if matches!(error, GpuError::NotFinite { .. }) {
-                break self.undone(&plan, from, keeping.last.take());
-            } else {
-                return Err(error.into());
-            }
-        };
-        let remaining = end.history.remaining();
-        let mut stop = end.stop;
-        let mut held = 0;
-        let step = plan.base_step(1.0);
-        if stop == Stop::Converged && step.shape_guard.is_finite() {
-            held = held_back(problem, &end.positions, &step);
-            if held > 0 {
-                stop = Stop::HeldBack;
-            }
-        }
-        let (history, positions) = match opened {
-            Some(opened) => opened.followed_by(end.history, end.positions),
-            None => (end.history.into_log(), end.positions),
-        };
-        let opening_sweeps = match (self.device, device) {
-            (Some(_), None) if resumed.is_none() => history.len() as u32 - 1,
-            _ => done,
-        };
-        Ok(Ran {
-            history,
-            positions,
-            corrections: end.corrections,
-            opening_sweeps,
-            levels_left_out: end.levels_left_out,
-            remaining,
-            held_back: held,
-            stop,
-            fault,
-        })
-    }
-
-    /// The end of a run in the state that was last kept, or at its start, because a sweep since then made f a number that is not
-    /// finite.
-    fn undone(&self, plan: &Plan, from: &[DVec2], last: Option<Saved>) -> End {
-        let (log, positions) = match last {
-            Some(Saved { log, engine, .. }) => (log, engine.best.unwrap_or(engine.positions)),
-            None => {
-                let mut start = Objectives::untracked();
-                for metric in plan.tracked() {
-                    let excess = mean_excess(metric, self.problem, from);
-                    start.set(metric, metric.ideal_squared() + excess);
-                }
-                (vec![start], from.to_vec())
-            }
-        };
-        let history = History::resumed(plan, &log, None);
-        let (stop, corrections) = (Stop::NotFinite, 0);
-        End { history, positions, corrections, levels_left_out: false, stop }
-    }
-
-    /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these
-    /// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, there is no
-    /// device: the whole run is done on the CPU.
-    async fn opened(
-        &self,
-        plan: &Plan,
-        from: &[DVec2],
-    ) -> Result<(Option<(&Gpu, Waiting)>, Option<Opened>), SmoothError> {
-        if self.device.is_none() {
-            return Ok((None, None));
-        }
-        // The sums of some metrics leave the range of single precision where sizes are very different.
-        let sum = |metric: &Metric| {
-            mean_excess(*metric, self.problem, from) * self.problem.triangles().len() as f64
-        };
-        let is_huge = |metric: &Metric| {
-            let is_ratio = metric.properties().is_inverse_mean_ratio;
-            // A sum that is not a number is huge as well.
-            !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
-        };
-        if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
-            return Ok((None, None));
-        }
-        match opening::obstacle(self.problem, from) {
-            Obstacle::None => return Ok((self.device, None)),
-            Obstacle::Flat => {}
-            Obstacle::Small => return Ok((None, None)),
-        }
-        let engine = CpuEngine::new(self.problem, from.to_vec(), plan);
-        Ok(match opening::open(self.problem, engine, plan).await? {
-            Some(opened) => (self.device, Some(opened)),
-            None => (None, None),
-        })
     }
 }
 

@@ -235,6 +235,8 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
 
 /// Changes of size by more than this factor at one vertex in twenty are worth a word.
 const LARGE_CHANGE: f64 = 1.25;
+/// In a mesh whose f by imr is below this, sizes are likely to be meant.
+const SOUND: f64 = 2.0;
 
 impl Report {
     /// The metric that judges.
@@ -351,7 +353,9 @@ impl Report {
             change if change < 99.5 => format!("{change:.0} %"),
             _ => format!("{factor:.1} times"),
         };
-        let keeps = match self.target.is_none() && size.most_of_twenty > LARGE_CHANGE {
+        // Sizes of a mesh in a bad state mean nothing.
+        let is_sound = self.before.f["imr"] < SOUND;
+        let keeps = match self.target.is_none() && is_sound && size.most_of_twenty > LARGE_CHANGE {
             true => "; --target keep-size keeps sizes",
             false => "",
         };

@@ -1,0 +1,192 @@
+//! One run from some positions to its end, on the engines that it takes.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::cpu::{CpuEngine, held_back, mean_excess};
+use crate::error::{GpuError, SmoothError};
+use crate::gpu::{Gpu, GpuEngine, Waiting};
+use crate::layout::Problem;
+use crate::metric::Metric;
+use crate::outcome::DeviceFault;
+use crate::resume;
+use crate::run::opening::{self, Obstacle, Opened};
+use crate::run::{
+    CPU, Checkpoint, Course, DriveError, End, History, Keeper, Keeping, Method, Objectives,
+    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, shape_guard,
+};
+
+/// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
+/// powers of what they are made of.
+const MOST_ON_DEVICE: f64 = 1e15;
+
+/// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
+pub(crate) struct Attempt<'s> {
+    pub(crate) problem: &'s Problem,
+    pub(crate) device: Option<(&'s Gpu, Waiting)>,
+    pub(crate) phase: Phase,
+}
+
+/// The end of an [`Attempt`], including the sweeps that opened flat triangles.
+pub(crate) struct Ended {
+    pub(crate) history: Vec<Objectives>,
+    pub(crate) positions: Vec<DVec2>,
+    pub(crate) corrections: u32,
+    pub(crate) opening_sweeps: u32,
+    pub(crate) levels_left_out: bool,
+    pub(crate) remaining: Option<f64>,
+    pub(crate) held_back: usize,
+    pub(crate) stop: Stop,
+    pub(crate) fault: Option<DeviceFault>,
+}
+
+impl Attempt<'_> {
+    /// Sweeps from some positions, or from a checkpoint of a run that began there, until the run ends.
+    pub(crate) async fn sweep<K: Keeper + ?Sized>(
+        &self,
+        options: &Options,
+        target: Option<f64>,
+        (from, resumed): (&[DVec2], Option<&Checkpoint>),
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Ended, SmoothError> {
+        let problem = self.problem;
+        let mut plan = options.plan_to(target);
+        plan.shape_guard = shape_guard(problem, from, &plan.scheme);
+        let (device, opened) = match resumed {
+            Some(Checkpoint { about, saved }) => {
+                (self.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
+            }
+            None => self.opened(&plan, from).await?,
+        };
+        if let Some(about) = &mut keeping.about {
+            about.opened.clone_from(&opened);
+        }
+        let done = opened.as_ref().map_or(0, Opened::sweeps);
+        plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(done);
+        let from = opened.as_ref().map_or(from, |opened| &opened.positions);
+        let corrected = options.is_multilevel();
+        let must = options.method == Method::Multilevel;
+        keeping.last = resumed.map(|resumed| resumed.saved.clone());
+        let (mut place, mut fault) = (device, None);
+        let end = loop {
+            let last = keeping.last.clone();
+            let course = Course { plan: &plan, must, phase: self.phase, done, from: last };
+            let strategy = Strategy::new(problem, &plan, corrected);
+            let driven = match place {
+                None => {
+                    let engine = CpuEngine::new(problem, from.to_vec(), &plan);
+                    drive(engine, course, strategy, keeping, observe).await
+                }
+                Some((gpu, waiting)) => {
+                    let steps = Strategy::steps(&plan, corrected);
+                    // The host judges a run with corrections, so the device must not end it.
+                    let judged = if corrected { plan.clone().endless() } else { plan.clone() };
+                    match GpuEngine::new(gpu, problem, from, judged, steps, waiting) {
+                        Ok(engine) => drive(engine, course, strategy, keeping, observe).await,
+                        Err(error) => Err(error.into()),
+                    }
+                }
+            };
+            let error = match driven {
+                Ok(end) => break end,
+                Err(DriveError::Device(error)) => error,
+                Err(DriveError::NotFinite { sweep }) => GpuError::NotFinite { sweep },
+                Err(DriveError::LeftOut(error)) => return Err(error.into()),
+                Err(DriveError::Foreign) => return Err(resume::foreign()),
+            };
+            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + done;
+            if place.is_some() && keeping.keeper.goes_on_without(&error, kept) {
+                (place, fault) = (None, Some(DeviceFault { sweep: kept, error }));
+            } else if matches!(error, GpuError::NotFinite { .. }) {
+                break self.undone(&plan, from, keeping.last.take());
+            } else {
+                return Err(error.into());
+            }
+        };
+        let remaining = end.history.remaining();
+        let mut stop = end.stop;
+        let mut held = 0;
+        let step = plan.base_step(1.0);
+        if stop == Stop::Converged && step.shape_guard.is_finite() {
+            held = held_back(problem, &end.positions, &step);
+            if held > 0 {
+                stop = Stop::HeldBack;
+            }
+        }
+        let (history, positions) = match opened {
+            Some(opened) => opened.followed_by(end.history, end.positions),
+            None => (end.history.into_log(), end.positions),
+        };
+        let opening_sweeps = match (self.device, device) {
+            (Some(_), None) if resumed.is_none() => history.len() as u32 - 1,
+            _ => done,
+        };
+        Ok(Ended {
+            history,
+            positions,
+            corrections: end.corrections,
+            opening_sweeps,
+            levels_left_out: end.levels_left_out,
+            remaining,
+            held_back: held,
+            stop,
+            fault,
+        })
+    }
+
+    /// The end of a run in the state that was last kept, or at its start, because a sweep since then made f a number that is not
+    /// finite.
+    fn undone(&self, plan: &Plan, from: &[DVec2], last: Option<Saved>) -> End {
+        let (log, positions) = match last {
+            Some(Saved { log, engine, .. }) => (log, engine.best.unwrap_or(engine.positions)),
+            None => {
+                let mut start = Objectives::untracked();
+                for metric in plan.tracked() {
+                    let excess = mean_excess(metric, self.problem, from);
+                    start.set(metric, metric.ideal_squared() + excess);
+                }
+                (vec![start], from.to_vec())
+            }
+        };
+        let history = History::resumed(plan, &log, None);
+        let (stop, corrections) = (Stop::NotFinite, 0);
+        End { history, positions, corrections, levels_left_out: false, stop }
+    }
+
+    /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these
+    /// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, there is no
+    /// device: the whole run is done on the CPU.
+    async fn opened(
+        &self,
+        plan: &Plan,
+        from: &[DVec2],
+    ) -> Result<(Option<(&Gpu, Waiting)>, Option<Opened>), SmoothError> {
+        if self.device.is_none() {
+            return Ok((None, None));
+        }
+        // The sums of some metrics leave the range of single precision where sizes are very different.
+        let sum = |metric: &Metric| {
+            mean_excess(*metric, self.problem, from) * self.problem.triangles().len() as f64
+        };
+        let is_huge = |metric: &Metric| {
+            let is_ratio = metric.properties().is_inverse_mean_ratio;
+            // A sum that is not a number is huge as well.
+            !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
+        };
+        if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
+            return Ok((None, None));
+        }
+        match opening::obstacle(self.problem, from) {
+            Obstacle::None => return Ok((self.device, None)),
+            Obstacle::Flat => {}
+            Obstacle::Small => return Ok((None, None)),
+        }
+        let engine = CpuEngine::new(self.problem, from.to_vec(), plan);
+        Ok(match opening::open(self.problem, engine, plan).await? {
+            Some(opened) => (self.device, Some(opened)),
+            None => (None, None),
+        })
+    }
+}

@@ -1,0 +1,70 @@
+//! The outcome of a run.
+
+use std::time::Duration;
+
+use crate::error::GpuError;
+use crate::run::{Objectives, Stop};
+
+/// The result of a run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
+    /// the run if f of that state is not lower by more than rounding (1e-9 of f). No triangle is inverted or flat, by
+    /// exact predicates on these values.
+    pub points: Vec<[f64; 2]>,
+    /// Why the run ended.
+    pub stop: Stop,
+    /// Number of sweeps done.
+    pub sweeps: u32,
+    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`].
+    pub corrections: u32,
+    /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
+    /// single precision: the first sweeps, or all if the first ones did not open every triangle.
+    pub opening_sweeps: u32,
+    /// Whether [`Method::Auto`] did without corrections because the coarser levels do not fit the
+    /// device's limits.
+    pub levels_left_out: bool,
+    /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.
+    pub best_sweep: u32,
+    /// Objectives before the first sweep and after each.
+    pub history: Vec<Objectives>,
+    /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
+    /// if they do not decay or are too few.
+    pub remaining: Option<f64>,
+    /// Number of vertices that the shape guard keeps from moving on, if that is why the run ended ([`Stop::HeldBack`]).
+    pub held_back: usize,
+    /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
+    /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.
+    pub lost: f64,
+    /// How far the run went toward its goal, if it had one.
+    pub goal: Option<GoalOutcome>,
+    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
+    pub returned: usize,
+    /// The fault of the device after which the run went on on the CPU, if there was one.
+    pub device_fault: Option<DeviceFault>,
+    /// Time spent in the run, the search for a desired objective included.
+    pub smooth: Duration,
+}
+
+/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`].
+#[derive(Clone, Debug)]
+pub struct DeviceFault {
+    /// The last sweep on the device whose result was kept.
+    pub sweep: u32,
+    /// What was wrong.
+    pub error: GpuError,
+}
+
+/// How far a run went toward its [`Goal`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoalOutcome {
+    /// The share that [`Goal::fraction`] asked for.
+    pub fraction: f64,
+    /// The desired objective.
+    pub desired: f64,
+    /// Where the desired objective comes from: "given", or a description of the runs that found it.
+    pub origin: String,
+    /// The share of the way from the initial to the desired objective that [`Outcome::points`] have gone; 1 if both
+    /// were equal from the start.
+    pub best_fraction: f64,
+}
