@@ -19,8 +19,8 @@ use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
-    Checkpoint, Derivatives, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives,
-    Observer, Options, Phase, Sharpness, Stop,
+    Checkpoint, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives, Observer,
+    Options, Phase, Sharpness, Stop,
 };
 use crate::targets::Targets;
 use crate::topology::{Topology, certify};
@@ -60,10 +60,7 @@ impl<'a> Smoother<'a> {
     /// # Errors
     /// [`MeshError::ValueCount`] if there is not one target for each vertex.
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
-        let (given, expected) = (targets.maps().len(), self.mesh.points.len());
-        if given != expected {
-            return Err(MeshError::ValueCount { expected, given });
-        }
+        targets.check_count(self.mesh.points.len())?;
         self.problem.set_targets(targets.maps());
         Ok(())
     }
@@ -185,12 +182,7 @@ impl<'a> Smoother<'a> {
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
-        options.check()?;
-        if self.problem.targets().is_some() && options.derivatives != Derivatives::Analytic {
-            let (option, value) = ("derivatives", "finite differences".to_owned());
-            let remedy = "with targets take exact ones";
-            return Err(SmoothError::Option { option, value, remedy });
-        }
+        options.check_for(&self.problem)?;
         let mut fault = None;
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;

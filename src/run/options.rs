@@ -1,6 +1,7 @@
 //! The options of a run.
 
 use crate::error::SmoothError;
+use crate::layout::Problem;
 use crate::mesh::Precision;
 use crate::metric::Metric;
 use crate::metric::Scheme;
@@ -111,6 +112,20 @@ impl Options {
         } else {
             None
         }
+    }
+
+    /// Checks every field against its range, and whether it goes with a mesh that has targets or none.
+    pub(crate) fn check_for(&self, problem: &Problem) -> Result<(), SmoothError> {
+        self.check()?;
+        if problem.targets().is_some() && self.derivatives != Derivatives::Analytic {
+            let (option, value) = ("derivatives", "finite differences".to_owned());
+            return Err(SmoothError::Option {
+                option,
+                value,
+                remedy: "with targets take exact ones",
+            });
+        }
+        Ok(())
     }
 
     /// Checks every field against its range.

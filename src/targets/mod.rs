@@ -106,6 +106,14 @@ impl Targets {
         Ok(self)
     }
 
+    /// Fails if there is not one target for each of so many vertices.
+    pub(crate) fn check_count(&self, vertices: usize) -> Result<(), MeshError> {
+        match self.maps.len() {
+            given if given == vertices => Ok(()),
+            given => Err(MeshError::ValueCount { expected: vertices, given }),
+        }
+    }
+
     /// √M of each vertex, as xx, xy, yy.
     pub(crate) fn maps(&self) -> &[Tensor] {
         &self.maps

@@ -24,4 +24,5 @@ mod pins;
 mod readback;
 mod refusals;
 mod sweeps;
+mod targets;
 mod timestamps;

@@ -67,7 +67,7 @@ impl Sweeps {
     }
 
     fn by(mesh: &DeviceMesh, options: &Options, ending: Ending) -> Result<Self, SmoothError> {
-        options.check()?;
+        options.check_for(&mesh.problem)?;
         let plan = options.plan();
         let endless = plan.clone().endless();
         let steps = plan.steps();

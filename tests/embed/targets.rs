@@ -1,0 +1,71 @@
+//! An application's mesh whose elements are to look like targets.
+
+use std::ops::ControlFlow;
+
+use gpu_smooth::{
+    Backend, Derivatives, DeviceMesh, Mesh, MeshError, Method, Metric, Options, SmoothError,
+    Smoother, Sweeps, Targets,
+};
+
+use crate::app::{App, bad_plate};
+
+/// Sizes that grow threefold across the mesh.
+fn growing(mesh: &Mesh) -> Targets {
+    let across = |f: fn(f64, f64) -> f64, start| mesh.points.iter().map(|p| p[0]).fold(start, f);
+    let (low, high) = (across(f64::min, f64::INFINITY), across(f64::max, f64::NEG_INFINITY));
+    let size = |p: &[f64; 2]| 1.0 + 2.0 * (p[0] - low) / (high - low);
+    Targets::sizes(&mesh.points.iter().map(size).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn encoded_sweeps_to_targets_are_those_of_a_run() {
+    let (app, mesh) = (App::new(), bad_plate(800));
+    let targets = growing(&mesh);
+    let options = Options {
+        scheme: Metric::SoftSize.into(),
+        method: Method::Sweeps,
+        max_sweeps: 9,
+        tolerance: 0.0,
+        ..Options::default()
+    };
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    let backend = Backend::Gpu(app.another_gpu());
+    let run = smoother.run(&options, &backend, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(run.best_sweep, 9);
+
+    let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
+    let found = app.points(&device_mesh);
+    let mut moved = 0;
+    for (v, (there, here)) in run.points.iter().zip(&found).enumerate() {
+        assert!((0..2).all(|x| (there[x] - here[x]).abs() < 1e-12), "{v}: {there:?} {here:?}");
+        moved += usize::from(*there != mesh.points[v]);
+    }
+    assert!(moved > 100, "{moved}");
+    let f = f64::from(app.objective(&sweeps).of(Metric::SoftSize));
+    let expected = smoother.f(Metric::SoftSize, &found).unwrap();
+    assert!((f / expected - 1.0).abs() < 1e-5, "{f} {expected}");
+
+    // Without targets the same sweeps lead elsewhere.
+    let plain = DeviceMesh::new(&app.gpu, &mesh).unwrap();
+    let mut sweeps = Sweeps::new(&plain, &options).unwrap();
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
+    assert_ne!(app.points(&plain), found);
+}
+
+#[test]
+fn targets_that_do_not_fit_are_refused() {
+    let (app, mesh) = (App::new(), bad_plate(800));
+    let error = DeviceMesh::with_targets(&app.gpu, &mesh, &Targets::equilateral(3)).err().unwrap();
+    let expected = mesh.points.len();
+    assert!(
+        matches!(error, SmoothError::Mesh(MeshError::ValueCount { expected: e, given: 3 }) if e == expected)
+    );
+    let targets = Targets::equilateral(expected);
+    let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
+    let options = Options { derivatives: Derivatives::FiniteDifference, ..Options::default() };
+    let error = Sweeps::new(&device_mesh, &options).err().unwrap();
+    assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
+}
