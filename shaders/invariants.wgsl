@@ -52,3 +52,27 @@ fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
         vec3(own + p.x * e.x + r.x * d.x, p.x * e.y + r.x * d.y, own + p.y * e.y + r.y * d.y),
     );
 }
+
+// Metrics of shape and size in a balance, ε / τ + weight (τ - 1)² / τ with ε = excess / mean and τ = area / mean.
+
+fn shape_and_size_value(t: Invariants, weight: f32) -> f32 {
+    let off = t.area_less_mean / t.mean;
+    return (t.excess / t.mean + weight * off * off) * t.mean / t.area;
+}
+
+fn shape_and_size_slopes(t: Invariants, weight: f32) -> Slopes {
+    let scale = 1.0 / t.mean;
+    let e = t.excess * scale;
+    let off = t.area_less_mean * scale;
+    let inverse = t.mean / t.area;
+    let square = inverse * inverse;
+    return Slopes(
+        scale,
+        (e + weight * off * off) * inverse,
+        inverse,
+        (weight * off * (t.area * scale + 1.0) - e) * square,
+        0.0,
+        -square,
+        2.0 * (e + weight) * square * inverse,
+    );
+}

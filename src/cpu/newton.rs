@@ -54,10 +54,10 @@ fn newton_step<S: Simd, const MAPPED: bool>(
 ) -> (Points<S>, Mask<S>) {
     let (metric, properties) = (formulas.metric(), formulas.metric().properties());
     let sum = match step.derivatives {
-        Derivatives::FiniteDifference if !MAPPED => {
+        Derivatives::FiniteDifference => {
             differences::derivatives(patches, formulas, at, step.sharpness)
         }
-        _ => patches.derivatives(formulas, at, step.sharpness),
+        Derivatives::Analytic => patches.derivatives(formulas, at, step.sharpness),
     };
     let floor = properties.eigenvalue_floor;
     let ([dx, dy], slope, descends) = match patches.inverse_map() {

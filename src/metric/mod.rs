@@ -10,6 +10,7 @@ mod imr;
 mod properties;
 mod rms;
 mod scheme;
+mod shape_and_size;
 mod shape_size;
 mod soft_size;
 mod table;

@@ -1,27 +1,9 @@
-// Shape first and size second (TMOP's metrics μ₂ + 0.4 μ₅₆): with ε = excess / mean and
-// τ = area / mean, q² = ε / τ + (τ - 1)² / 5τ.
+// TMOP's μ₂ + 0.4 μ₅₆: q² = ε / τ + 0.2 (τ - 1)² / τ, with ε = excess / mean and τ = area / mean.
 
 fn soft_size_value(t: Invariants) -> f32 {
-    let e = t.excess / t.mean;
-    let tau = t.area / t.mean;
-    let off = t.area_less_mean / t.mean;
-    return (e + 0.2 * off * off) / tau;
+    return shape_and_size_value(t, 0.2);
 }
 
 fn soft_size_slopes(t: Invariants) -> Slopes {
-    let scale = 1.0 / t.mean;
-    let e = t.excess * scale;
-    let tau = t.area * scale;
-    let off = t.area_less_mean * scale;
-    let inverse = t.mean / t.area;
-    let square = inverse * inverse;
-    return Slopes(
-        scale,
-        (e + 0.2 * off * off) * inverse,
-        inverse,
-        (0.2 * off * (tau + 1.0) - e) * square,
-        0.0,
-        -square,
-        (2.0 * e + 0.4) * square * inverse,
-    );
+    return shape_and_size_slopes(t, 0.2);
 }

@@ -1,8 +1,9 @@
 //! The metric TMOP-94, of shape and size, the milder of the balanced ones.
 
-use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::shape_and_size;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-94",
@@ -21,29 +22,17 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("tmop_94.wgsl"),
 };
 
-/// q² = μ₂ + 1.5 μ₅₆ with μ₂ = |T|² / 2τ - 1 = ε / τ and μ₅₆ = (τ - 1)² / 2τ, where τ = area / mean and
-/// ε = excess / mean.
+/// The weight of (τ - 1)² / τ in q² = μ₂ + 1.5 μ₅₆.
+const WEIGHT: f64 = 0.75;
+
+/// q².
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
-    let scale = 1.0 / t.mean;
-    let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
-    let inverse = tau.constant(1.0) / tau;
-    (e + off * off * 0.75) * inverse
+    shape_and_size::value(t, WEIGHT)
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// q² and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
-    let scale = 1.0 / t.mean;
-    let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
-    let inverse = tau.constant(1.0) / tau;
-    let square = inverse * inverse;
-    Slopes::ByInvariants(InvariantSlopes {
-        unit: e.constant(scale),
-        value: (e + off * off * 0.75) * inverse,
-        excess: Some(inverse),
-        area: Some((off * (tau + 1.0) * 0.75 - e) * square),
-        excess_area: Some(square * -1.0),
-        area_area: Some((e * 2.0 + 1.5) * square * inverse),
-    })
+    shape_and_size::slopes(t, WEIGHT)
 }

@@ -232,10 +232,10 @@ const MISTAKES: [(Metric, &str, &str); 18] = [
     (Metric::ShapeSize, "3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"),
     (Metric::Tmop80, "size * (square + 1.0) - e * square", "size * (square + 1.0) + e * square"),
     (Metric::Tmop80, "3.0 * square * square", "3.01 * square * square"),
-    (Metric::Tmop94, "(0.75 * off * (tau + 1.0) - e)", "(0.76 * off * (tau + 1.0) - e)"),
-    (Metric::Tmop94, "2.0 * e + 1.5", "2.0 * e + 1.52"),
-    (Metric::SoftSize, "(0.2 * off * (tau + 1.0) - e)", "(0.2 * off * (tau + 1.0) + e)"),
-    (Metric::SoftSize, "2.0 * e + 0.4", "2.01 * e + 0.4"),
+    (Metric::Tmop94, "(weight * off * (t.area", "(1.01 * weight * off * (t.area"),
+    (Metric::Tmop94, "2.0 * (e + weight)", "2.0 * (e + 1.01 * weight)"),
+    (Metric::SoftSize, "scale + 1.0) - e)", "scale + 1.0) + e)"),
+    (Metric::SoftSize, "2.0 * (e + weight)", "2.0 * (1.01 * e + weight)"),
 ];
 
 #[test]

@@ -1,0 +1,30 @@
+//! Metrics of shape and size in a balance: μ₂ + 2 w μ₅₆ of TMOP.
+
+use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::dual::Real;
+
+/// ε / τ + w (τ - 1)² / τ, where τ = area / mean and ε = excess / mean: μ₂ = |T|² / 2τ - 1 = ε / τ and
+/// μ₅₆ = (τ - 1)² / 2τ.
+#[inline(always)]
+pub(super) fn value<T: Real>(t: &Invariants<T>, weight: f64) -> T {
+    let scale = 1.0 / t.mean;
+    let (e, off) = (t.excess * scale, (t.area - t.mean) * scale);
+    (e + off * off * weight) / (t.area * scale)
+}
+
+/// Value and derivatives of [`value`] by the invariants.
+#[inline(always)]
+pub(super) fn slopes<T: Real>(t: &Invariants<T>, weight: f64) -> Slopes<T> {
+    let scale = 1.0 / t.mean;
+    let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
+    let inverse = tau.constant(1.0) / tau;
+    let square = inverse * inverse;
+    Slopes::ByInvariants(InvariantSlopes {
+        unit: e.constant(scale),
+        value: (e + off * off * weight) * inverse,
+        excess: Some(inverse),
+        area: Some((off * (tau + 1.0) * weight - e) * square),
+        excess_area: Some(square * -1.0),
+        area_area: Some((e + weight) * square * inverse * 2.0),
+    })
+}
