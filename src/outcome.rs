@@ -16,12 +16,12 @@ pub struct Outcome {
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`].
+    /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
     /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
     /// single precision: the first sweeps, or all if the first ones did not open every triangle.
     pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`] did without corrections because the coarser levels do not fit the
+    /// Whether [`Method::Auto`](crate::Method::Auto) did without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,
     /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.
@@ -46,7 +46,7 @@ pub struct Outcome {
     pub smooth: Duration,
 }
 
-/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`].
+/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`](crate::Keeper::goes_on_without).
 #[derive(Clone, Debug)]
 pub struct DeviceFault {
     /// The last sweep on the device whose result was kept.
@@ -55,10 +55,10 @@ pub struct DeviceFault {
     pub error: GpuError,
 }
 
-/// How far a run went toward its [`Goal`].
+/// How far a run went toward its [`Goal`](crate::Goal).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalOutcome {
-    /// The share that [`Goal::fraction`] asked for.
+    /// The share that [`Goal::fraction`](crate::Goal::fraction) asked for.
     pub fraction: f64,
     /// The desired objective.
     pub desired: f64,

@@ -119,8 +119,8 @@ impl<'a> Smoother<'a> {
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
-    /// does not fit the device, [`GpuError::Limit`] or
-    /// [`GpuError::TooLarge`] before anything is done.
+    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
+    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
     pub fn run(
         &self,
         options: &Options,
