@@ -38,6 +38,8 @@ pub struct Problem {
     triangles: Vec<[u32; 3]>,
     /// The target map of each vertex, if the mesh has targets. Of single precision, so that both engines have the same.
     targets: Option<Vec<[f32; 3]>>,
+    /// Whether targets are longer in one direction than in another.
+    is_stretched: bool,
     mean_area: f64,
     vertices: Vec<u32>,
     center: DVec2,
@@ -96,6 +98,7 @@ impl Problem {
             ring,
             triangles,
             targets,
+            is_stretched: false,
             mean_area,
             vertices,
             center,
@@ -116,6 +119,8 @@ impl Problem {
         let scale = (sum(&self.triangles, area) / self.triangles.len() as f64).sqrt().recip();
         let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
         self.targets = Some(collect(self.vertices.len(), |i| scaled(self.vertices[i])));
+        let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
+        self.is_stretched = self.targets().is_some_and(|maps| maps.iter().any(is_longer));
         let shown =
             |t: &[u32; 3]| 0.5 * self.corner(t, |v| self.positions[v as usize]).doubled_area();
         self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
@@ -166,7 +171,7 @@ impl Problem {
 
     /// Whether targets are longer in one direction than in another.
     pub(crate) fn is_stretched(&self) -> bool {
-        self.targets().is_some_and(|maps| maps.iter().any(|&[xx, xy, yy]| xx != yy || xy != 0.0))
+        self.is_stretched
     }
 
     /// A triangle as a metric sees it: as its target map shows it, if the mesh has targets.

@@ -82,9 +82,13 @@ impl TargetArgs {
     }
 
     /// What there is to report of targets, with f of them before and after.
-    pub(crate) fn report(&self, f: [f64; 2]) -> Option<TargetReport> {
+    pub(crate) fn report(
+        &self,
+        before: f64,
+        after: impl FnOnce() -> Result<f64, String>,
+    ) -> Result<Option<TargetReport>, String> {
         let kind = match &self.target {
-            Target::Equilateral if self.surface == OnSurface::Plane => return None,
+            Target::Equilateral if self.surface == OnSurface::Plane => return Ok(None),
             Target::Equilateral => "equilateral".to_owned(),
             Target::KeepSize => "keep-size".to_owned(),
             Target::KeepShape => "keep-shape".to_owned(),
@@ -95,7 +99,8 @@ impl TargetArgs {
             OnSurface::Plane => "plane",
             OnSurface::Sphere => "sphere",
         };
-        Some(TargetReport { kind, surface, rings: self.target_rings, f })
+        let f = [before, after()?];
+        Ok(Some(TargetReport { kind, surface, rings: self.target_rings, f }))
     }
 
     /// Sets the targets of a mesh with its vertices at `points`.

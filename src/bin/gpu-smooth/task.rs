@@ -138,7 +138,8 @@ pub(crate) fn carry_out<T>(
         Change::between(smoother.topology(), &mesh.points, &outcome.points).map_err(told)?;
     let base = args.scheme().base();
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
-    let f_after = smoother.f(base, &outcome.points).map_err(told)?;
+    let f_after = || smoother.f(base, &outcome.points).map_err(told);
+    let target = args.target.report(f_before, f_after)?;
     let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
     let parameters = riding.add_parameters(&file, &outcome.points)?;
     let has_moved = outcome.points != mesh.points;
@@ -169,7 +170,7 @@ pub(crate) fn carry_out<T>(
     let report = Report {
         engine: engine_report(&taken, &outcome),
         mesh: mesh_report(&file, &smoother),
-        target: args.target.report([f_before, f_after]),
+        target,
         untangled: mending.map(|mended| UntangleReport {
             bad_before: mended.bad_before,
             sweeps: mended.sweeps,
