@@ -139,12 +139,13 @@ fn one(
     let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
     // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
-    let judged = |metric: Metric| match (metric.properties().barrier, is_positive) {
-        (true, false) => f64::INFINITY,
-        (true, true) => (metric.excess(&corner) + metric.ideal_squared()).min(f64::MAX),
-        (false, _) => metric.excess(&corner) + metric.ideal_squared(),
-    };
-    let sums = std::array::from_fn(|i| judged(Metric::ALL[i]));
+    let mut sums = Metric::every_excess(&corner);
+    for (square, metric) in sums.iter_mut().zip(Metric::ALL) {
+        *square += metric.ideal_squared();
+        if metric.properties().barrier {
+            *square = if is_positive { square.min(f64::MAX) } else { f64::INFINITY };
+        }
+    }
     let doubled = corner.doubled_area().abs();
     let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
     let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];

@@ -45,6 +45,17 @@ macro_rules! metrics {
                 }
             }
 
+            /// q² - ideal² by every metric, in the order of [`Self::ALL`]. What they have in common is computed once.
+            #[inline(always)]
+            pub(crate) fn every_excess<T: Real>(corner: &Corner<T>) -> [T; Self::ALL.len()] {
+                let invariants = corner.invariants();
+                [
+                    $edge_file::excess(corner),
+                    $($file::value(&invariants),)*
+                    $($rare_file::value(&invariants),)*
+                ]
+            }
+
             /// The metric's formulas.
             #[inline(always)]
             pub(crate) const fn formulas(self) -> AnyFormulas {
@@ -347,4 +358,18 @@ pub struct UnknownMetric(pub String);
 /// The names of all metrics, for the error message.
 fn names() -> String {
     Metric::ALL.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_metrics_at_once_are_each_metric_by_itself() {
+        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.8 };
+        let together = Metric::every_excess(&corner);
+        for (&metric, excess) in Metric::ALL.iter().zip(together) {
+            assert_eq!(excess, metric.excess(&corner), "{metric}");
+        }
+    }
 }

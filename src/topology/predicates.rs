@@ -3,7 +3,7 @@
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
-use crate::parallel::map_ranges;
+use crate::parallel::map_parts;
 
 /// Below this, products in the determinant may have lost bits to underflow: about 2^-960, far above the least number.
 const UNDERFLOW: f64 = 1e-289;
@@ -71,6 +71,17 @@ fn unscaled(x: f64, exponent: i32) -> f64 {
     scaled(x, -exponent)
 }
 
+/// Whether a triangle is counter-clockwise, decided without a branch, so that a loop over triangles is fast. False as well
+/// for a triangle so flat or so small that only [`is_positive`] can tell; a mesh has few of them.
+#[inline(always)]
+pub(crate) fn is_surely_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
+    let [p, q, r] = corners.map(|v| points[v as usize]);
+    let (left, right) = ((p[0] - r[0]) * (q[1] - r[1]), (p[1] - r[1]) * (q[0] - r[0]));
+    let determinant = left - right;
+    let least = ROUNDING * (left.abs() + right.abs()) + UNDERFLOW;
+    (determinant > least) & (determinant < f64::INFINITY)
+}
+
 /// Whether a triangle is counter-clockwise. False if a coordinate is NaN or infinite.
 #[inline]
 pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
@@ -101,9 +112,13 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
 
 /// The result of [`infeasible`], for triangles whose vertices `points` is known to have.
 pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
-    let bad = |t: &usize| !is_positive(points, &triangles[*t]);
-    let found = map_ranges(triangles.len(), 1 << 12, |range| -> Vec<u32> {
-        range.filter(bad).map(|t| t as u32).collect()
+    const CHUNK: usize = 1 << 10;
+    let found = map_parts(triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+        if part.iter().all(|t| is_surely_positive(points, t)) {
+            return Vec::new();
+        }
+        let bad = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| !is_positive(points, t));
+        bad.map(|(_, index)| index as u32).collect()
     });
     found.concat()
 }
@@ -172,6 +187,32 @@ mod tests {
         }
         let points = [[0.0, 0.0], [1e100, 0.0], [1e100, 5e-324]];
         assert!(is_positive(&points, &[0, 1, 2]) && !is_positive(&points, &[1, 0, 2]));
+    }
+
+    #[test]
+    fn what_is_surely_positive_is_positive() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 - (1 << 23) as f64
+        };
+        let mut sure = 0;
+        for round in 0..20_000 {
+            let [a, b] = [0; 2].map(|_| [random(), random()]);
+            // Every other triangle is flat but for rounding.
+            let share = random() / 1e7;
+            let middle = [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis]));
+            let points = [a, b, if round % 2 == 0 { middle } else { [random(), random()] }];
+            let is_sure = is_surely_positive(&points, &[0, 1, 2]);
+            assert!(!is_sure || is_positive(&points, &[0, 1, 2]), "{points:?}");
+            sure += usize::from(is_sure);
+        }
+        assert!((3000..7000).contains(&sure), "{sure}");
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert!(!is_surely_positive(&[[0.0, 0.0], [bad, 0.0], [0.0, 1.0]], &[0, 1, 2]));
+        }
     }
 
     #[test]

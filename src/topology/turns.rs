@@ -4,7 +4,7 @@
 //! pentagram. Only comparisons of coordinates are needed to see that, so it is exact.
 
 use crate::parallel::map_parts;
-use crate::topology::predicates::is_positive;
+use crate::topology::predicates::{is_positive, is_surely_positive};
 
 /// Whether a point lies above another, or at the same height to the right of it.
 #[inline(always)]
@@ -12,30 +12,29 @@ fn is_above(p: [f64; 2], q: [f64; 2]) -> bool {
     (p[1] > q[1]) | ((p[1] == q[1]) & (p[0] > q[0]))
 }
 
-/// The corner of a counter-clockwise triangle from which the direction of the x axis leads into the triangle or along
-/// the second of the two edges there, if there is one. Around a vertex, as many triangles have that corner at the vertex
-/// as they wind around it.
+/// For each corner of a counter-clockwise triangle, whether the direction of the x axis leads from it into the triangle or
+/// along the second of the two edges there. That holds for one corner at most. Around a vertex, as many triangles have that
+/// corner at the vertex as they wind around it.
 #[inline(always)]
-fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> Option<u32> {
+fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> [bool; 3] {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    let (pq, qr, rp) = (is_above(q, p), is_above(r, q), is_above(p, r));
-    // From each corner, the next one must not be above it, and the one after next must be.
-    match (pq, qr, rp) {
-        (false, _, false) => Some(corners[0]),
-        (false, false, _) => Some(corners[1]),
-        (_, false, false) => Some(corners[2]),
-        _ => None,
-    }
+    // From such a corner, the next one is not above it, and the one after next is.
+    let falls = [!is_above(q, p), !is_above(r, q), !is_above(p, r)];
+    [falls[2] & falls[0], falls[0] & falls[1], falls[1] & falls[2]]
 }
 
 /// Whether every triangle is counter-clockwise and every free vertex has triangles that wind once around it. In one pass,
 /// as nearly all meshes pass.
 pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[bool]) -> bool {
     let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
-        let turn = |t: &[u32; 3]| is_positive(points, t).then(|| turns_at_free(points, t, free));
-        chunk.iter().map(turn).sum()
+        let (mut sure, mut turns) = (true, 0);
+        for t in chunk {
+            sure &= is_surely_positive(points, t);
+            turns += turns_at_free(points, t, free);
+        }
+        (sure || chunk.iter().all(|t| is_positive(points, t))).then_some(turns)
     };
-    let turns: Option<usize> = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
+    let turns: Option<usize> = map_parts(triangles.chunks(1 << 10), count).into_iter().sum();
     turns == Some(count_of(free))
 }
 
@@ -55,16 +54,25 @@ pub(crate) fn overlapping_star(
         return None;
     }
     let mut turns = vec![0; free.len()];
-    let at_free = |t: &[u32; 3]| ahead(points, t).filter(|&v| free[v as usize]);
-    triangles.iter().filter_map(at_free).for_each(|v| turns[v as usize] += 1);
+    for t in triangles {
+        let counts = ahead(points, t).into_iter().zip(t).find(|(ahead, _)| *ahead);
+        if let Some((_, &v)) = counts
+            && free[v as usize]
+        {
+            turns[v as usize] += 1;
+        }
+    }
     let vertex = turns.iter().position(|&turns| turns > 1)?;
     Some((vertex as u32, turns[vertex]))
 }
 
-/// 1 if the corner of a triangle that counts for turns is at a free vertex, else 0.
+/// 1 if the corner of a triangle that counts for turns is at a free vertex, else 0. Without branches, of which a processor
+/// would foretell every other one wrong.
 #[inline(always)]
 fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usize {
-    usize::from(ahead(points, corners).is_some_and(|v| free[v as usize]))
+    let is_ahead = ahead(points, corners);
+    let counts = |corner: usize| is_ahead[corner] & free[corners[corner] as usize];
+    usize::from(counts(0) | counts(1) | counts(2))
 }
 
 /// Number of free vertices.
