@@ -28,7 +28,7 @@ struct List<'a> {
 impl Walk for Su2 {
     const VERTICES: &'static str = "NPOIN";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source).with_comments(b'%');
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
@@ -105,7 +105,7 @@ fn elements(
     count: u64,
     zone: usize,
     Range { start: first, end: last }: Range<u64>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
     each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
