@@ -26,6 +26,8 @@ pub(crate) struct Attempt<'s> {
     pub(crate) problem: &'s Problem,
     pub(crate) device: Option<(&'s Gpu, Waiting)>,
     pub(crate) phase: Phase,
+    /// Number of sweeps before this attempt, for the observer.
+    pub(crate) done: u32,
 }
 
 /// The end of an [`Attempt`], including the sweeps that opened flat triangles.
@@ -39,6 +41,23 @@ pub(crate) struct Ended {
     pub(crate) held_back: usize,
     pub(crate) stop: Stop,
     pub(crate) fault: Option<DeviceFault>,
+}
+
+impl Ended {
+    /// This end, and that of a run which went on from there.
+    pub(crate) fn followed_by(self, next: Ended) -> Ended {
+        let mut history = self.history;
+        // The first entry evaluates the positions at which this one ended.
+        history.extend(next.history.into_iter().skip(1));
+        Ended {
+            history,
+            corrections: self.corrections + next.corrections,
+            opening_sweeps: self.opening_sweeps + next.opening_sweeps,
+            levels_left_out: self.levels_left_out || next.levels_left_out,
+            fault: self.fault.or(next.fault),
+            ..next
+        }
+    }
 }
 
 impl Attempt<'_> {
@@ -72,7 +91,8 @@ impl Attempt<'_> {
         let (mut place, mut fault) = (device, None);
         let end = loop {
             let last = keeping.last.clone();
-            let course = Course { plan: &plan, must, phase: self.phase, done, from: last };
+            let course =
+                Course { plan: &plan, must, phase: self.phase, done: self.done + done, from: last };
             let strategy = Strategy::new(problem, &plan, corrected);
             let driven = match place {
                 None => {
@@ -96,7 +116,7 @@ impl Attempt<'_> {
                 Err(DriveError::LeftOut(error)) => return Err(error.into()),
                 Err(DriveError::Foreign) => return Err(resume::foreign()),
             };
-            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + done;
+            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + self.done + done;
             if place.is_some() && keeping.keeper.goes_on_without(&error, kept) {
                 (place, fault) = (None, Some(DeviceFault { sweep: kept, error }));
             } else if matches!(error, GpuError::NotFinite { .. }) {

@@ -1,6 +1,7 @@
 //! Makes a mesh of a file's nodes and elements, or finds where one of them stands.
 
 use crate::error::{Location, ReadError};
+use crate::file::curves::Curves;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk};
@@ -14,7 +15,8 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
     let Layout { format, numbers, encoded } = W::walk(source, &mut reader)?;
     let has_parameters = reader.has_parameters;
-    let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } = reader;
+    let Reader { mut mesh, x_at, regions, curves, .. } = reader;
+    let Reader { quadrilaterals, mut notes, data, on_lower, .. } = reader;
     if quadrilaterals > 0 {
         notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
     }
@@ -33,7 +35,18 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
         }
     }
     let regions = regions.finish();
-    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data, has_parameters })
+    Ok(Parsed {
+        format,
+        mesh,
+        x_at,
+        numbers,
+        encoded,
+        regions,
+        curves,
+        notes,
+        data,
+        has_parameters,
+    })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
@@ -55,6 +68,7 @@ struct Reader {
     map: Option<TagMap>,
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
+    curves: Curves,
     quadrilaterals: u64,
     notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides coordinates.
@@ -65,6 +79,25 @@ struct Reader {
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
+}
+
+impl Reader {
+    /// The index of a node that an element has.
+    #[inline]
+    fn index(
+        &self,
+        cursor: &Cursor<'_>,
+        kind: Kind,
+        tag: u64,
+        node: u64,
+    ) -> Result<u32, ReadError> {
+        let index = self.map.as_ref().and_then(|map| map.index(node));
+        index.ok_or_else(|| {
+            let (kind, list) = (kind.name(), self.vertices_of);
+            let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
+            cursor.error(problem, CORRECT)
+        })
+    }
 }
 
 impl Sink for Reader {
@@ -84,9 +117,29 @@ impl Sink for Reader {
             self.on_lower += 1;
             self.mesh.fixed.push(self.tags.len() as u32);
         }
+        if dimension == 0 {
+            self.curves.held.push(self.tags.len() as u32);
+        }
         self.tags.push(tag);
         self.x_at.push(x_at);
         self.mesh.points.push(at);
+    }
+
+    fn polyline(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, _): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
+        let vertices = nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
+        self.curves.lines.extend(vertices.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.mesh.fixed.extend(vertices);
+        Ok(())
+    }
+
+    fn periodic(&mut self) {
+        self.curves.is_periodic = true;
     }
 
     fn note(&mut self, note: &str) {
@@ -134,13 +187,7 @@ impl Sink for Reader {
         let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
-            let index = self.map.as_ref().and_then(|map| map.index(node));
-            *vertex = index.ok_or_else(|| {
-                let kind = kind.name();
-                let list = self.vertices_of;
-                let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
-                cursor.error(problem, CORRECT)
-            })?;
+            *vertex = self.index(cursor, kind, tag, node)?;
         }
         let [a, b, c, _] = vertices;
         match kind {
@@ -155,7 +202,12 @@ impl Sink for Reader {
                 Ok(())
             }
             Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
-                self.mesh.fixed.extend_from_slice(&vertices[..nodes.len()]);
+                let fixed = &vertices[..nodes.len()];
+                self.mesh.fixed.extend_from_slice(fixed);
+                match kind {
+                    Kind::Line => self.curves.lines.push([a, b]),
+                    _ => self.curves.held.extend_from_slice(fixed),
+                }
                 self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
                 Ok(())
             }

@@ -18,6 +18,7 @@ mod random;
 mod requests;
 mod resumed;
 mod safety;
+mod slide;
 mod targets;
 mod tolerance;
 mod untangle;

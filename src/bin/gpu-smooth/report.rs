@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Spread};
+use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Slid, Spread};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
@@ -58,6 +58,9 @@ pub(crate) struct Report {
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
+    /// What slid along lines, if vertices might.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) slid: Option<SlideReport>,
     /// What the files alone say, where the mesh was written to a file and a report is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certificate: Option<Certificate>,
@@ -145,6 +148,27 @@ impl From<Change> for ChangeReport {
     fn from(change: Change) -> Self {
         let Change { moved, size, least_altitude } = change;
         Self { moved: moved.into(), size: size.into(), least_altitude }
+    }
+}
+
+/// What slid along lines.
+#[derive(Serialize)]
+pub(crate) struct SlideReport {
+    /// Vertices that might slide.
+    pub(crate) vertices: usize,
+    /// Those that did.
+    pub(crate) moved: usize,
+    /// Rounds of sweeps, each followed by sweeps along the lines.
+    pub(crate) rounds: u32,
+    /// How far the lines are from those before, in the unit of the mesh.
+    pub(crate) off: f64,
+    /// The change of the area of the mesh, as a share of it.
+    pub(crate) area_change: f64,
+}
+
+impl From<Slid> for SlideReport {
+    fn from(Slid { vertices, moved, rounds, off, area }: Slid) -> Self {
+        Self { vertices, moved, rounds, off, area_change: area }
     }
 }
 
@@ -253,6 +277,9 @@ impl Report {
         }
         let _ = writeln!(text, "\n{}", self.ending());
         let _ = writeln!(text, "{}", self.moves());
+        if let Some(slides) = self.slides() {
+            let _ = writeln!(text, "{slides}");
+        }
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");
         }
@@ -368,6 +395,18 @@ impl Report {
             percent(size.median),
             percent(size.most),
         )
+    }
+
+    /// What slid and what that did to the domain, in a sentence.
+    pub(crate) fn slides(&self) -> Option<String> {
+        let SlideReport { vertices, moved, off, area_change, .. } = self.slid.as_ref()?;
+        let area = match 100.0 * area_change {
+            change if change.abs() < 1e-9 => "stayed the same".to_owned(),
+            change => format!("changed by {change:+.2e} %"),
+        };
+        Some(format!(
+            "{moved} of {vertices} vertices on lines slid along them; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
+        ))
     }
 
     /// How far the run is from the limit of f, as far as that can be told.

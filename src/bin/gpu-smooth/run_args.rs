@@ -12,6 +12,7 @@ use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
 use crate::riding::RidingArgs;
+use crate::slide_args::SlideArgs;
 use crate::target_args::TargetArgs;
 
 #[derive(Args)]
@@ -113,6 +114,9 @@ pub(crate) struct SmoothArgs {
     pub(crate) moving: MoveArgs,
 
     #[command(flatten)]
+    pub(crate) sliding: SlideArgs,
+
+    #[command(flatten)]
     pub(crate) riding: RidingArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
@@ -209,6 +213,9 @@ impl SmoothArgs {
             return Some(format!(
                 "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
+        }
+        if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
+            return Some("--slide keeps no checkpoints: drop one of them".to_owned());
         }
         let (kept, dropped) = if self.method == MethodChoice::Paper && self.omega.is_some() {
             ("--method paper", "--omega")

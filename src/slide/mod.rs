@@ -1,0 +1,13 @@
+//! Vertices that slide: those of the boundary and of lines inside the domain move along the curve they are on, from corner
+//! to corner.
+
+mod acceleration;
+mod chains;
+mod curve;
+mod newton;
+mod options;
+mod sliding;
+
+pub(crate) use acceleration::Acceleration;
+pub use options::Slide;
+pub(crate) use sliding::{Params, Sliding};
