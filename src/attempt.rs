@@ -13,8 +13,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Course, DriveError, End, History, Keeper, Keeping, Method, Objectives,
-    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, shape_guard,
+    CPU, Checkpoint, Course, DriveError, End, Guard, History, Keeper, Keeping, Method, Objectives,
+    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, set_guards,
 };
 
 /// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
@@ -72,7 +72,7 @@ impl Attempt<'_> {
     ) -> Result<Ended, SmoothError> {
         let problem = self.problem;
         let mut plan = options.plan_to(target);
-        plan.shape_guard = shape_guard(problem, from, &plan.scheme);
+        set_guards(&mut plan, options.guard, problem, from);
         let (device, opened) = match resumed {
             Some(Checkpoint { about, saved }) => {
                 (self.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
@@ -131,7 +131,7 @@ impl Attempt<'_> {
         let step = plan.base_step(1.0);
         if stop == Stop::Converged && step.shape_guard.is_finite() {
             held = held_back(problem, &end.positions, &step);
-            if held > 0 {
+            if held > 0 && options.guard == Guard::ByMetric {
                 stop = Stop::HeldBack;
             }
         }

@@ -152,8 +152,8 @@ pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
 pub use quality::Quality;
 pub use run::{
-    Checkpoint, Derivatives, Desired, Goal, Keeper, Method, Objectives, Observer, Options, Phase,
-    Progress, Sharpness, Stop,
+    Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,
+    Phase, Progress, Sharpness, Stop,
 };
 pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};

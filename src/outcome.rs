@@ -31,7 +31,8 @@ pub struct Outcome {
     /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
     /// if they do not decay or are too few.
     pub remaining: Option<f64>,
-    /// Number of vertices that the shape guard keeps from moving on, if that is why the run ended ([`Stop::HeldBack`]).
+    /// Number of vertices that the guard keeps from moving on at the end of a run that converged otherwise: by
+    /// [`Guard::Worst`](crate::Guard::Worst), or if that is why the run ended ([`Stop::HeldBack`]).
     pub held_back: usize,
     /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
     /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.

@@ -9,8 +9,8 @@ use crate::error::SmoothError;
 use crate::layout::Problem;
 use crate::parallel::map_parts;
 use crate::run::{
-    Derivatives, Desired, Goal, Keeper, Keeping, Objectives, Observer, Options, Plan, Stop,
-    StopRule, shape_guard,
+    Derivatives, Desired, Goal, Guard, Keeper, Keeping, Objectives, Observer, Options, Plan, Stop,
+    StopRule, set_guards,
 };
 use crate::slide::{Acceleration, Params, Sliding};
 
@@ -64,7 +64,7 @@ impl<'s> Rounds<'s> {
     ) -> Result<Ended, SmoothError> {
         let problem = attempt.problem;
         let mut plan = options.plan_to(target);
-        plan.shape_guard = shape_guard(problem, problem.positions(), &plan.scheme);
+        set_guards(&mut plan, options.guard, problem, problem.positions());
         let rule = StopRule { max_sweeps: u32::MAX, ..plan.stop };
         let mut positions = problem.positions().to_vec();
         let mut memory = Acceleration::default();
@@ -100,7 +100,9 @@ impl<'s> Rounds<'s> {
                 };
             }
             if let Some(stop) = stop {
-                let is_held = stop == Stop::Converged && ended.held_back > 0;
+                let is_held = stop == Stop::Converged
+                    && ended.held_back > 0
+                    && options.guard == Guard::ByMetric;
                 let stop = if is_held { Stop::HeldBack } else { stop };
                 return Ok(Ended { positions, stop, ..ended });
             }

@@ -383,6 +383,7 @@ impl<'a> Smoother<'a> {
             tolerance: 1e-8,
             max_sweeps: 5000,
             sharpness: Sharpness::CONTINUED,
+            guard: options.guard,
             ..Options::default()
         };
         let run = Attempt { problem: &self.problem, device, phase: Phase::Reference, done: 0 };

@@ -24,6 +24,19 @@ pub enum Method {
     Sweeps,
 }
 
+/// How bad a step may make a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Guard {
+    /// As bad as lowers the objective, by a metric with a barrier; by others no worse than the worst triangle with a free vertex before
+    /// the run, nor than an inverse mean ratio of 30.
+    #[default]
+    ByMetric,
+    /// By no metric worse than the worst triangle with a free vertex before the run, by the inverse mean ratio as targets show the
+    /// triangles. So the worst element of a run never gets worse. Only for whole runs: it has no effect on
+    /// [`Sweeps`](crate::Sweeps), which an application encodes itself.
+    Worst,
+}
+
 /// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of
 /// f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +68,8 @@ pub struct Options {
     /// The most Newton steps per visit of a vertex, 1000 at most. With analytic derivatives a visit ends sooner once
     /// its steps have become short.
     pub inner: u32,
+    /// What no step may do to a triangle besides inverting it.
+    pub guard: Guard,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
     /// The exponent of the p-norm that replaces EDGE in Newton's method.
@@ -75,6 +90,7 @@ impl Default for Options {
             omega: None,
             plain_sweeps: 4,
             inner: 1,
+            guard: Guard::ByMetric,
             derivatives: Derivatives::Analytic,
             sharpness: Sharpness::FIXED,
             track_all: false,
@@ -201,6 +217,7 @@ impl Options {
             },
             track_all: self.track_all,
             shape_guard: f64::INFINITY,
+            worst_guard: f64::INFINITY,
         }
     }
 }

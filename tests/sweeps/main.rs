@@ -9,6 +9,7 @@ mod coloring;
 mod flat;
 mod global;
 mod goals;
+mod guard;
 mod hard;
 mod invariance;
 mod multilevel;
@@ -121,6 +122,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         sharpness: Sharpness::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
+        worst_guard: f64::INFINITY,
         shape_guard: f64::INFINITY,
     }
 }

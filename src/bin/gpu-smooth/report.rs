@@ -47,7 +47,7 @@ pub(crate) struct Report {
     /// What data of vertices were taken to the new places.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interpolated: Option<String>,
-    /// Vertices that the shape guard keeps from moving on, if the run ended for that.
+    /// Vertices that the guard keeps from moving on at the end of a run that converged otherwise.
     pub(crate) held_back: usize,
     /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
     pub(crate) lost: f64,
@@ -363,7 +363,7 @@ impl Report {
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.base();
         let remedy = match shape {
-            true => "f is a mean, which may fall as one element gets worse".to_owned(),
+            true => "f is a mean, which may fall as one element gets worse; --guard worst does not let it".to_owned(),
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
         };
         let (before, after) = (six(before), six(after));
@@ -439,6 +439,10 @@ impl Report {
             0 => sweeps,
             n => format!("{sweeps} ({n} corrected from coarser levels)"),
         };
+        let held = match self.held_back {
+            1 => "1 vertex".to_owned(),
+            n => format!("{n} vertices"),
+        };
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {
                 let desired = six(goal.desired);
@@ -464,14 +468,13 @@ impl Report {
                     (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
             }
+            ("converged", None) if self.held_back > 0 => {
+                format!("converged after {sweeps}; --guard worst keeps {held} from moving on")
+            }
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
             ("held-back", None) => {
-                let vertices = match self.held_back {
-                    1 => "1 vertex".to_owned(),
-                    n => format!("{n} vertices"),
-                };
-                format!("held back by the shape guard at {vertices} after {sweeps}")
+                format!("held back by the shape guard at {held} after {sweeps}")
             }
             ("time-limit", None) => format!("ended by --time-limit after {sweeps}{}", self.left()),
             ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{
-    Derivatives, Desired, Goal, Method, Metric, Options, Precision, Scheme, Sharpness,
+    Derivatives, Desired, Goal, Guard, Method, Metric, Options, Precision, Scheme, Sharpness,
 };
 
 use crate::moving::MoveArgs;
@@ -107,6 +107,11 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
     pub(crate) edge_norm: EdgeNorm,
 
+    /// How bad a step may make a triangle: as bad as lowers f where the metric has a barrier (by-metric), or never worse than the worst
+    /// that can be smoothed was (worst)
+    #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
+    pub(crate) guard: GuardChoice,
+
     #[command(flatten)]
     pub(crate) target: TargetArgs,
 
@@ -169,6 +174,12 @@ pub(crate) enum MethodChoice {
     Multilevel,
     Relaxed,
     Paper,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GuardChoice {
+    ByMetric,
+    Worst,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -251,6 +262,10 @@ impl SmoothArgs {
                 _ => self.omega,
             },
             inner: self.inner,
+            guard: match self.guard {
+                GuardChoice::ByMetric => Guard::ByMetric,
+                GuardChoice::Worst => Guard::Worst,
+            },
             derivatives: match self.derivatives {
                 DerivativesChoice::Analytic => Derivatives::Analytic,
                 DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
