@@ -96,6 +96,7 @@ mod file;
 pub mod gpu;
 mod interpolate;
 mod layout;
+mod limit;
 mod measure;
 mod mesh;
 mod metric;

@@ -34,21 +34,24 @@ impl<'s> Rounds<'s> {
         Self { sliding, params: sliding.start(), count: 0 }
     }
 
-    /// Checks that vertices can slide in a run by these options.
-    pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
-        let refuse =
-            |remedy| Err(SmoothError::Option { option: "slide", value: "on".to_owned(), remedy });
+    /// Checks that a run by these options can go in rounds, as `option` asks for.
+    pub(crate) fn check(
+        option: &'static str,
+        options: &Options,
+        is_continued: bool,
+    ) -> Result<(), SmoothError> {
+        let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
         if options.scheme.period() > 1 || !options.scheme.is_monotone() {
-            return refuse("vertices slide by one metric other than edge: take imr, say");
+            return refuse("it needs one metric other than edge: take imr, say");
         }
         if options.derivatives != Derivatives::Analytic {
             return refuse("it needs exact derivatives");
         }
         if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
-            return refuse("the desired f is not sought while vertices slide: give its value");
+            return refuse("the desired f is not sought in such a run: give its value");
         }
         match is_continued {
-            true => refuse("a checkpoint does not hold where vertices have slid: start anew"),
+            true => refuse("such a run is not continued from a checkpoint: start anew"),
             false => Ok(()),
         }
     }
@@ -144,7 +147,7 @@ impl<'s> Rounds<'s> {
 }
 
 /// The objectives that a plan asks for.
-fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
+pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
     let mut objectives = Objectives::untracked();
     for metric in plan.tracked() {
         let excess = mean_excess(metric, problem, positions);
@@ -154,7 +157,7 @@ fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives
 }
 
 /// Whether no triangle is inverted or flat after a move, or has an inverse mean ratio that is worse than before and above `guard`.
-fn is_sound(problem: &Problem, before: &[DVec2], after: &[DVec2], guard: f64) -> bool {
+pub(crate) fn is_sound(problem: &Problem, before: &[DVec2], after: &[DVec2], guard: f64) -> bool {
     let ratio = |positions: &[DVec2], t: &[u32; 3]| {
         problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
     };

@@ -12,7 +12,9 @@ use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
-use crate::mesh::Mesh;
+use crate::limit::Limit;
+use crate::measure::mean_edges;
+use crate::mesh::{Mesh, Precision};
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
@@ -206,7 +208,15 @@ impl<'a> Smoother<'a> {
         let start = Instant::now();
         options.check_for(&self.problem)?;
         if self.sliding.is_some() {
-            Rounds::check(options, from.is_some())?;
+            Rounds::check("slide", options, from.is_some())?;
+        }
+        if let Some(max_move) = options.max_move {
+            Limit::check(options, from.is_some())?;
+            if self.sliding.is_some() {
+                let value = max_move.to_string();
+                let remedy = "vertices that slide have no bound: set one of the two";
+                return Err(SmoothError::Option { option: "max move", value, remedy });
+            }
         }
         let mut fault = None;
         if let Some((gpu, waiting)) = device {
@@ -249,13 +259,21 @@ impl<'a> Smoother<'a> {
         keeping.about = Some(about);
         let positions = self.problem.positions();
         let mut rounds = self.sliding.as_ref().map(Rounds::new);
-        let end = match &mut rounds {
-            Some(rounds) => {
+        let end = match (&mut rounds, options.max_move) {
+            (Some(rounds), _) => {
                 // A checkpoint does not hold where vertices have slid.
                 keeping.about = None;
                 rounds.run(run, options, target, &mut keeping, observe).await?
             }
-            None => run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?,
+            (None, Some(most)) => {
+                keeping.about = None;
+                let bounds = self.bounds(most, options.stored);
+                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, &bounds);
+                limit.run(run, options, target, &mut keeping, observe).await?
+            }
+            (None, None) => {
+                run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?
+            }
         };
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
@@ -313,6 +331,19 @@ impl<'a> Smoother<'a> {
             device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
+    }
+
+    /// How far each vertex may move such that, stored with so many digits, it has not moved by more than this in edges there.
+    fn bounds(&self, most: f64, stored: Precision) -> Vec<f64> {
+        let digits = match stored {
+            Precision::Single => f64::from(f32::EPSILON),
+            Precision::Double => f64::EPSILON,
+        };
+        let edges = mean_edges(&self.topology, &self.mesh.points);
+        let bound = |(edge, [x, y]): (f64, &[f64; 2])| {
+            (most * edge * (1.0 - 1e-9) - 2.0 * digits * x.abs().max(y.abs())).max(0.0)
+        };
+        edges.into_iter().zip(&self.mesh.points).map(bound).collect()
     }
 
     /// What slid in rounds that ended at `points`.

@@ -70,6 +70,9 @@ pub struct Options {
     pub inner: u32,
     /// What no step may do to a triangle besides inverting it.
     pub guard: Guard,
+    /// How far a vertex may be from its place before the run, in the mean length of the edges there before. Above 0; `None` for as
+    /// far as it takes. Only for whole runs, by one metric other than edge.
+    pub max_move: Option<f64>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
     /// The exponent of the p-norm that replaces EDGE in Newton's method.
@@ -91,6 +94,7 @@ impl Default for Options {
             plain_sweeps: 4,
             inner: 1,
             guard: Guard::ByMetric,
+            max_move: None,
             derivatives: Derivatives::Analytic,
             sharpness: Sharpness::FIXED,
             track_all: false,
@@ -154,6 +158,9 @@ impl Options {
         }
         if let Some(omega) = self.omega.filter(|omega| !(*omega > 0.0 && *omega < 2.0)) {
             return refuse("omega", omega, "over-relaxation must be above 0 and below 2");
+        }
+        if let Some(most) = self.max_move.filter(|most| !(*most > 0.0 && most.is_finite())) {
+            return refuse("max move", most, "it must be above 0");
         }
         if !(1..=Self::MOST_INNER).contains(&self.inner) {
             return refuse("inner", self.inner.into(), "a visit takes from 1 to 1000 Newton steps");

@@ -6,8 +6,10 @@ mod chains;
 mod curve;
 mod newton;
 mod options;
+mod patch;
 mod sliding;
 
 pub(crate) use acceleration::Acceleration;
 pub use options::Slide;
+pub(crate) use patch::{Fan, Patch};
 pub(crate) use sliding::{Params, Sliding};

@@ -7,8 +7,9 @@ use crate::mesh::Precision;
 use crate::run::Step;
 use crate::slide::chains::chains;
 use crate::slide::curve::Curve;
-use crate::slide::newton::{self, Fan, Window};
+use crate::slide::newton::{self, Window};
 use crate::slide::options::Slide;
+use crate::slide::patch::Fan;
 use crate::topology::Topology;
 
 impl Slide {

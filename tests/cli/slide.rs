@@ -73,9 +73,26 @@ fn options_that_do_not_go_with_sliding_are_refused() {
         ("--slide --corner-angle 200", "from 0 to 180"),
         ("--slide --hausdorff 0", "above 0"),
         ("--hausdorff 1", "--slide"),
+        ("--slide --max-move 1", "--max-move does not go with --slide"),
+        ("--max-move 0", "above 0"),
     ] {
         let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options}"));
         assert!(run.code != Some(0), "{options}");
         assert_holds(&run.err, &[told]);
     }
+}
+
+#[test]
+fn a_bound_and_the_guard_of_the_worst_are_kept_and_reported() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let options = "--max-move 0.1 --guard worst --free-interfaces";
+    let line = format!("in.mesh out.mesh --engine cpu {options} --report r.json");
+    folder.line(&line).clean();
+    let report = folder.json("r.json");
+    assert_eq!(report["max_move"], 0.1);
+    let most = number(&report["change"]["moved"]["most"]);
+    assert!(most <= 0.1 && most > 0.09, "{most}");
+    let [before, after] =
+        ["before", "after"].map(|state| number(&report[state]["worst_movable_imr"]));
+    assert!(after <= before, "{before} {after}");
 }

@@ -12,6 +12,7 @@ mod goals;
 mod guard;
 mod hard;
 mod invariance;
+mod limit;
 mod multilevel;
 mod not_finite;
 mod optimum;

@@ -55,6 +55,9 @@ pub(crate) struct Report {
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
     pub(crate) returned: usize,
+    /// How far vertices might move, in lengths of an edge, if there was a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,

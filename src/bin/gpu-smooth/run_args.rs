@@ -121,6 +121,10 @@ pub(crate) struct SmoothArgs {
     #[command(flatten)]
     pub(crate) sliding: SlideArgs,
 
+    /// Let no vertex move farther than so many lengths of an edge there
+    #[arg(long, value_name = "EDGES", help_heading = "What may move", value_parser = edges, allow_negative_numbers = true)]
+    pub(crate) max_move: Option<f64>,
+
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
 
@@ -225,6 +229,17 @@ impl SmoothArgs {
                 "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
+        if self.max_move.is_some() {
+            let dropped = [
+                (self.sliding.slide, "--slide"),
+                (self.untangle, "--untangle"),
+                (self.checkpoint.is_some(), "--checkpoint"),
+                (self.continued.is_some(), "--continue"),
+            ];
+            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
+                return Some(format!("--max-move does not go with {other}: drop one of them"));
+            }
+        }
         if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
             return Some("--slide keeps no checkpoints: drop one of them".to_owned());
         }
@@ -262,6 +277,7 @@ impl SmoothArgs {
                 _ => self.omega,
             },
             inner: self.inner,
+            max_move: self.max_move,
             guard: match self.guard {
                 GuardChoice::ByMetric => Guard::ByMetric,
                 GuardChoice::Worst => Guard::Worst,
@@ -290,6 +306,10 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 fn fraction(text: &str) -> Result<f64, String> {
     number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+}
+
+fn edges(text: &str) -> Result<f64, String> {
+    number(text, |most| most > 0.0 && most.is_finite(), "above 0")
 }
 
 fn omega(text: &str) -> Result<f64, String> {

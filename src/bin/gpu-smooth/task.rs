@@ -202,6 +202,7 @@ pub(crate) fn carry_out<T>(
         goal: goal_report(&outcome),
         returned: outcome.returned,
         slid: outcome.slid.map(Into::into),
+        max_move: args.max_move,
         change: change.into(),
         before: (&before).into(),
         after: (&after).into(),
