@@ -155,11 +155,10 @@ impl<'s> Limit<'s> {
         let mut share = 1.0;
         for _ in 0..=HALVED {
             let mut there = positions.clone();
-            for v in 0..self.bounds.len() {
-                let from = positions[v];
+            for (v, (place, to)) in there[..self.bounds.len()].iter_mut().zip(to).enumerate() {
                 // All of the way is exactly there.
-                let wanted = if share == 1.0 { to[v] } else { from + (to[v] - from) * share };
-                there[v] = self.within(v, wanted);
+                let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
+                *place = self.within(v, wanted);
             }
             if is_sound(problem, positions, &there, guard)
                 && objectives(problem, plan, &there).of(base) < here
@@ -169,9 +168,10 @@ impl<'s> Limit<'s> {
             }
             share *= 0.5;
         }
-        for v in 0..self.bounds.len() {
-            self.held[v] |= self.within(v, to[v]) != to[v];
-        }
+        let beyond = |(v, to): (usize, &DVec2)| (self.within(v, *to) != *to).then_some(v);
+        let free = &to[..self.held.len()];
+        let beyond: Vec<usize> = free.iter().enumerate().filter_map(beyond).collect();
+        beyond.into_iter().for_each(|v| self.held[v] = true);
         false
     }
 
