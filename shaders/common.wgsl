@@ -7,7 +7,7 @@ struct Part {
     count: u32,
     omega: f32,
     sharpness: u32,
-    // The inverse mean ratio up to which any step may flatten a triangle, where the metric is GUARDED.
+    // The inverse mean ratio up to which any step may flatten a triangle, NO_GUARD for any.
     shape_guard: f32,
     // Entries of `ring` in front of the binding.
     @size(12) ring_base: u32,

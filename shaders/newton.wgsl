@@ -12,7 +12,7 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
-        if GUARDED && inverse_mean_ratio(t) > limit {
+        if limit < NO_GUARD && inverse_mean_ratio(t) > limit {
             return vec2(0.0, 0.0);
         }
         sum += metric_model(t);
@@ -60,7 +60,7 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
         let t = shown(Corner(a, b, p.mean_area), map);
-        if GUARDED {
+        if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }
         let d = pulled_back(metric_derivatives(t, width), map);

@@ -13,8 +13,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Course, DriveError, End, History, Keeper, Keeping, Method, Objectives,
-    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, shape_guard,
+    CPU, Checkpoint, Course, DriveError, End, Guard, History, Keeper, Keeping, Method, Objectives,
+    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, set_guards,
 };
 
 /// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
@@ -26,6 +26,8 @@ pub(crate) struct Attempt<'s> {
     pub(crate) problem: &'s Problem,
     pub(crate) device: Option<(&'s Gpu, Waiting)>,
     pub(crate) phase: Phase,
+    /// Number of sweeps before this attempt, for the observer.
+    pub(crate) done: u32,
 }
 
 /// The end of an [`Attempt`], including the sweeps that opened flat triangles.
@@ -41,6 +43,23 @@ pub(crate) struct Ended {
     pub(crate) fault: Option<DeviceFault>,
 }
 
+impl Ended {
+    /// This end, and that of a run which went on from there.
+    pub(crate) fn followed_by(self, next: Ended) -> Ended {
+        let mut history = self.history;
+        // The first entry evaluates the positions at which this one ended.
+        history.extend(next.history.into_iter().skip(1));
+        Ended {
+            history,
+            corrections: self.corrections + next.corrections,
+            opening_sweeps: self.opening_sweeps + next.opening_sweeps,
+            levels_left_out: self.levels_left_out || next.levels_left_out,
+            fault: self.fault.or(next.fault),
+            ..next
+        }
+    }
+}
+
 impl Attempt<'_> {
     /// Sweeps from some positions, or from a checkpoint of a run that began there, until the run ends.
     pub(crate) async fn sweep<K: Keeper + ?Sized>(
@@ -53,7 +72,7 @@ impl Attempt<'_> {
     ) -> Result<Ended, SmoothError> {
         let problem = self.problem;
         let mut plan = options.plan_to(target);
-        plan.shape_guard = shape_guard(problem, from, &plan.scheme);
+        set_guards(&mut plan, options.guard, problem, from);
         let (device, opened) = match resumed {
             Some(Checkpoint { about, saved }) => {
                 (self.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
@@ -72,7 +91,8 @@ impl Attempt<'_> {
         let (mut place, mut fault) = (device, None);
         let end = loop {
             let last = keeping.last.clone();
-            let course = Course { plan: &plan, must, phase: self.phase, done, from: last };
+            let course =
+                Course { plan: &plan, must, phase: self.phase, done: self.done + done, from: last };
             let strategy = Strategy::new(problem, &plan, corrected);
             let driven = match place {
                 None => {
@@ -96,7 +116,7 @@ impl Attempt<'_> {
                 Err(DriveError::LeftOut(error)) => return Err(error.into()),
                 Err(DriveError::Foreign) => return Err(resume::foreign()),
             };
-            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + done;
+            let kept = keeping.last.as_ref().map_or(0, Saved::sweeps) + self.done + done;
             if place.is_some() && keeping.keeper.goes_on_without(&error, kept) {
                 (place, fault) = (None, Some(DeviceFault { sweep: kept, error }));
             } else if matches!(error, GpuError::NotFinite { .. }) {
@@ -111,7 +131,7 @@ impl Attempt<'_> {
         let step = plan.base_step(1.0);
         if stop == Stop::Converged && step.shape_guard.is_finite() {
             held = held_back(problem, &end.positions, &step);
-            if held > 0 {
+            if held > 0 && options.guard == Guard::ByMetric {
                 stop = Stop::HeldBack;
             }
         }

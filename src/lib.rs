@@ -96,6 +96,7 @@ mod file;
 pub mod gpu;
 mod interpolate;
 mod layout;
+mod limit;
 mod measure;
 mod mesh;
 mod metric;
@@ -103,8 +104,10 @@ mod outcome;
 mod parallel;
 mod quality;
 mod resume;
+mod rounds;
 mod run;
 pub mod select;
+mod slide;
 mod smoother;
 mod targets;
 mod topology;
@@ -147,12 +150,13 @@ pub use measure::{
 };
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
-pub use outcome::{DeviceFault, GoalOutcome, Outcome};
+pub use outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
 pub use quality::Quality;
 pub use run::{
-    Checkpoint, Derivatives, Desired, Goal, Keeper, Method, Objectives, Observer, Options, Phase,
-    Progress, Sharpness, Stop,
+    Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,
+    Phase, Progress, Sharpness, Stop,
 };
+pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};
 pub use targets::{Surface, Targets};
 pub use topology::{Topology, signed_area};

@@ -31,7 +31,8 @@ pub struct Outcome {
     /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
     /// if they do not decay or are too few.
     pub remaining: Option<f64>,
-    /// Number of vertices that the shape guard keeps from moving on, if that is why the run ended ([`Stop::HeldBack`]).
+    /// Number of vertices that the guard keeps from moving on at the end of a run that converged otherwise: by
+    /// [`Guard::Worst`](crate::Guard::Worst), or if that is why the run ended ([`Stop::HeldBack`]).
     pub held_back: usize,
     /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
     /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.
@@ -40,10 +41,27 @@ pub struct Outcome {
     pub goal: Option<GoalOutcome>,
     /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
     pub returned: usize,
+    /// What slid, if vertices might; see [`Smoother::set_slide`](crate::Smoother::set_slide).
+    pub slid: Option<Slid>,
     /// The fault of the device after which the run went on on the CPU, if there was one.
     pub device_fault: Option<DeviceFault>,
     /// Time spent in the run, the search for a desired objective included.
     pub smooth: Duration,
+}
+
+/// What slid in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slid {
+    /// Number of vertices that might slide.
+    pub vertices: usize,
+    /// Number of those that have moved.
+    pub moved: usize,
+    /// Number of rounds of sweeps over free vertices and along the curves.
+    pub rounds: u32,
+    /// How far the lines between vertices are from those in the mesh before the run, in its unit.
+    pub off: f64,
+    /// The change of the area of all triangles, as a share of it.
+    pub area: f64,
 }
 
 /// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`](crate::Keeper::goes_on_without).

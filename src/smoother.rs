@@ -12,17 +12,22 @@ use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
-use crate::mesh::Mesh;
+use crate::limit::Limit;
+use crate::measure::mean_edges;
+use crate::mesh::{Mesh, Precision};
 use crate::metric::Metric;
 use crate::metric::Scheme;
-use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
 use crate::quality::Quality;
 use crate::resume;
+use crate::rounds::Rounds;
 use crate::run::{
     Checkpoint, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives, Observer,
     Options, Phase, Sharpness, Stop,
 };
+use crate::slide::{Slide, Sliding};
 use crate::targets::Targets;
+use crate::topology::predicates::orientation;
 use crate::topology::{Topology, certify};
 
 /// The processor that does the sweeps.
@@ -38,6 +43,7 @@ pub struct Smoother<'a> {
     mesh: &'a Mesh,
     topology: Topology<'a>,
     problem: Problem,
+    sliding: Option<Sliding>,
     prepare: Duration,
 }
 
@@ -51,7 +57,7 @@ impl<'a> Smoother<'a> {
         let (mut topology, problem) = prepare(mesh)?;
         // Runs need the problem alone. Stars are found again if a vertex has to be set back.
         topology.forget_stars();
-        Ok(Self { mesh, topology, problem, prepare: start.elapsed() })
+        Ok(Self { mesh, topology, problem, sliding: None, prepare: start.elapsed() })
     }
 
     /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
@@ -63,6 +69,24 @@ impl<'a> Smoother<'a> {
         targets.check_count(self.mesh.points.len())?;
         self.problem.set_targets(targets.maps());
         Ok(())
+    }
+
+    /// Lets vertices slide along the boundary and other curves in further runs; `None` for none. Returns how many vertices may.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a vertex is listed that the mesh does
+    /// not have.
+    pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
+        self.sliding = None;
+        let Some(slide) = slide else { return Ok(0) };
+        let vertices = self.mesh.points.len();
+        slide.check(vertices)?;
+        let sliding = Sliding::new(&self.mesh.points, &self.topology, slide);
+        let sliding = sliding.numbered(&self.problem, vertices);
+        self.topology.forget_stars();
+        let count = sliding.count();
+        self.sliding = (count > 0).then_some(sliding);
+        Ok(count)
     }
 
     /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
@@ -183,6 +207,17 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check_for(&self.problem)?;
+        if self.sliding.is_some() {
+            Rounds::check("slide", options, from.is_some())?;
+        }
+        if let Some(max_move) = options.max_move {
+            Limit::check(options, from.is_some())?;
+            if self.sliding.is_some() {
+                let value = max_move.to_string();
+                let remedy = "vertices that slide have no bound: set one of the two";
+                return Err(SmoothError::Option { option: "max move", value, remedy });
+            }
+        }
         let mut fault = None;
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
@@ -217,13 +252,29 @@ impl<'a> Smoother<'a> {
         };
         let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
 
-        let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing };
+        let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing, done: 0 };
         let monotone = options.plan_to(target).is_monotone();
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut keeping = Keeping::new(keeper);
         keeping.about = Some(about);
         let positions = self.problem.positions();
-        let end = run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?;
+        let mut rounds = self.sliding.as_ref().map(Rounds::new);
+        let end = match (&mut rounds, options.max_move) {
+            (Some(rounds), _) => {
+                // A checkpoint does not hold where vertices have slid.
+                keeping.about = None;
+                rounds.run(run, options, target, &mut keeping, observe).await?
+            }
+            (None, Some(most)) => {
+                keeping.about = None;
+                let bounds = self.bounds(most, options.stored);
+                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, &bounds);
+                limit.run(run, options, target, &mut keeping, observe).await?
+            }
+            (None, None) => {
+                run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?
+            }
+        };
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
             end.history.len() - 1
@@ -234,6 +285,9 @@ impl<'a> Smoother<'a> {
             (0..end.history.len()).fold(0, better)
         };
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
+        for (v, point) in rounds.iter().flat_map(|rounds| rounds.sliding.moved(&rounds.params)) {
+            points[v as usize] = point;
+        }
         for x in points.as_flattened_mut() {
             *x = options.stored.rounded(*x);
         }
@@ -252,6 +306,7 @@ impl<'a> Smoother<'a> {
             points.clone_from(&self.mesh.points);
             returned = 0;
         }
+        let slid = rounds.map(|rounds| self.slid(&rounds, gains, &points));
         let best = if gains { written } else { initial };
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
@@ -272,9 +327,41 @@ impl<'a> Smoother<'a> {
             history: end.history,
             goal,
             returned,
+            slid,
             device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
+    }
+
+    /// How far each vertex may move such that, stored with so many digits, it has not moved by more than this in edges there.
+    fn bounds(&self, most: f64, stored: Precision) -> Vec<f64> {
+        let digits = match stored {
+            Precision::Single => f64::from(f32::EPSILON),
+            Precision::Double => f64::EPSILON,
+        };
+        let edges = mean_edges(&self.topology, &self.mesh.points);
+        let bound = |(edge, [x, y]): (f64, &[f64; 2])| {
+            (most * edge * (1.0 - 1e-9) - 2.0 * digits * x.abs().max(y.abs())).max(0.0)
+        };
+        edges.into_iter().zip(&self.mesh.points).map(bound).collect()
+    }
+
+    /// What slid in rounds that ended at `points`.
+    fn slid(&self, rounds: &Rounds<'_>, gains: bool, points: &[[f64; 2]]) -> Slid {
+        let (before, free) = (&self.mesh.points, self.topology.free());
+        let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
+        let area = |points: &[[f64; 2]]| {
+            let of = |t: &[u32; 3]| orientation(points, t);
+            self.topology.triangles().iter().map(of).sum::<f64>()
+        };
+        let off = if gains { rounds.sliding.off(&rounds.params) } else { 0.0 };
+        Slid {
+            vertices: rounds.sliding.count(),
+            moved,
+            rounds: rounds.count,
+            off,
+            area: area(points) / area(before) - 1.0,
+        }
     }
 
     /// The outcome of a run that was cancelled before its first sweep.
@@ -295,6 +382,7 @@ impl<'a> Smoother<'a> {
             history: vec![objectives],
             goal: None,
             returned: 0,
+            slid: None,
             device_fault: None,
             smooth: start.elapsed(),
         }
@@ -326,9 +414,10 @@ impl<'a> Smoother<'a> {
             tolerance: 1e-8,
             max_sweeps: 5000,
             sharpness: Sharpness::CONTINUED,
+            guard: options.guard,
             ..Options::default()
         };
-        let run = Attempt { problem: &self.problem, device, phase: Phase::Reference };
+        let run = Attempt { problem: &self.problem, device, phase: Phase::Reference, done: 0 };
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {

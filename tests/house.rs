@@ -205,7 +205,7 @@ fn data_flows_one_way() {
     assert!(used_by("mesh").is_empty());
     assert!(used_by("error").is_empty());
     assert!(used_by("metric").is_empty());
-    for room in ["file", "topology", "layout", "measure", "run"] {
+    for room in ["file", "topology", "layout", "measure", "run", "slide"] {
         for place in ["cpu", "gpu", "smoother"] {
             assert!(!used_by(room).contains(&place), "{room} may not use {place}");
         }

@@ -212,6 +212,7 @@ fn plain(scheme: Scheme) -> Plan {
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
         track_all: false,
         shape_guard: f64::INFINITY,
+        worst_guard: f64::INFINITY,
     }
 }
 

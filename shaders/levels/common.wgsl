@@ -28,7 +28,7 @@ struct LevelOp {
     out: u32,
     a: f32,
     b: f32,
-    // The inverse mean ratio up to which a correction may flatten a triangle, where the metric is GUARDED.
+    // The inverse mean ratio up to which a correction may flatten a triangle, NO_GUARD for any.
     @size(8) shape_guard: f32,
 }
 

@@ -21,7 +21,7 @@ fn is_broken(here: Corner, there: Corner) -> bool {
     if !is_positive(doubled_area(there)) {
         return true;
     }
-    if !GUARDED {
+    if op.shape_guard >= NO_GUARD {
         return false;
     }
     return inverse_mean_ratio(there) > max(op.shape_guard, inverse_mean_ratio(here));

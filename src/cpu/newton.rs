@@ -77,12 +77,12 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
     // A triangle may stay as bad as the patch's worst. Few trials break the guard, so that is found when one does.
     let mut limit = at[0].constant(step.shape_guard);
-    let mut worst_is_known = properties.barrier;
+    let guarded = step.shape_guard.is_finite();
+    let mut worst_is_known = !guarded;
     let mut trial = 0;
     while trial < line_search::TRIALS {
         let to = [at[0] + dx * length, at[1] + dy * length];
-        let (value, feasible) =
-            patches.objective(formulas, to, step.sharpness, limit, !properties.barrier);
+        let (value, feasible) = patches.objective(formulas, to, step.sharpness, limit, guarded);
         if !worst_is_known && !(!searching | feasible).all_true() {
             worst_is_known = true;
             limit = Real::max(limit, patches.worst_shape(formulas, at));

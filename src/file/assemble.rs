@@ -1,6 +1,7 @@
 //! Makes a mesh of a file's nodes and elements, or finds where one of them stands.
 
 use crate::error::{Location, ReadError};
+use crate::file::curves::Curves;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
 use crate::file::sink::{Element, Kind, Layout, Reader, Sink};
@@ -14,8 +15,8 @@ pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadErro
     let mut assembler = Assembler { vertices_of: reader.vertices, ..Assembler::default() };
     let Layout { format, numbers, encoded } = (reader.walk)(source, &mut assembler)?;
     let has_parameters = assembler.has_parameters;
-    let Assembler { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } =
-        assembler;
+    let Assembler { mut mesh, x_at, regions, curves, .. } = assembler;
+    let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
         notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
     }
@@ -34,7 +35,18 @@ pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadErro
         }
     }
     let regions = regions.finish();
-    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data, has_parameters })
+    Ok(Parsed {
+        format,
+        mesh,
+        x_at,
+        numbers,
+        encoded,
+        regions,
+        curves,
+        notes,
+        data,
+        has_parameters,
+    })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
@@ -64,6 +76,7 @@ struct Assembler {
     map: Option<TagMap>,
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
+    curves: Curves,
     quadrilaterals: u64,
     notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides coordinates.
@@ -74,6 +87,25 @@ struct Assembler {
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
+}
+
+impl Assembler {
+    /// The index of a node that an element has.
+    #[inline]
+    fn index(
+        &self,
+        cursor: &Cursor<'_>,
+        kind: Kind,
+        tag: u64,
+        node: u64,
+    ) -> Result<u32, ReadError> {
+        let index = self.map.as_ref().and_then(|map| map.index(node));
+        index.ok_or_else(|| {
+            let (kind, list) = (kind.name(), self.vertices_of);
+            let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
+            cursor.error(problem, CORRECT)
+        })
+    }
 }
 
 impl Sink for Assembler {
@@ -95,9 +127,29 @@ impl Sink for Assembler {
             self.on_lower += 1;
             self.mesh.fixed.push(self.tags.len() as u32);
         }
+        if dimension == 0 {
+            self.curves.held.push(self.tags.len() as u32);
+        }
         self.tags.push(tag);
         self.x_at.push(x_at);
         self.mesh.points.push(at);
+    }
+
+    fn polyline(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, _): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
+        let vertices = nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
+        self.curves.lines.extend(vertices.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.mesh.fixed.extend(vertices);
+        Ok(())
+    }
+
+    fn periodic(&mut self) {
+        self.curves.is_periodic = true;
     }
 
     fn note(&mut self, note: &str) {
@@ -145,13 +197,7 @@ impl Sink for Assembler {
         let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
-            let index = self.map.as_ref().and_then(|map| map.index(node));
-            *vertex = index.ok_or_else(|| {
-                let kind = kind.name();
-                let list = self.vertices_of;
-                let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
-                cursor.error(problem, CORRECT)
-            })?;
+            *vertex = self.index(cursor, kind, tag, node)?;
         }
         let [a, b, c, _] = vertices;
         match kind {
@@ -166,7 +212,12 @@ impl Sink for Assembler {
                 Ok(())
             }
             Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
-                self.mesh.fixed.extend_from_slice(&vertices[..nodes.len()]);
+                let fixed = &vertices[..nodes.len()];
+                self.mesh.fixed.extend_from_slice(fixed);
+                match kind {
+                    Kind::Line => self.curves.lines.push([a, b]),
+                    _ => self.curves.held.extend_from_slice(fixed),
+                }
                 self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
                 Ok(())
             }

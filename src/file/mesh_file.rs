@@ -2,6 +2,7 @@
 
 use crate::error::{Location, MeshError, ReadError};
 use crate::file::assemble;
+use crate::file::curves::{Curves, between_regions};
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
@@ -88,6 +89,9 @@ pub struct MeshFile {
     /// The points, if the first of the sources has them encoded.
     encoded: Option<Box<dyn Encoded>>,
     regions: Option<Vec<u32>>,
+    curves: Curves,
+    /// Whether vertices between regions were freed.
+    has_free_interfaces: bool,
     /// Vertices fixed only for lying between regions. The mesh's list of fixed vertices ends with them.
     interfaces: Vec<u32>,
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
@@ -167,6 +171,7 @@ impl MeshFile {
             numbers,
             encoded,
             regions,
+            curves,
             notes,
             data,
             has_parameters,
@@ -192,6 +197,8 @@ impl MeshFile {
             numbers,
             encoded,
             regions,
+            curves,
+            has_free_interfaces: false,
             interfaces,
             sources,
         })
@@ -238,9 +245,34 @@ impl MeshFile {
     /// other vertex and regions change their shapes. Vertices that the file fixes by other means, such as those on curves
     /// of a gmsh 4.1 model, stay fixed where regions meet too.
     pub fn free_interfaces(&mut self) {
+        self.has_free_interfaces = true;
         let held = std::mem::take(&mut self.interfaces);
         let fixed = &mut self.mesh.fixed;
         fixed.truncate(fixed.len() - held.len());
+    }
+
+    /// The edges along which vertices inside the mesh may slide: line elements, segments, and the edges between triangles of different
+    /// [regions](Self#regions), unless [`free_interfaces`](Self::free_interfaces) was called. For
+    /// [`Slide::lines`](crate::Slide::lines).
+    pub fn lines(&self) -> Vec<[u32; 2]> {
+        let Mesh { points, triangles, .. } = &self.mesh;
+        let mut lines = self.curves.lines.clone();
+        if let (Some(regions), false) = (&self.regions, self.has_free_interfaces) {
+            lines.extend(between_regions(regions, triangles, points.len()));
+        }
+        lines
+    }
+
+    /// The vertices that do not slide: points and corners of the file, vertices of quadrilaterals and polygons, and those of
+    /// [`fix`](Self::fix) and [`fix_all_but`](Self::fix_all_but). For [`Slide::held`](crate::Slide::held).
+    pub fn held_vertices(&self) -> &[u32] {
+        &self.curves.held
+    }
+
+    /// Whether the file says that its model is periodic, so that vertices of the boundary belong together in pairs: it has a section
+    /// `$Periodic` of gmsh.
+    pub fn is_periodic(&self) -> bool {
+        self.curves.is_periodic
     }
 
     /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. In any order,
@@ -285,6 +317,8 @@ impl MeshFile {
 
     /// Adds the vertices for which this holds to those fixed for other reasons than lying between regions.
     fn hold(&mut self, mut held: Vec<bool>) {
+        let all = (0..).zip(&held).filter(|&(_, &held)| held);
+        self.curves.held.extend(all.map(|(vertex, _)| vertex));
         let Mesh { fixed, .. } = &mut self.mesh;
         fixed.truncate(fixed.len() - self.interfaces.len());
         self.interfaces.retain(|&vertex| !held[vertex as usize]);

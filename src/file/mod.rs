@@ -6,6 +6,7 @@ mod binary;
 mod column;
 mod compare;
 mod convert;
+mod curves;
 mod detect;
 mod disk;
 mod families;

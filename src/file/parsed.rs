@@ -1,5 +1,6 @@
 //! What a format's reader makes of a mesh's files.
 
+use crate::file::curves::Curves;
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers};
 use crate::mesh::Mesh;
@@ -17,6 +18,8 @@ pub(crate) struct Parsed {
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// The region of each triangle, or none if all are of one.
     pub(crate) regions: Option<Vec<u32>>,
+    /// The lines of the file, and what it holds besides.
+    pub(crate) curves: Curves,
     /// One-line remarks for the user.
     pub(crate) notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides x and y, each once.

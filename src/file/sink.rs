@@ -144,6 +144,8 @@ pub(crate) trait Sink {
             self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
         })
     }
+    /// Takes notice that the file has vertices that belong together in pairs, as where a model is periodic.
+    fn periodic(&mut self) {}
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
 

@@ -4,6 +4,7 @@
 //! what follows the announced rows and columns.
 
 use crate::error::{Location, ReadError};
+use crate::file::curves::Curves;
 use crate::file::format::Format;
 use crate::file::numbers;
 use crate::file::parallel_rows::take_rows;
@@ -61,12 +62,13 @@ pub(crate) fn parse(
 ) -> Result<Parsed, ReadError> {
     let (numbers, points, x_at, data) = vertices(node)?;
     let (triangles, regions) = triangles(ele, node, &numbers)?;
-    let mut fixed = Vec::new();
+    let mut curves = Curves::default();
     let mut notes = Vec::new();
     if let Some(poly) = poly {
-        let segments = segments(poly, node, &numbers, &mut fixed)?;
+        let segments = segments(poly, node, &numbers, &mut curves)?;
         notes.push(fixed_note(segments, "segment", &format!(" of {}", poly.name())));
     }
+    let fixed = [curves.held.as_slice(), curves.lines.as_flattened()].concat();
     let mesh = Mesh { points, triangles, fixed };
     Ok(Parsed {
         format: Format::Triangle,
@@ -75,6 +77,7 @@ pub(crate) fn parse(
         numbers: numbers::Numbers::TEXT,
         encoded: None,
         regions,
+        curves,
         notes,
         data,
         has_parameters: false,
@@ -319,18 +322,18 @@ fn triangle<'a>(
     Ok((corners, cursor.tokens(columns)))
 }
 
-/// Adds the vertices that a `.poly` lists, and those of its segments, to `fixed`. Returns the number of
+/// Adds the vertices that a `.poly` lists and its segments to `curves`. Returns the number of
 /// segments. Its holes and regions are of use to mesh generators only.
 fn segments(
     poly: &Source,
     node: &Source,
     numbers: &Numbers,
-    fixed: &mut Vec<u32>,
+    curves: &mut Curves,
 ) -> Result<u64, ReadError> {
     let mut segments = Segments::new(poly, node, numbers)?;
-    fixed.extend(0..segments.listed as u32);
+    curves.held.extend(0..segments.listed as u32);
     for row in 0..segments.count {
-        fixed.extend(segments.segment(row)?.1);
+        curves.lines.push(segments.segment(row)?.1);
     }
     Ok(segments.count)
 }

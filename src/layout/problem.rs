@@ -126,6 +126,15 @@ impl Problem {
         self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
     }
 
+    /// Takes on the targets of another problem of the same mesh, given the number there of each vertex of the mesh.
+    pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
+        self.targets = other.targets().map(|maps| {
+            let of = |&v: &u32| maps[number[v as usize] as usize];
+            self.vertices.iter().map(of).collect()
+        });
+        (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
+    }
+
     /// Normalized position of each vertex.
     pub fn positions(&self) -> &[DVec2] {
         &self.positions

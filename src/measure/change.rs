@@ -55,8 +55,7 @@ impl Change {
         let moved = |i: usize| {
             let v = free[i] as usize;
             let ([x, y], [a, b]) = (before[v], after[v]);
-            let length = was[v].lengths / f64::from(2 * was[v].triangles);
-            (x - a).hypot(y - b) / length
+            (x - a).hypot(y - b) / was[v].mean_edge()
         };
         let size = |i: usize| {
             let v = free[i] as usize;
@@ -68,6 +67,17 @@ impl Change {
             size: spread(collect(free.len(), size)),
             least_altitude: [low_before, low_after],
         })
+    }
+}
+
+/// The mean length of the edges at each vertex; not a number at vertices of no triangle.
+pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
+    around(topology, points).0.iter().map(Around::mean_edge).collect()
+}
+
+impl Around {
+    fn mean_edge(&self) -> f64 {
+        self.lengths / f64::from(2 * self.triangles)
     }
 }
 

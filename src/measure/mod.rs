@@ -11,6 +11,7 @@ mod table;
 mod triangle;
 mod vertices;
 
+pub(crate) use change::mean_edges;
 pub use change::{Change, Spread};
 pub use measured::Measured;
 pub use statistics::{QUANTILES, Statistics};

@@ -24,6 +24,19 @@ pub enum Method {
     Sweeps,
 }
 
+/// How bad a step may make a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Guard {
+    /// As bad as lowers the objective, by a metric with a barrier; by others no worse than the worst triangle with a free vertex before
+    /// the run, nor than an inverse mean ratio of 30.
+    #[default]
+    ByMetric,
+    /// By no metric worse than the worst triangle with a free vertex before the run, by the inverse mean ratio as targets show the
+    /// triangles. So the worst element of a run never gets worse. Only for whole runs: it has no effect on
+    /// [`Sweeps`](crate::Sweeps), which an application encodes itself.
+    Worst,
+}
+
 /// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of
 /// f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +68,11 @@ pub struct Options {
     /// The most Newton steps per visit of a vertex, 1000 at most. With analytic derivatives a visit ends sooner once
     /// its steps have become short.
     pub inner: u32,
+    /// What no step may do to a triangle besides inverting it.
+    pub guard: Guard,
+    /// How far a vertex may be from its place before the run, in the mean length of the edges there before. Above 0; `None` for as
+    /// far as it takes. Only for whole runs, by one metric other than edge.
+    pub max_move: Option<f64>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
     /// The exponent of the p-norm that replaces EDGE in Newton's method.
@@ -75,6 +93,8 @@ impl Default for Options {
             omega: None,
             plain_sweeps: 4,
             inner: 1,
+            guard: Guard::ByMetric,
+            max_move: None,
             derivatives: Derivatives::Analytic,
             sharpness: Sharpness::FIXED,
             track_all: false,
@@ -139,6 +159,9 @@ impl Options {
         if let Some(omega) = self.omega.filter(|omega| !(*omega > 0.0 && *omega < 2.0)) {
             return refuse("omega", omega, "over-relaxation must be above 0 and below 2");
         }
+        if let Some(most) = self.max_move.filter(|most| !(*most > 0.0 && most.is_finite())) {
+            return refuse("max move", most, "it must be above 0");
+        }
         if !(1..=Self::MOST_INNER).contains(&self.inner) {
             return refuse("inner", self.inner.into(), "a visit takes from 1 to 1000 Newton steps");
         }
@@ -201,6 +224,7 @@ impl Options {
             },
             track_all: self.track_all,
             shape_guard: f64::INFINITY,
+            worst_guard: f64::INFINITY,
         }
     }
 }

@@ -28,6 +28,9 @@ pub struct Plan {
     /// this, unless its patch already had a worse one. If the metric's own
     /// [`shape_guard`](crate::Properties::shape_guard) is smaller, it is used instead.
     pub shape_guard: f64,
+    /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch already had a
+    /// worse one. Infinite for none.
+    pub worst_guard: f64,
 }
 
 impl Plan {
@@ -61,14 +64,17 @@ impl Plan {
     }
 
     fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
+        let of_metric = match metric.properties().shape_guard {
+            own if own.is_finite() => self.shape_guard.min(own),
+            own => own,
+        };
         Step {
             metric,
             omega,
             inner: self.inner,
             sharpness,
             derivatives: self.derivatives[metric as usize],
-            shape_guard: self.shape_guard.min(metric.properties().shape_guard)
-                * (1.0 - line_search::GUARD_RESERVE),
+            shape_guard: of_metric.min(self.worst_guard) * (1.0 - line_search::GUARD_RESERVE),
         }
     }
 

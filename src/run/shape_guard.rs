@@ -1,18 +1,27 @@
-//! The shape guard: how far metrics without a barrier may flatten triangles.
+//! The guards of a run: how far triangles may be flattened.
 
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::Scheme;
 use crate::parallel::map_parts;
+use crate::run::options::Guard;
+use crate::run::plan::Plan;
 
-/// The shape guard of a run: the largest inverse mean ratio among the triangles with a free vertex. No step may leave a
-/// triangle worse than that, so metrics that do not measure shape cannot flatten a good mesh. Infinite if every metric
-/// of the scheme has a barrier.
-pub(crate) fn shape_guard(problem: &Problem, positions: &[DVec2], scheme: &Scheme) -> f64 {
-    if scheme.metrics().iter().all(|metric| metric.properties().shape_guard.is_infinite()) {
-        return f64::INFINITY;
+/// Sets the guards of a run from these positions: to the largest inverse mean ratio among the triangles with a free vertex, for
+/// metrics without a barrier, which do not measure shape and could flatten a good mesh, and for all if that was asked for.
+pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, positions: &[DVec2]) {
+    let is_finite = |guard: f64| guard.is_finite();
+    let metrics = plan.scheme.metrics();
+    let needs_one = metrics.iter().any(|metric| is_finite(metric.properties().shape_guard));
+    if guard == Guard::Worst || needs_one {
+        plan.shape_guard = worst_movable(problem, positions);
     }
+    if guard == Guard::Worst {
+        plan.worst_guard = plan.shape_guard;
+    }
+}
+
+fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
     let free = problem.free_count() as u32;
     let ratio = |t: &[u32; 3]| {
         if t.iter().all(|&v| v >= free) {

@@ -16,8 +16,8 @@ pub struct Step {
     /// How the metric is differentiated.
     pub derivatives: Derivatives,
     /// The largest inverse mean ratio that a step may leave, unless the patch already had a larger one: the smaller of
-    /// [`Plan::shape_guard`](super::Plan::shape_guard) and that of the metric, less a reserve for rounding. Infinite
-    /// if the metric has a barrier.
+    /// [`Plan::shape_guard`](super::Plan::shape_guard) and that of the metric, if it has no barrier, and of
+    /// [`Plan::worst_guard`](super::Plan::worst_guard), less a reserve for rounding. Infinite for none.
     pub shape_guard: f64,
 }
 

@@ -31,6 +31,7 @@ mod regions;
 mod report;
 mod schemes;
 mod shell;
+mod slide;
 mod streams;
 mod targets;
 mod untangle;

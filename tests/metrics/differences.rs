@@ -27,6 +27,7 @@ fn a_sweep_by_differences_is_a_little_off() {
                 stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,
                 shape_guard: f64::INFINITY,
+                worst_guard: f64::INFINITY,
             };
             let mut engine = run_on_cpu(&problem, problem.positions(), plan);
             engine.advance(1).unwrap();

@@ -9,8 +9,10 @@ mod coloring;
 mod flat;
 mod global;
 mod goals;
+mod guard;
 mod hard;
 mod invariance;
+mod limit;
 mod multilevel;
 mod not_finite;
 mod optimum;
@@ -18,6 +20,7 @@ mod random;
 mod requests;
 mod resumed;
 mod safety;
+mod slide;
 mod targets;
 mod tolerance;
 mod untangle;
@@ -120,6 +123,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         sharpness: Sharpness::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
+        worst_guard: f64::INFINITY,
         shape_guard: f64::INFINITY,
     }
 }

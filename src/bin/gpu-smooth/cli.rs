@@ -13,6 +13,7 @@ use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
 use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
+use crate::slide_args::SlideArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -21,7 +22,7 @@ use crate::run_args::SmoothArgs;
     version,
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
-    after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
+    after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
                   Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
                   fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
@@ -130,6 +131,8 @@ pub(crate) struct CompareArgs {
     /// What may have moved: the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+    #[command(flatten)]
+    pub(crate) sliding: SlideArgs,
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
 }

@@ -25,7 +25,8 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     mine.add_parameters(&before, &before.mesh().points)?;
     theirs.add_parameters(&after, &after.mesh().points)?;
     let told = |error: gpu_smooth::MeshError| format!("{}: {error}", args.before.display());
-    let proof = Proof::of([&before, &after], [&mine, &theirs]).map_err(told)?;
+    let slide = args.sliding.slide(&before)?;
+    let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;
     if proof.difference.is_some() {
         return Err(proof.problem().unwrap_or_default());
     }
@@ -33,6 +34,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
+    if !args.sliding.slide && !held.is_empty() {
+        problems.push("--slide allows those that slid along their lines".to_owned());
+    }
     let mut list = String::new();
     for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
         list += &format!("\n  {place}: vertex {}", place.label);
@@ -44,7 +48,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
     }
     if !show.quiet {
-        tell::say(&summary(&after, old, new, moved));
+        tell::say(&summary(&after, old, new, (moved, proof.slid)));
         for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
         {
             tell::say(&format!("{sha256}  {path}"));
@@ -57,16 +61,26 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
 }
 
 /// What moved, in a line or two.
-fn summary(after: &MeshFile, old: &[[f64; 2]], new: &[[f64; 2]], moved: &[u32]) -> String {
+fn summary(
+    after: &MeshFile,
+    old: &[[f64; 2]],
+    new: &[[f64; 2]],
+    (moved, slid): (&[u32], usize),
+) -> String {
     let distance = |&vertex: &u32| {
         let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
         (c - a).hypot(d - b)
+    };
+    let slides = match slid {
+        0 => String::new(),
+        1 => "1 vertex slid along its line; ".to_owned(),
+        n => format!("{n} vertices slid along their lines; "),
     };
     let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let triangles = after.mesh().triangles.len();
     let mut text = format!(
         "only coordinates differ: {} of {} vertices have moved\n\
-         every vertex that must stay has the same bits; none of {triangles} triangles is inverted or flat",
+         {slides}every vertex that must stay has the same bits; none of {triangles} triangles is inverted or flat",
         moved.len(),
         new.len()
     );

@@ -23,6 +23,7 @@ mod report;
 mod riding;
 mod run_args;
 mod shell;
+mod slide_args;
 mod smooth;
 mod streams;
 mod target_args;

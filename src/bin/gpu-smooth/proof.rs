@@ -1,6 +1,6 @@
 //! What two files of a mesh prove: that one is the other with vertices moved.
 
-use gpu_smooth::{BadTriangle, Difference, MeshError, MeshFile, Topology};
+use gpu_smooth::{BadTriangle, Difference, MeshError, MeshFile, Slide, Topology};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -14,18 +14,22 @@ pub(crate) struct Proof {
     pub(crate) moved: Vec<u32>,
     /// Those of them that must not.
     pub(crate) held: Vec<u32>,
+    /// How many of those that may not move freely slid along their lines.
+    pub(crate) slid: usize,
     /// Triangles that are inverted or flat in the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
 }
 
 impl Proof {
-    /// Compares two files, of which the first says what may move. `riding` is the data of both that may change.
+    /// Compares two files, of which the first says what may move, and `slide` what may slide. `riding` is the data of both that may change.
     pub(crate) fn of(
         [before, after]: [&MeshFile; 2],
         [mine, theirs]: [&Riding; 2],
+        slide: Option<&Slide>,
     ) -> Result<Self, MeshError> {
         let fields = [mine.fields(), theirs.fields()];
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
+        let mut slid = 0;
         let difference = before.difference_besides(after, fields);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
@@ -34,9 +38,14 @@ impl Proof {
             let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
             moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
             held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
+            if let Some(slide) = slide {
+                let astray = slide.astray(&topology, old, new, after.precision());
+                slid = held.len() - astray.len();
+                held = astray;
+            }
             bad = topology.bad_triangles(new)?;
         }
-        Ok(Self { difference, moved, held, bad })
+        Ok(Self { difference, moved, held, slid, bad })
     }
 
     /// What is wrong, in a sentence; `None` if nothing is.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Spread};
+use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Slid, Spread};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
@@ -47,7 +47,7 @@ pub(crate) struct Report {
     /// What data of vertices were taken to the new places.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interpolated: Option<String>,
-    /// Vertices that the shape guard keeps from moving on, if the run ended for that.
+    /// Vertices that the guard keeps from moving on at the end of a run that converged otherwise.
     pub(crate) held_back: usize,
     /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
     pub(crate) lost: f64,
@@ -55,9 +55,15 @@ pub(crate) struct Report {
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
     pub(crate) returned: usize,
+    /// How far vertices might move, in lengths of an edge, if there was a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
+    /// What slid along lines, if vertices might.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) slid: Option<SlideReport>,
     /// What the files alone say, where the mesh was written to a file and a report is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certificate: Option<Certificate>,
@@ -145,6 +151,27 @@ impl From<Change> for ChangeReport {
     fn from(change: Change) -> Self {
         let Change { moved, size, least_altitude } = change;
         Self { moved: moved.into(), size: size.into(), least_altitude }
+    }
+}
+
+/// What slid along lines.
+#[derive(Serialize)]
+pub(crate) struct SlideReport {
+    /// Vertices that might slide.
+    pub(crate) vertices: usize,
+    /// Those that did.
+    pub(crate) moved: usize,
+    /// Rounds of sweeps, each followed by sweeps along the lines.
+    pub(crate) rounds: u32,
+    /// How far the lines are from those before, in the unit of the mesh.
+    pub(crate) off: f64,
+    /// The change of the area of the mesh, as a share of it.
+    pub(crate) area_change: f64,
+}
+
+impl From<Slid> for SlideReport {
+    fn from(Slid { vertices, moved, rounds, off, area }: Slid) -> Self {
+        Self { vertices, moved, rounds, off, area_change: area }
     }
 }
 
@@ -253,6 +280,9 @@ impl Report {
         }
         let _ = writeln!(text, "\n{}", self.ending());
         let _ = writeln!(text, "{}", self.moves());
+        if let Some(slides) = self.slides() {
+            let _ = writeln!(text, "{slides}");
+        }
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");
         }
@@ -336,7 +366,7 @@ impl Report {
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.base();
         let remedy = match shape {
-            true => "f is a mean, which may fall as one element gets worse".to_owned(),
+            true => "f is a mean, which may fall as one element gets worse; --guard worst does not let it".to_owned(),
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
         };
         let (before, after) = (six(before), six(after));
@@ -370,6 +400,18 @@ impl Report {
         )
     }
 
+    /// What slid and what that did to the domain, in a sentence.
+    pub(crate) fn slides(&self) -> Option<String> {
+        let SlideReport { vertices, moved, off, area_change, .. } = self.slid.as_ref()?;
+        let area = match 100.0 * area_change {
+            change if change.abs() < 1e-9 => "stayed the same".to_owned(),
+            change => format!("changed by {change:+.2e} %"),
+        };
+        Some(format!(
+            "{moved} of {vertices} vertices on lines slid along them; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
+        ))
+    }
+
     /// How far the run is from the limit of f, as far as that can be told.
     fn left(&self) -> String {
         match self.remaining {
@@ -400,6 +442,10 @@ impl Report {
             0 => sweeps,
             n => format!("{sweeps} ({n} corrected from coarser levels)"),
         };
+        let held = match self.held_back {
+            1 => "1 vertex".to_owned(),
+            n => format!("{n} vertices"),
+        };
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {
                 let desired = six(goal.desired);
@@ -425,14 +471,13 @@ impl Report {
                     (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
             }
+            ("converged", None) if self.held_back > 0 => {
+                format!("converged after {sweeps}; --guard worst keeps {held} from moving on")
+            }
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
             ("held-back", None) => {
-                let vertices = match self.held_back {
-                    1 => "1 vertex".to_owned(),
-                    n => format!("{n} vertices"),
-                };
-                format!("held back by the shape guard at {vertices} after {sweeps}")
+                format!("held back by the shape guard at {held} after {sweeps}")
             }
             ("time-limit", None) => format!("ended by --time-limit after {sweeps}{}", self.left()),
             ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),

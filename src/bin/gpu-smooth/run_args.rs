@@ -5,13 +5,14 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{
-    Derivatives, Desired, Goal, Method, Metric, Options, Precision, Scheme, Sharpness,
+    Derivatives, Desired, Goal, Guard, Method, Metric, Options, Precision, Scheme, Sharpness,
 };
 
 use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
 use crate::riding::RidingArgs;
+use crate::slide_args::SlideArgs;
 use crate::target_args::TargetArgs;
 
 #[derive(Args)]
@@ -106,11 +107,23 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
     pub(crate) edge_norm: EdgeNorm,
 
+    /// How bad a step may make a triangle: as bad as lowers f where the metric has a barrier (by-metric), or never worse than the worst
+    /// that can be smoothed was (worst)
+    #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
+    pub(crate) guard: GuardChoice,
+
     #[command(flatten)]
     pub(crate) target: TargetArgs,
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
+
+    #[command(flatten)]
+    pub(crate) sliding: SlideArgs,
+
+    /// Let no vertex move farther than so many lengths of an edge there
+    #[arg(long, value_name = "EDGES", help_heading = "What may move", value_parser = edges, allow_negative_numbers = true)]
+    pub(crate) max_move: Option<f64>,
 
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
@@ -168,6 +181,12 @@ pub(crate) enum MethodChoice {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GuardChoice {
+    ByMetric,
+    Worst,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DerivativesChoice {
     Analytic,
     FiniteDifference,
@@ -210,6 +229,20 @@ impl SmoothArgs {
                 "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
+        if self.max_move.is_some() {
+            let dropped = [
+                (self.sliding.slide, "--slide"),
+                (self.untangle, "--untangle"),
+                (self.checkpoint.is_some(), "--checkpoint"),
+                (self.continued.is_some(), "--continue"),
+            ];
+            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
+                return Some(format!("--max-move does not go with {other}: drop one of them"));
+            }
+        }
+        if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
+            return Some("--slide keeps no checkpoints: drop one of them".to_owned());
+        }
         let (kept, dropped) = if self.method == MethodChoice::Paper && self.omega.is_some() {
             ("--method paper", "--omega")
         } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
@@ -244,6 +277,11 @@ impl SmoothArgs {
                 _ => self.omega,
             },
             inner: self.inner,
+            max_move: self.max_move,
+            guard: match self.guard {
+                GuardChoice::ByMetric => Guard::ByMetric,
+                GuardChoice::Worst => Guard::Worst,
+            },
             derivatives: match self.derivatives {
                 DerivativesChoice::Analytic => Derivatives::Analytic,
                 DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
@@ -268,6 +306,10 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 fn fraction(text: &str) -> Result<f64, String> {
     number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+}
+
+fn edges(text: &str) -> Result<f64, String> {
+    number(text, |most| most > 0.0 && most.is_finite(), "above 0")
 }
 
 fn omega(text: &str) -> Result<f64, String> {

@@ -83,7 +83,9 @@ pub(crate) fn carry_out<T>(
     let read_done = Instant::now();
     follow.has_read(&file)?;
     let degrees = args.target.is_on_plane().then(|| tell::degrees(&file)).flatten();
-    for remark in tell::remarks(&file).iter().chain(&choice.notes).chain(&degrees) {
+    for remark in
+        tell::remarks(&file, args.sliding.slide).iter().chain(&choice.notes).chain(&degrees)
+    {
         follow.remark(remark);
     }
     let mesh = file.mesh();
@@ -120,6 +122,9 @@ pub(crate) fn carry_out<T>(
     let taken = taken??;
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
     args.target.set(&file, &mut smoother, points)?;
+    if let Some(remark) = args.sliding.set(&file, &mut smoother)? {
+        follow.remark(&remark);
+    }
     let smoother = smoother;
     let quality = |points: &[[f64; 2]]| {
         Quality::on(args.target.surface(), points, smoother.topology()).map_err(told)
@@ -196,6 +201,8 @@ pub(crate) fn carry_out<T>(
         lost: outcome.lost,
         goal: goal_report(&outcome),
         returned: outcome.returned,
+        slid: outcome.slid.map(Into::into),
+        max_move: args.max_move,
         change: change.into(),
         before: (&before).into(),
         after: (&after).into(),
@@ -218,7 +225,8 @@ fn certificate(
     let after = streams::read(out)?;
     let mut theirs = args.riding.choose(&after)?;
     theirs.add_parameters(&after, &after.mesh().points)?;
-    let proof = Proof::of([file, &after], [riding, &theirs]).map_err(told)?;
+    let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
+    let proof = proof.map_err(told)?;
     if let Some(problem) = proof.problem() {
         return Err(format!("{}: it was written, and then read again: {problem}", out.display()));
     }

@@ -84,11 +84,12 @@ fn is_colored() -> bool {
     !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
 }
 
-/// Remarks on a mesh besides its size, one line each.
-pub(crate) fn remarks(file: &MeshFile) -> Vec<String> {
+/// Remarks on a mesh besides its size, one line each. Where vertices slide, those between regions do not stay.
+pub(crate) fn remarks(file: &MeshFile, slides: bool) -> Vec<String> {
     let mut remarks = file.notes().to_vec();
     match file.interface_vertices().len() {
         0 => {}
+        _ if slides => {}
         1 => remarks.push(
             "1 vertex between regions stays fixed (--free-interfaces lets it move)".to_owned(),
         ),

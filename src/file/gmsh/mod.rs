@@ -155,6 +155,9 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
             name => {
+                if name == b"Periodic" {
+                    sink.periodic();
+                }
                 let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
                 if sink.asks_for_data() && !is_told {
                     sink.leaves_out(&format!("the section ${}", quoted(name)));

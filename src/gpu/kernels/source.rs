@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, SLOTS, WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, NO_GUARD, SLOTS, WORKGROUP, WORST,
 };
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
@@ -211,6 +211,7 @@ fn constants() -> String {
         ("LEAST_SCALE", LEAST_SCALE),
         ("SMOOTHING", SMOOTHING.into()),
         ("LEAST_CURVATURE", LEAST_CURVATURE),
+        ("NO_GUARD", NO_GUARD),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
     }
@@ -240,7 +241,6 @@ const METRIC: u32 = {index}u;
 const EIGENVALUE_FLOOR: f32 = {floor:?}f;
 const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
-const GUARDED: bool = {guarded};
 const SETTLED: f32 = {settled:?}f;
 fn metric_model(t: Corner) -> f32 {{ return {model}; }}
 fn metric_excess(t: Corner) -> f32 {{ return {excess}; }}
@@ -249,7 +249,6 @@ fn metric_excess(t: Corner) -> f32 {{ return {excess}; }}
         floor = properties.eigenvalue_floor,
         ideal = metric.ideal_squared(),
         quadratic = properties.quadratic,
-        guarded = properties.shape_guard.is_finite(),
         settled = match derivatives {
             Derivatives::Analytic => line_search::SETTLED,
             Derivatives::FiniteDifference => 0.0,

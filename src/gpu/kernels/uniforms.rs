@@ -22,6 +22,8 @@ pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 pub(crate) const WORST: u32 = INVERTED + 1;
 /// Set in the ring start of a free vertex that the application holds in place. Ring starts themselves are less.
 pub(crate) const HELD: u32 = 1 << 31;
+/// The guard of steps that have none. Larger than any inverse mean ratio, and a number in single precision.
+pub(crate) const NO_GUARD: f64 = 1e38;
 
 /// `Params` in shaders/params.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

@@ -12,7 +12,7 @@ use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel};
-use crate::gpu::kernels::uniforms::{Control, Params, Part, WORKGROUP, pair};
+use crate::gpu::kernels::uniforms::{Control, NO_GUARD, Params, Part, WORKGROUP, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::{Parts, of_part};
 use crate::gpu::scope::scoped;
@@ -86,7 +86,7 @@ impl Uniforms {
             let of_color = |d: &ColorPart| Part {
                 omega: step.omega as f32,
                 sharpness: step.sharpness,
-                shape_guard: step.shape_guard.min(f32::MAX.into()) as f32,
+                shape_guard: step.shape_guard.min(NO_GUARD) as f32,
                 ring_base: d.ring_base,
                 ..part(&d.vertices)
             };

@@ -10,7 +10,7 @@ use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
-use crate::gpu::kernels::uniforms::{LevelOp, WORKGROUP};
+use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
@@ -236,7 +236,7 @@ impl Levels {
         hierarchy: &Hierarchy,
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
-        let guard = dispatches.plan.base_step(1.0).shape_guard.min(f32::MAX.into()) as f32;
+        let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
         let mut listing = Listing {
             gpu,
             form: mesh.parts.form(),

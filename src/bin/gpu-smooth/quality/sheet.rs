@@ -105,7 +105,7 @@ impl Sheet {
         Ok(Self {
             path: path.to_owned(),
             format: file.format().to_string(),
-            remarks: tell::remarks(&file),
+            remarks: tell::remarks(&file, false),
             vertices: mesh.points.len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),

@@ -1,0 +1,253 @@
+//! Runs in which no vertex moves farther than a bound: rounds of sweeps on the engine, after each of which vertices beyond their bound
+//! are brought back to it.
+
+use glam::DVec2;
+
+use crate::attempt::{Attempt, Ended};
+use crate::error::{MeshError, SmoothError};
+use crate::layout::{Problem, prepare};
+use crate::mesh::Mesh;
+use crate::rounds::{Rounds, is_sound, objectives};
+use crate::run::{
+    Keeper, Keeping, Observer, Options, Plan, Step, Stop, StopRule, line_search, set_guards,
+};
+use crate::slide::{Fan, Patch};
+use crate::topology::Topology;
+
+/// Number of sweeps in a round.
+const SWEEPS: u32 = 3;
+/// How often a round visits the vertices that are at their bound.
+const VISITS: u32 = 3;
+/// How often the way of a round is halved if it cannot be taken.
+const HALVED: u32 = 5;
+/// A run is over once as many estimates in a row say so.
+const ESTIMATES: u32 = 2;
+/// A vertex that has moved by more than this share of its bound is at its bound.
+const AT_BOUND: f64 = 1.0 - 1e-6;
+
+/// How far each free vertex may move, and which ones are as far as they may.
+pub(crate) struct Limit<'s> {
+    mesh: &'s Mesh,
+    problem: &'s Problem,
+    /// The largest distance of each free vertex from its start, normalized.
+    bounds: Vec<f64>,
+    /// Which free vertices are at their bound. Sweeps leave them where they are.
+    held: Vec<bool>,
+    fans: Vec<Fan>,
+    /// The number in the problem of each vertex of the mesh.
+    number: Vec<u32>,
+}
+
+impl<'s> Limit<'s> {
+    /// Bounds in the unit of the mesh, one for each of its vertices.
+    pub(crate) fn new(
+        mesh: &'s Mesh,
+        topology: &Topology<'_>,
+        problem: &'s Problem,
+        bounds: &[f64],
+    ) -> Self {
+        let (_, scale) = problem.normalization();
+        let mut number = vec![u32::MAX; mesh.points.len()];
+        for (new, &v) in (0..).zip(problem.vertices()) {
+            number[v as usize] = new;
+        }
+        let free = &problem.vertices()[..problem.free_count()];
+        let fan = |&v: &u32| {
+            let mut fan = Fan::new(topology, v);
+            fan.renumber(&number);
+            fan
+        };
+        Self {
+            mesh,
+            problem,
+            bounds: free.iter().map(|&v| bounds[v as usize] * scale).collect(),
+            held: vec![false; free.len()],
+            fans: free.iter().map(fan).collect(),
+            number,
+        }
+    }
+
+    /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
+    pub(crate) async fn run<K: Keeper + ?Sized>(
+        &mut self,
+        attempt: Attempt<'_>,
+        options: &Options,
+        target: Option<f64>,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Ended, SmoothError> {
+        let mut plan = options.plan_to(target);
+        set_guards(&mut plan, options.guard, self.problem, self.problem.positions());
+        let (rule, base) = (StopRule { max_sweeps: u32::MAX, ..plan.stop }, plan.scheme.base());
+        let mut positions = self.problem.positions().to_vec();
+        let start = objectives(self.problem, &plan, &positions);
+        let mut whole: Option<Ended> = None;
+        let (mut f, mut estimates) = (vec![start.of(base).unwrap_or(f64::NAN)], 0);
+        loop {
+            let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
+            let left = options.max_sweeps.saturating_sub(done);
+            let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
+            // Those at their bound are fixed to the engine.
+            let smaller = self.without_held()?;
+            let problem = smaller.as_ref().unwrap_or(self.problem);
+            let from = self.renumbered(&positions, problem);
+            let Attempt { device, phase, .. } = attempt;
+            let attempt = Attempt { problem, device, phase, done };
+            let mut next = attempt.sweep(&part, target, (&from, None), keeping, observe).await?;
+            let to = self.numbered_back(&next.positions, problem);
+            let before = self.held.clone();
+            let has_moved = self.take(&plan, &mut positions, &to);
+            for _ in 0..VISITS {
+                self.visit_held(&mut positions, &plan.base_step(1.0));
+            }
+            if has_moved {
+                self.find_held(&positions);
+            }
+            let now = objectives(self.problem, &plan, &positions);
+            let last = now.of(base).unwrap_or(f64::NAN);
+            // Of what sweeps gained beyond the bounds, nothing counts.
+            for entry in next.history.iter_mut().skip(1) {
+                if entry.of(base).is_none_or(|f| f < last) {
+                    *entry = now;
+                }
+            }
+            if let (Some(entry), true) = (next.history.last_mut(), left > 0) {
+                *entry = now;
+            }
+            let ended = match whole.take() {
+                None => next,
+                Some(before) => before.followed_by(next),
+            };
+            f.push(last);
+            let judged = rule.judge(&f[1..], f.len() - 2, 1);
+            let is_settled = judged.is_some() && (has_moved || before == self.held);
+            estimates = if is_settled { estimates + 1 } else { 0 };
+            let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left == 0;
+            let is_last = left <= SWEEPS && ended.stop == Stop::MaxSweeps
+                || f.len() > options.max_sweeps as usize;
+            let stop = match judged {
+                _ if is_over => Some(ended.stop),
+                Some(Stop::Reached) => judged,
+                Some(_) if estimates >= ESTIMATES => judged,
+                _ => is_last.then_some(Stop::MaxSweeps),
+            };
+            let remaining = rule.remaining(&f[1..], 1);
+            match stop {
+                Some(stop) => return Ok(Ended { positions, stop, remaining, ..ended }),
+                None => whole = Some(ended),
+            }
+        }
+    }
+
+    /// The position of a free vertex, brought back to its bound if it is beyond.
+    fn within(&self, v: usize, to: DVec2) -> DVec2 {
+        let (start, bound) = (self.problem.positions()[v], self.bounds[v]);
+        let distance = to.distance(start);
+        if distance <= bound { to } else { start + (to - start) * (bound / distance) }
+    }
+
+    /// Goes to positions as far as bounds allow, or a part of the way, if that lowers the objective and is sound. If not, vertices that
+    /// want beyond their bounds are to be held. Returns whether it went.
+    fn take(&mut self, plan: &Plan, positions: &mut Vec<DVec2>, to: &[DVec2]) -> bool {
+        let (problem, base) = (self.problem, plan.scheme.base());
+        let here = objectives(problem, plan, positions).of(base);
+        let guard = plan.base_step(1.0).shape_guard;
+        let mut share = 1.0;
+        for _ in 0..=HALVED {
+            let mut there = positions.clone();
+            for (v, (place, to)) in there[..self.bounds.len()].iter_mut().zip(to).enumerate() {
+                // All of the way is exactly there.
+                let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
+                *place = self.within(v, wanted);
+            }
+            if is_sound(problem, positions, &there, guard)
+                && objectives(problem, plan, &there).of(base) < here
+            {
+                *positions = there;
+                return true;
+            }
+            share *= 0.5;
+        }
+        let beyond = |(v, to): (usize, &DVec2)| (self.within(v, *to) != *to).then_some(v);
+        let free = &to[..self.held.len()];
+        let beyond: Vec<usize> = free.iter().enumerate().filter_map(beyond).collect();
+        beyond.into_iter().for_each(|v| self.held[v] = true);
+        false
+    }
+
+    /// Visits the vertices at their bound: a Newton step, brought back within the bound.
+    fn visit_held(&self, positions: &mut [DVec2], step: &Step) {
+        for v in (0..self.held.len()).filter(|&v| self.held[v]) {
+            let here = positions[v];
+            let fan = &self.fans[v];
+            let patch = Patch { problem: self.problem, positions, fan, step };
+            let sum = patch.derivatives(here);
+            let gradient = DVec2::from(sum.gradient);
+            let [xx, xy, yy] = sum.hessian;
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            let most = mean.abs() + (half * half + xy * xy).sqrt();
+            // Along the gradient, as far as the largest curvature allows: it leads along the bound as well as inward.
+            let way = -gradient / most;
+            if !way.is_finite() {
+                continue;
+            }
+            let limit = match step.shape_guard.is_finite() {
+                true => step.shape_guard.max(patch.worst_shape(here)),
+                false => f64::INFINITY,
+            };
+            let mut length = 1.0;
+            for _ in 0..line_search::TRIALS {
+                let to = self.within(v, here + way * length);
+                if patch.objective(to, limit).is_some_and(|value| value < sum.value) {
+                    positions[v] = to;
+                    break;
+                }
+                length *= line_search::SHORTEN;
+            }
+        }
+    }
+
+    /// Finds the vertices at their bound. Those that were held for another reason are let go where they have moved inward.
+    fn find_held(&mut self, positions: &[DVec2]) {
+        for (v, held) in self.held.iter_mut().enumerate() {
+            let distance = positions[v].distance(self.problem.positions()[v]);
+            *held = distance >= AT_BOUND * self.bounds[v];
+        }
+    }
+
+    /// The problem in which those at their bound are fixed; `None` if there are none, or no others.
+    fn without_held(&self) -> Result<Option<Problem>, MeshError> {
+        let count = self.held.iter().filter(|held| **held).count();
+        if count == 0 || count == self.held.len() {
+            return Ok(None);
+        }
+        let vertices = self.problem.vertices().iter().zip(&self.held);
+        let held = vertices.filter(|(_, held)| **held).map(|(&v, _)| v);
+        let Mesh { points, triangles, fixed } = self.mesh;
+        let fixed = fixed.iter().copied().chain(held).collect();
+        let mesh = Mesh { points: points.clone(), triangles: triangles.clone(), fixed };
+        let (_, mut problem) = prepare(&mesh)?;
+        problem.take_targets(self.problem, &self.number);
+        Ok(Some(problem))
+    }
+
+    /// Positions in the order of another problem of the same mesh.
+    fn renumbered(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
+        let of = |&v: &u32| positions[self.number[v as usize] as usize];
+        other.vertices().iter().map(of).collect()
+    }
+
+    /// Positions in the order of the problem, from that of another one.
+    fn numbered_back(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
+        let mut back = vec![DVec2::ZERO; positions.len()];
+        for (&v, &position) in other.vertices().iter().zip(positions) {
+            back[self.number[v as usize] as usize] = position;
+        }
+        back
+    }
+
+    /// Checks that there can be a bound in a run by these options.
+    pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
+        Rounds::check("max move", options, is_continued)
+    }
+}

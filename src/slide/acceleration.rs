@@ -1,0 +1,112 @@
+//! Acceleration of rounds: where a mesh would go if rounds went on as the last ones did.
+
+use glam::DVec2;
+
+use crate::slide::sliding::Params;
+
+/// The most rounds that are remembered.
+const MOST: usize = 6;
+/// Residuals that are combined are told apart if they differ by more than this, relative to their squared lengths.
+const LEAST: f64 = 1e-10;
+
+/// The latest rounds. Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one round to the next: what the rounds
+/// ended at is combined such that what they changed along the curves cancels as far as it can.
+#[derive(Default)]
+pub(crate) struct Acceleration(Vec<Past>);
+
+/// A round.
+struct Past {
+    /// By how much it changed each parameter, in edges.
+    change: Vec<f64>,
+    params: Params,
+    positions: Vec<DVec2>,
+}
+
+impl Acceleration {
+    /// Forgets what was before.
+    pub(crate) fn forget(&mut self) {
+        self.0.clear();
+    }
+
+    /// Remembers a round. Returns parameters and positions from which the next one may begin, which are not known to be sound.
+    pub(crate) fn next(
+        &mut self,
+        change: Vec<f64>,
+        params: &Params,
+        positions: &[DVec2],
+    ) -> Option<(Params, Vec<DVec2>)> {
+        if self.0.len() == MOST {
+            self.0.remove(0);
+        }
+        let (params, positions) = (params.clone(), positions.to_vec());
+        self.0.push(Past { change, params, positions });
+        let (last, before) = self.0.split_last()?;
+        let differences: Vec<Vec<f64>> = before
+            .iter()
+            .map(|past| past.change.iter().zip(&last.change).map(|(a, b)| a - b).collect())
+            .collect();
+        let weights = least_squares(&differences, &last.change)?;
+        let (mut params, mut positions) = (last.params.clone(), last.positions.clone());
+        for (past, weight) in before.iter().zip(weights) {
+            let pairs = params.iter_mut().flatten().zip(past.params.iter().flatten());
+            for ((to, from), last) in pairs.zip(last.params.iter().flatten()) {
+                *to += weight * (from - last);
+            }
+            let pairs = positions.iter_mut().zip(&past.positions).zip(&last.positions);
+            for ((to, from), last) in pairs {
+                *to += (*from - *last) * weight;
+            }
+        }
+        Some((params, positions))
+    }
+}
+
+/// The weights with which the columns, added to `start`, make its squares least. `None` if there are none.
+fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let count = columns.len();
+    // The normal equations, solved by Gaussian elimination: positive definite, as their diagonal is raised.
+    let row = |i: usize| {
+        let mut row: Vec<f64> = columns.iter().map(|column| dot(&columns[i], column)).collect();
+        row[i] *= 1.0 + LEAST;
+        row.push(-dot(&columns[i], start));
+        row
+    };
+    let mut rows: Vec<Vec<f64>> = (0..count).map(row).collect();
+    for i in 0..count {
+        let pivot = rows[i].clone();
+        for below in &mut rows[i + 1..] {
+            let factor = below[i] / pivot[i];
+            below.iter_mut().zip(&pivot).for_each(|(x, pivot)| *x -= factor * pivot);
+        }
+    }
+    let mut weights = vec![0.0; count];
+    for i in (0..count).rev() {
+        let known: f64 = (i + 1..count).map(|j| rows[i][j] * weights[j]).sum();
+        weights[i] = (rows[i][count] - known) / rows[i][i];
+    }
+    (count > 0 && weights.iter().all(|weight| weight.is_finite())).then_some(weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A linear map with slow and fast parts: after as many rounds as it has parts, the fixed point is found.
+    #[test]
+    fn the_fixed_point_of_a_linear_map_is_found() {
+        let rates = [0.9, -0.5, 0.3];
+        let mut acceleration = Acceleration::default();
+        let mut at = vec![1.0, -2.0, 0.5];
+        for _ in 0..5 {
+            let to: Vec<f64> =
+                at.iter().zip(rates).map(|(x, rate)| 4.0 + rate * (x - 4.0)).collect();
+            let change = to.iter().zip(&at).map(|(to, at)| to - at).collect();
+            at = match acceleration.next(change, &vec![to.clone()], &[]) {
+                Some((params, _)) => params[0].clone(),
+                None => to,
+            };
+        }
+        assert!(at.iter().all(|x| (x - 4.0).abs() < 1e-6), "{at:?}");
+    }
+}

@@ -1,0 +1,127 @@
+//! The chains of vertices that curves go through, from corner to corner.
+
+use glam::DVec2;
+
+use crate::slide::options::Slide;
+use crate::topology::Topology;
+
+/// A curve turns at a vertex if it does so by more than this, in radians, besides what the rounding of coordinates may do.
+const STRAIGHT: f64 = 1e-6;
+
+/// The vertices of a curve in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Chain {
+    /// The first and the last one stay where they are, unless the curve is closed.
+    pub(crate) vertices: Vec<u32>,
+    /// Whether the last one is joined to the first.
+    pub(crate) is_closed: bool,
+    /// For each edge, whether it is part of a straight run of several edges.
+    pub(crate) straight: Vec<bool>,
+}
+
+/// The chains that have a vertex to slide, in an order that depends on the numbers of vertices alone.
+pub(crate) fn chains(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide) -> Vec<Chain> {
+    let edges = Edges::of(topology, slide);
+    let mut held = slide.held.clone();
+    held.sort_unstable();
+    let at = |v: u32| DVec2::from(points[v as usize]);
+    // The angle by which the curve turns at a vertex, if it has one curve alone.
+    let turn = |v: u32| match edges.at(v) {
+        &[(_, a), (_, b)] => Some(turn_between(at(a), at(v), at(b))),
+        _ => None,
+    };
+    let is_flat = |v: u32| turn(v).is_some_and(|turn| turn.is_flat());
+    let is_straight = |a: u32, b: u32| is_flat(a) || is_flat(b);
+    let is_corner = |v: u32| match turn(v) {
+        None => true,
+        Some(turn) => {
+            let bends = || edges.at(v).iter().all(|&(_, other)| is_straight(v, other));
+            held.binary_search(&v).is_ok()
+                || turn.angle.to_degrees() > slide.corner_angle
+                || !turn.is_flat() && bends()
+        }
+    };
+    let mut chains = Vec::new();
+    let mut walked = vec![false; points.len()];
+    let mut add = |start: u32, next: u32, walked: &mut Vec<bool>| {
+        let (mut vertices, mut last, mut v) = (vec![start], start, next);
+        while v != start && !is_corner(v) {
+            walked[v as usize] = true;
+            vertices.push(v);
+            let other = edges.at(v).iter().map(|&(_, other)| other).find(|&other| other != last);
+            // Two vertices have one edge, so there is another one.
+            let Some(next) = other else { break };
+            (last, v) = (v, next);
+        }
+        let is_closed = v == start && !is_corner(start);
+        if !is_closed {
+            vertices.push(v);
+        }
+        if vertices.len() > 2 {
+            let ends = vertices.iter().skip(1).chain(is_closed.then_some(&vertices[0]));
+            let straight = vertices.iter().zip(ends).map(|(&a, &b)| is_straight(a, b)).collect();
+            chains.push(Chain { vertices, is_closed, straight });
+        }
+    };
+    for &(v, next) in edges.0.iter().filter(|&&(v, _)| is_corner(v)) {
+        if !is_corner(next) && !walked[next as usize] {
+            add(v, next, &mut walked);
+        }
+    }
+    for &(v, next) in &edges.0 {
+        if !is_corner(v) && !walked[v as usize] {
+            walked[v as usize] = true;
+            add(v, next, &mut walked);
+        }
+    }
+    chains
+}
+
+/// How a curve turns at a vertex.
+struct Turn {
+    /// In radians, from 0 to π.
+    angle: f64,
+    /// What the rounding of coordinates may contribute.
+    rounding: f64,
+}
+
+impl Turn {
+    fn is_flat(&self) -> bool {
+        self.angle <= STRAIGHT + self.rounding
+    }
+}
+
+fn turn_between(a: DVec2, v: DVec2, b: DVec2) -> Turn {
+    let (before, after) = (v - a, b - v);
+    let size = a.abs().max(v.abs()).max(b.abs()).max_element();
+    let shorter = before.length().min(after.length());
+    let rounding = 4.0 * f64::EPSILON * size / shorter;
+    Turn { angle: before.perp_dot(after).atan2(before.dot(after)).abs(), rounding }
+}
+
+/// Edges of curves, in both directions, ascending.
+struct Edges(Vec<(u32, u32)>);
+
+impl Edges {
+    fn of(topology: &Topology<'_>, slide: &Slide) -> Self {
+        let is_edge = |&[a, b]: &[u32; 2]| {
+            let has_both = |&t: &u32| topology.triangles()[t as usize].contains(&b);
+            a != b && topology.star(a).iter().any(has_both)
+        };
+        let is_held = |v: u32| !topology.free()[v as usize];
+        let stays = |&[a, b]: &[u32; 2]| is_held(a) && is_held(b);
+        let lines = slide.lines.iter().copied().filter(|line| stays(line) && is_edge(line));
+        let all = topology.boundary_edges().into_iter().chain(lines);
+        let mut edges: Vec<(u32, u32)> = all.flat_map(|[a, b]| [(a, b), (b, a)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Self(edges)
+    }
+
+    /// The edges at a vertex.
+    fn at(&self, v: u32) -> &[(u32, u32)] {
+        let start = self.0.partition_point(|&(from, _)| from < v);
+        let count = self.0[start..].iter().take_while(|&&(from, _)| from == v).count();
+        &self.0[start..start + count]
+    }
+}

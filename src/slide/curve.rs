@@ -1,0 +1,188 @@
+//! A curve through vertices: straight where they are on a line, a piecewise cubic elsewhere.
+
+use glam::DVec2;
+
+use crate::slide::chains::Chain;
+use crate::slide::options::Slide;
+
+/// The largest value of u (1 - u)² for u from 0 to 1.
+const MOST: f64 = 4.0 / 27.0;
+
+/// A curve, in the unit of the mesh. A place on it is told by a parameter: the length of the lines between the given vertices up to
+/// there. Of a closed curve, parameters that differ by its whole length tell the same place.
+///
+/// Between two given vertices the curve is a cubic over the line between them. Its slopes are those of the circle through a vertex
+/// and its two neighbors, and less where it would leave the line by more than the bound.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    /// The given vertices; the first again at the end if the curve is closed.
+    knots: Vec<DVec2>,
+    /// The parameter of each knot.
+    params: Vec<f64>,
+    /// The slopes of each piece over its line, at its start and its end.
+    slopes: Vec<[f64; 2]>,
+    /// How far each knot may lie from the lines between vertices that have moved.
+    bounds: Vec<f64>,
+    is_closed: bool,
+}
+
+/// A place on a curve, and the derivatives of the point by the parameter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) point: DVec2,
+    pub(crate) first: DVec2,
+    pub(crate) second: DVec2,
+}
+
+impl Curve {
+    pub(crate) fn new(points: &[[f64; 2]], chain: &Chain, slide: &Slide) -> Self {
+        let Chain { vertices, is_closed, straight } = chain;
+        let again = is_closed.then_some(&vertices[0]);
+        let knots: Vec<DVec2> =
+            vertices.iter().chain(again).map(|&v| points[v as usize].into()).collect();
+        let lines: Vec<DVec2> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let pieces = lines.len();
+        let mut params = vec![0.0];
+        for line in &lines {
+            params.push(params[params.len() - 1] + line.length());
+        }
+        let mut slopes = vec![[None; 2]; pieces];
+        for after in 0..pieces {
+            let before = match (after, is_closed) {
+                (0, false) => continue,
+                (0, true) => pieces - 1,
+                _ => after - 1,
+            };
+            let (a, b) = (lines[before], lines[after]);
+            let turn = a.perp_dot(b).atan2(a.dot(b));
+            // The angle from the line before to the tangent. A curve goes on from a straight run in its direction.
+            let share = match (straight[before], straight[after]) {
+                (true, _) => 0.0,
+                (false, true) => 1.0,
+                (false, false) => a.length() / (a.length() + b.length()),
+            };
+            slopes[before][1] = Some((turn * share).tan());
+            slopes[after][0] = Some((turn * (share - 1.0)).tan());
+        }
+        let bounded = |(piece, [start, end]): (usize, [Option<f64>; 2])| {
+            if straight[piece] {
+                return [0.0; 2];
+            }
+            // At a corner, a piece is as at its other end: a part of a circle.
+            let start = start.or(end.map(|end| -end)).unwrap_or(0.0);
+            let end = end.unwrap_or(-start);
+            let length = lines[piece].length();
+            let height = MOST * length * (start.abs() + end.abs());
+            let shorter = (slide.bound(length) / height).min(1.0);
+            if height > 0.0 { [start * shorter, end * shorter] } else { [0.0; 2] }
+        };
+        let slopes: Vec<[f64; 2]> = slopes.into_iter().enumerate().map(bounded).collect();
+        let bound = |k: usize| {
+            let length = |piece: usize| lines.get(piece).map_or(0.0, |line| line.length());
+            let before = if k == 0 { pieces - 1 } else { k - 1 };
+            slide.bound(length(before).max(length(k)))
+        };
+        let bounds = (0..knots.len()).map(bound).collect();
+        Self { knots, params, slopes, bounds, is_closed: *is_closed }
+    }
+
+    /// The parameter of each given vertex.
+    pub(crate) fn params(&self) -> &[f64] {
+        &self.params[..self.params.len() - usize::from(self.is_closed)]
+    }
+
+    /// The whole length of a closed curve.
+    pub(crate) fn period(&self) -> f64 {
+        self.params[self.params.len() - 1]
+    }
+
+    /// The parameter that tells the same place within the first turn around a closed curve.
+    fn wrapped(&self, param: f64) -> f64 {
+        if self.is_closed { param.rem_euclid(self.period()) } else { param }
+    }
+
+    /// The place of a parameter.
+    pub(crate) fn at(&self, param: f64) -> Place {
+        let param = self.wrapped(param);
+        let after = self.params.partition_point(|&start| start <= param);
+        let piece = after.saturating_sub(1).min(self.slopes.len() - 1);
+        let (p, q) = (self.knots[piece], self.knots[piece + 1]);
+        let (line, length) = (q - p, self.params[piece + 1] - self.params[piece]);
+        let [a, b] = self.slopes[piece];
+        let u = ((param - self.params[piece]) / length).clamp(0.0, 1.0);
+        let (v, along, across) = (1.0 - u, line / length, line.perp());
+        let height = u * v * (v * a - u * b);
+        let slope = a * v * (1.0 - 3.0 * u) + b * u * (3.0 * u - 2.0);
+        let bend = a * (6.0 * u - 4.0) + b * (6.0 * u - 2.0);
+        Place {
+            // Of a line along an axis, one coordinate is that of both ends, to the last bit.
+            point: p + line * u + across * height,
+            first: along + across * (slope / length),
+            second: across * (bend / length / length),
+        }
+    }
+
+    /// The given vertices strictly between two parameters, each with its own.
+    fn knots_between(&self, low: f64, high: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let period = if self.is_closed { self.period() } else { 0.0 };
+        let turns = if self.is_closed { (low / period).floor() } else { 0.0 };
+        let pieces = self.slopes.len();
+        let first = self.params.partition_point(|&param| param <= low - turns * period);
+        // The last knot of a closed curve is the first one of the next turn.
+        let knot = move |k: usize| match self.is_closed {
+            true => (k % pieces, (turns + (k / pieces) as f64) * period + self.params[k % pieces]),
+            false => (k, self.params.get(k).copied().unwrap_or(f64::INFINITY)),
+        };
+        (first..).map(knot).take_while(move |&(_, param)| param < high)
+    }
+
+    /// Whether the given vertices between two parameters lie near the lines from there to the point of a parameter between.
+    pub(crate) fn is_near(&self, [low, middle, high]: [f64; 3]) -> bool {
+        let [from, over, to] = [low, middle, high].map(|param| self.at(param).point);
+        self.knots_between(low, high).all(|(knot, param)| {
+            let ends = if param < middle { [from, over] } else { [over, to] };
+            distance(self.knots[knot], ends) <= self.bounds[knot]
+        })
+    }
+
+    /// How far a line between two points of the curve is from the lines between the given vertices: the farthest of the given vertices
+    /// between, or the first end.
+    pub(crate) fn off(&self, low: f64, high: f64) -> f64 {
+        let ends = [low, high].map(|param| self.at(param).point);
+        let far = self.knots_between(low, high).map(|(knot, _)| distance(self.knots[knot], ends));
+        let param = self.wrapped(low);
+        let piece = self.params.partition_point(|&start| start <= param).saturating_sub(1);
+        let piece = piece.min(self.slopes.len() - 1);
+        far.fold(distance(ends[0], [self.knots[piece], self.knots[piece + 1]]), f64::max)
+    }
+
+    /// The parameter of a point on the curve, nearest to where a given vertex was. `None` if the point is farther than `tolerance`
+    /// from the curve.
+    pub(crate) fn find(&self, point: DVec2, vertex: usize, tolerance: f64) -> Option<f64> {
+        let pieces = self.slopes.len();
+        let steps = if self.is_closed { pieces / 2 + 1 } else { pieces };
+        // Outward from the given vertex, forward and back in turn.
+        let outward = (0..=steps as isize).flat_map(|k| [k, -1 - k]);
+        outward.map(|k| vertex as isize + k).find_map(|at| {
+            let turns = at.div_euclid(pieces as isize);
+            if turns != 0 && !self.is_closed {
+                return None;
+            }
+            let piece = at.rem_euclid(pieces as isize) as usize;
+            let (p, length) = (self.knots[piece], self.params[piece + 1] - self.params[piece]);
+            let along = (self.knots[piece + 1] - p) / length;
+            let way = (point - p).dot(along);
+            let is_within = -tolerance <= way && way <= length + tolerance;
+            let param = self.params[piece] + way.clamp(0.0, length);
+            let is_there = is_within && self.at(param).point.distance(point) <= tolerance;
+            is_there.then(|| param + turns as f64 * self.period())
+        })
+    }
+}
+
+/// The distance of a point from the line between two others.
+fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
+    let line = to - from;
+    let share = ((point - from).dot(line) / line.length_squared()).clamp(0.0, 1.0);
+    point.distance(from + line * if share.is_nan() { 0.0 } else { share })
+}

@@ -1,0 +1,15 @@
+//! Vertices that slide: those of the boundary and of lines inside the domain move along the curve they are on, from corner
+//! to corner.
+
+mod acceleration;
+mod chains;
+mod curve;
+mod newton;
+mod options;
+mod patch;
+mod sliding;
+
+pub(crate) use acceleration::Acceleration;
+pub use options::Slide;
+pub(crate) use patch::{Fan, Patch};
+pub(crate) use sliding::{Params, Sliding};

@@ -1,0 +1,57 @@
+//! What slides, and how far it may leave the curve that is given.
+
+use crate::error::{MeshError, SmoothError};
+
+/// Which vertices slide along the curve they are on, and how curves are continued between their vertices; set by
+/// [`Smoother::set_slide`](crate::Smoother::set_slide).
+///
+/// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners stay: ends of curves, vertices where more than
+/// two such edges meet, [`held`](Self::held) ones, and those at which a curve turns by more than
+/// [`corner_angle`](Self::corner_angle), or at all between two straight runs. What is straight stays straight; elsewhere
+/// vertices move along a piecewise cubic through the vertices as they were given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slide {
+    /// A vertex at which a curve turns by more than this is a corner. In degrees, from 0 to 180.
+    pub corner_angle: f64,
+    /// How far a vertex may lie from the lines between the vertices that were given, and these from the lines between vertices that
+    /// have moved. In the unit of the mesh. `None` for a tenth of the edge there.
+    pub hausdorff: Option<f64>,
+    /// Edges of triangles that are parts of curves besides those of the boundary: between regions, or on lines inside one.
+    /// Others are left out, and those with a free vertex.
+    pub lines: Vec<[u32; 2]>,
+    /// Vertices that do not slide. In any order, repeats allowed.
+    pub held: Vec<u32>,
+}
+
+impl Default for Slide {
+    fn default() -> Self {
+        Self { corner_angle: 40.0, hausdorff: None, lines: Vec::new(), held: Vec::new() }
+    }
+}
+
+impl Slide {
+    /// The bound on the distance from an edge of this length, in the unit of the mesh.
+    pub(crate) fn bound(&self, edge: f64) -> f64 {
+        self.hausdorff.unwrap_or(0.1 * edge)
+    }
+
+    /// Checks the numbers, and that there are all the vertices it lists.
+    pub(crate) fn check(&self, vertices: usize) -> Result<(), SmoothError> {
+        let mut listed = self.held.iter().chain(self.lines.as_flattened());
+        if let Some(&vertex) = listed.find(|&&v| v as usize >= vertices) {
+            return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
+        }
+        let refuse = |option, value: f64, remedy| {
+            Err(SmoothError::Option { option, value: value.to_string(), remedy })
+        };
+        if !(0.0..=180.0).contains(&self.corner_angle) {
+            return refuse("corner angle", self.corner_angle, "it must be from 0 to 180 degrees");
+        }
+        match self.hausdorff {
+            Some(bound) if !(bound > 0.0 && bound.is_finite()) => {
+                refuse("hausdorff", bound, "it must be a length above 0")
+            }
+            _ => Ok(()),
+        }
+    }
+}

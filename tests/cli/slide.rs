@@ -1,0 +1,98 @@
+//! `--slide`: vertices on the boundary and between regions move along it.
+
+use super::{Folder, assert_holds, number, support};
+use gpu_smooth::Mesh;
+
+/// A square of two materials, 8 by 4 fields, whose vertices on lines are off their places along them.
+fn square() -> (Mesh, Vec<i32>) {
+    let mut random = support::SplitMix64::new(2);
+    let (mut points, mut triangles, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+    for row in 0..=4_u32 {
+        for column in 0..=8_u32 {
+            let mut off = |held: bool| if held { 0.0 } else { random.range(-0.3, 0.3) };
+            let x = f64::from(column) + off(column.is_multiple_of(4));
+            points.push([x, f64::from(row) + off(row.is_multiple_of(4))]);
+            if row < 4 && column < 8 {
+                let a = row * 9 + column;
+                triangles.extend([[a, a + 1, a + 10], [a, a + 10, a + 9]]);
+                materials.extend([1 + (column / 4) as i32; 2]);
+            }
+        }
+    }
+    (Mesh { points, triangles, fixed: vec![] }, materials)
+}
+
+/// The square as a file of Medit.
+fn medit() -> String {
+    let (mesh, materials) = square();
+    let points = mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n"));
+    let triangles = mesh.triangles.iter().zip(materials);
+    let triangles = triangles.map(|([a, b, c], m)| format!("{} {} {} {m}\n", a + 1, b + 1, c + 1));
+    format!(
+        "MeshVersionFormatted 2\nDimension 2\nVertices\n{}\n{}Triangles\n{}\n{}End\n",
+        mesh.points.len(),
+        points.collect::<String>(),
+        mesh.triangles.len(),
+        triangles.collect::<String>(),
+    )
+}
+
+#[test]
+fn a_mesh_that_slid_is_reported_and_compared() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let run = folder.line("in.mesh out.mesh --engine cpu --slide --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    // 2 x 6 + 2 x 3 on the boundary, less the ends of the line between the materials, and 3 on that.
+    assert_holds(
+        &run.out,
+        &["21 of 21 vertices on lines slid along them", "area of the mesh stayed the same"],
+    );
+    assert_holds(&run.err, &["--slide: 21 vertices on the boundary and other lines may slide"]);
+    assert!(!run.err.contains("stay fixed"), "{}", run.err);
+    let report = folder.json("r.json");
+    assert_eq!(report["slid"]["moved"], 21);
+    assert_eq!(report["certificate"]["fixed_moved"], 0);
+    assert!(number(&report["after"]["f"]["imr"]) < 1.334);
+    let compared = folder.line("compare in.mesh out.mesh --slide").clean();
+    assert_holds(&compared.out, &["along their lines"]);
+    folder
+        .line("compare in.mesh out.mesh")
+        .refused(&["21 vertices have moved that must not", "--slide"]);
+    // One that was fixed by hand has moved.
+    let fixed = "compare -q in.mesh out.mesh --slide --fix-box 0.5,-1,2.5,0.5";
+    folder.line(fixed).refused(&["2 vertices have moved that must not"]);
+}
+
+#[test]
+fn options_that_do_not_go_with_sliding_are_refused() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    for (options, told) in [
+        ("--slide --checkpoint c", "keeps no checkpoints"),
+        ("--slide --scheme edge+imr", "one metric other than edge"),
+        ("--slide --fraction 0.95", "give its value"),
+        ("--slide --corner-angle 200", "from 0 to 180"),
+        ("--slide --hausdorff 0", "above 0"),
+        ("--hausdorff 1", "--slide"),
+        ("--slide --max-move 1", "--max-move does not go with --slide"),
+        ("--max-move 0", "above 0"),
+    ] {
+        let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options}"));
+        assert!(run.code != Some(0), "{options}");
+        assert_holds(&run.err, &[told]);
+    }
+}
+
+#[test]
+fn a_bound_and_the_guard_of_the_worst_are_kept_and_reported() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let options = "--max-move 0.1 --guard worst --free-interfaces";
+    let line = format!("in.mesh out.mesh --engine cpu {options} --report r.json");
+    folder.line(&line).clean();
+    let report = folder.json("r.json");
+    assert_eq!(report["max_move"], 0.1);
+    let most = number(&report["change"]["moved"]["most"]);
+    assert!(most <= 0.1 && most > 0.09, "{most}");
+    let [before, after] =
+        ["before", "after"].map(|state| number(&report[state]["worst_movable_imr"]));
+    assert!(after <= before, "{before} {after}");
+}

@@ -1,0 +1,41 @@
+//! The guard of the worst element, on both engines.
+
+use crate::support::{self, check};
+use crate::{backends, history, name, run, with_points};
+use gpu_smooth::{Guard, Metric, Options, Smoother, Stop};
+
+/// Sizes fall to a point, and vertices are a little out of place: even sizes could be had for bad shapes.
+#[test]
+fn the_worst_element_does_not_get_worse_by_any_metric() {
+    let mesh = support::perturb_random(&support::graded(12, 0.1), 0.2, 4);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let worst = |points: &[[f64; 2]]| {
+        let movable = |t: &[u32; 3]| t.iter().any(|&v| smoother.topology().free()[v as usize]);
+        let all = smoother.topology().triangles().iter().filter(|t| movable(t));
+        let ratio = |t: &[u32; 3]| check::imr(t.map(|v| points[v as usize]));
+        all.map(ratio).fold(1.0, f64::max)
+    };
+    let before = worst(&mesh.points);
+    let mut risen = 0;
+    for metric in [Metric::ShapeSize, Metric::Imr, Metric::Rms] {
+        for guard in [Guard::ByMetric, Guard::Worst] {
+            let options = Options { scheme: metric.into(), guard, ..Options::default() };
+            for backend in backends() {
+                let outcome = run(&smoother, &options, backend);
+                let after = worst(&outcome.points);
+                let label = format!("{metric} on the {}: {before} {after}", name(backend));
+                let f = history(&outcome, metric);
+                assert!(f[f.len() - 1] < f[0], "{label}");
+                if guard == Guard::Worst {
+                    assert!(after <= before, "{label}");
+                    assert_eq!(outcome.stop, Stop::Converged, "{label}");
+                } else if after > 1.01 * before {
+                    risen += 1;
+                }
+                assert!(check::is_valid(&with_points(&mesh, &outcome.points)), "{label}");
+            }
+        }
+    }
+    // Without the guard it does.
+    assert!(risen >= 2, "{risen}");
+}

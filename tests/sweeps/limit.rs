@@ -1,0 +1,95 @@
+//! A bound on how far vertices move, on both engines.
+
+use crate::support::{self, check};
+use crate::{backends, history, name, plate, run, with_points};
+use gpu_smooth::{
+    Backend, Change, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, Targets,
+};
+use std::ops::ControlFlow;
+
+#[test]
+fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let topology = smoother.topology();
+    let mut least = f64::INFINITY;
+    for most in [0.05, 0.3, 2.0] {
+        let max_move = Some(most);
+        let options = Options { max_move, stored: Precision::Single, ..Options::default() };
+        let ends = backends().each_ref().map(|backend| {
+            let label = format!("{most} on the {}", name(backend));
+            let outcome = run(&smoother, &options, backend);
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            let change = Change::between(topology, &mesh.points, &outcome.points).unwrap();
+            assert!(change.moved.most <= most, "{label}: {:?}", change.moved);
+            assert!(most > 1.0 || change.moved.most > 0.999 * most, "{label}: {:?}", change.moved);
+            assert!(check::is_valid(&with_points(&mesh, &outcome.points)), "{label}");
+            let f = history(&outcome, Metric::Imr);
+            assert!(f.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-6)), "{label}: {f:?}");
+            f[f.len() - 1]
+        });
+        assert!((ends[0] / ends[1] - 1.0).abs() < 1e-4, "{most}: {ends:?}");
+        assert!(ends[0] < least, "{most}: {ends:?}");
+        least = ends[0];
+    }
+    let free =
+        *history(&run(&smoother, &Options::default(), &Backend::Cpu), Metric::Imr).last().unwrap();
+    assert!((least / free - 1.0).abs() < 1e-5, "{least} {free}");
+}
+
+/// At the end no vertex by itself can lower the objective by more than little within its bound.
+#[test]
+fn the_end_of_a_bounded_run_is_an_optimum() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let most = 0.2;
+    let options = Options { max_move: Some(most), tolerance: 1e-8, ..Options::default() };
+    let outcome = run(&smoother, &options, &Backend::Cpu);
+    let f = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
+    let (start, end) = (f(&mesh.points), f(&outcome.points));
+    let mut gained = 0.0;
+    let topology = smoother.topology();
+    for v in (0..mesh.points.len()).filter(|&v| topology.free()[v]) {
+        let mut points = outcome.points.clone();
+        let [x, y] = points[v];
+        let mut best = end;
+        for k in 0..16 {
+            let [cos, sin] = support::trig::on_circle(f64::from(k) / 16.0);
+            points[v] = [x + 1e-3 * cos, y + 1e-3 * sin];
+            let change = Change::between(topology, &mesh.points, &points).unwrap();
+            if change.moved.most <= most && check::is_valid(&with_points(&mesh, &points)) {
+                best = best.min(f(&points));
+            }
+        }
+        gained += end - best;
+    }
+    assert!(gained < 0.01 * (start - end), "{gained} of {start} - {end}");
+}
+
+#[test]
+fn targets_are_seen_by_a_bounded_run_as_well() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    let options = Options { max_move: Some(0.2), ..Options::default() };
+    let outcome = run(&smoother, &options, &Backend::Cpu);
+    let f = history(&outcome, Metric::Imr);
+    let end = smoother.f(Metric::Imr, &outcome.points).unwrap();
+    assert!((end / f[f.len() - 1] - 1.0).abs() < 1e-9 && end < 0.9 * f[0], "{end} {f:?}");
+}
+
+#[test]
+fn bounds_that_make_no_sense_are_refused() {
+    let mesh = plate(300);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_slide(Some(&Slide::default())).unwrap();
+    for (max_move, scheme) in [(0.0, "imr"), (f64::NAN, "imr"), (1.0, "edge"), (1.0, "imr")] {
+        let scheme = scheme.parse().unwrap();
+        let options = Options { max_move: Some(max_move), scheme, ..Options::default() };
+        let error = smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        let error = error.unwrap_err();
+        let is_it = matches!(error, SmoothError::Option { option: "max move" | "slide", .. });
+        assert!(is_it, "{error}");
+    }
+}

@@ -1,0 +1,190 @@
+//! Vertices that slide along the boundary and other lines, on both engines.
+
+use crate::support::{self, SplitMix64};
+use crate::{backends, history, name, plate, run};
+use gpu_smooth::{
+    Backend, Desired, Goal, Mesh, MeshError, Metric, Options, Precision, Slide, SmoothError,
+    Smoother, Stop, Targets, Topology, validity,
+};
+
+/// A plate with two holes, vertices inside and on its lines out of place.
+fn worn() -> Mesh {
+    support::perturb_random(&plate(500), 0.5, 3)
+}
+
+/// A rectangle in two halves, 12 by 6, with the line between them. All but its corners are off their places, along the lines if they are
+/// on one.
+fn halves() -> (Mesh, Vec<[u32; 2]>) {
+    let (columns, rows) = (12_u32, 6_u32);
+    let mut random = SplitMix64::new(5);
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let mut off = |held: bool| if held { 0.0 } else { random.range(-0.3, 0.3) };
+            let x = f64::from(column) + off(column % (columns / 2) == 0);
+            let y = f64::from(row) + off(row % rows == 0);
+            points.push([x, y]);
+            if row < rows && column < columns {
+                let a = row * (columns + 1) + column;
+                let (b, c, d) = (a + 1, a + columns + 1, a + columns + 2);
+                triangles.extend([[a, b, d], [a, d, c]]);
+            }
+        }
+    }
+    let middle = |row: u32| row * (columns + 1) + columns / 2;
+    let lines: Vec<[u32; 2]> = (0..rows).map(|row| [middle(row), middle(row + 1)]).collect();
+    let fixed = lines.as_flattened().to_vec();
+    (Mesh { points, triangles, fixed }, lines)
+}
+
+fn sliding<'m>(mesh: &'m Mesh, slide: &Slide) -> (Smoother<'m>, usize) {
+    let mut smoother = Smoother::new(mesh).unwrap();
+    let count = smoother.set_slide(Some(slide)).unwrap();
+    (smoother, count)
+}
+
+#[test]
+fn straight_lines_stay_straight_to_the_last_bit_and_corners_stay() {
+    let (mesh, lines) = halves();
+    let slide = Slide { lines, ..Slide::default() };
+    let (smoother, count) = sliding(&mesh, &slide);
+    // 2 x 11 and 2 x 5 on the boundary, 5 between the halves; the ends of the line between them stay.
+    assert_eq!(count, 2 * 10 + 2 * 5 + 5);
+    let still = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
+    for backend in backends() {
+        let outcome = run(&smoother, &Options::default(), backend);
+        let label = name(backend);
+        assert_eq!(outcome.stop, Stop::Converged, "{label}");
+        let f = history(&outcome, Metric::Imr);
+        assert!(f.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-7)), "{label}: {f:?}");
+        let last = |outcome: &gpu_smooth::Outcome| *history(outcome, Metric::Imr).last().unwrap();
+        assert!(last(&still) > 1.01 * last(&outcome));
+        for (was, is) in mesh.points.iter().zip(&outcome.points) {
+            let on = |axis: usize, places: [f64; 3]| places.contains(&was[axis]);
+            for (axis, places) in [(0, [0.0, 6.0, 12.0]), (1, [0.0, 6.0, 0.0])] {
+                assert!(!on(axis, places) || was[axis] == is[axis], "{label}: {was:?} {is:?}");
+            }
+        }
+        let slid = outcome.slid.unwrap();
+        assert_eq!((slid.vertices, slid.moved), (count, count), "{label}");
+        assert!(slid.off < 1e-12 && slid.area.abs() < 1e-12, "{label}: {slid:?}");
+        let bad = validity::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
+        assert!(bad.is_empty(), "{label}");
+    }
+}
+
+#[test]
+fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
+    let mesh = worn();
+    let held = vec![40, 41, 42];
+    let slide = Slide { held: held.clone(), ..Slide::default() };
+    let (smoother, count) = sliding(&mesh, &slide);
+    let topology = Topology::new(&mesh).unwrap();
+    let still = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
+    for metric in [Metric::Imr, Metric::Rms] {
+        let options = Options { scheme: metric.into(), ..Options::default() };
+        let outcome = run(&smoother, &options, &Backend::Cpu);
+        assert_eq!(outcome.stop, Stop::Converged, "{metric}");
+        let slid = outcome.slid.unwrap();
+        assert!(count > 50 && slid.vertices == count && slid.moved > count / 2, "{slid:?}");
+        assert!(slid.off > 0.0 && slid.off < 0.02 && slid.area.abs() < 1e-2, "{slid:?}");
+        let astray =
+            |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
+        assert!(astray(&outcome.points).is_empty(), "{metric}");
+        for &v in &held {
+            assert_eq!(mesh.points[v as usize], outcome.points[v as usize]);
+        }
+        // Off its line, or past its neighbor, a vertex is found.
+        let moved = |v: &usize| !topology.free()[*v] && mesh.points[*v] != outcome.points[*v];
+        let v = (0..mesh.points.len()).find(moved).unwrap();
+        let mut spoiled = outcome.points.clone();
+        spoiled[v] = spoiled[v].map(|x| x + 1e-3);
+        assert_eq!(astray(&spoiled), [v as u32]);
+        if metric == Metric::Imr {
+            let f = |points| smoother.f(metric, points).unwrap();
+            assert!(f(&outcome.points) < f(&still.points) - 1e-3);
+        }
+    }
+}
+
+/// A circle of 40 vertices around its center, all on one closed line without a corner.
+#[test]
+fn vertices_slide_around_a_circle() {
+    let mut random = SplitMix64::new(9);
+    let at = |turns: f64, radius: f64| support::trig::on_circle(turns).map(|x| radius * x);
+    let count = 40;
+    let mut points: Vec<[f64; 2]> = (0..count)
+        .map(|k| at((f64::from(k) + random.range(-0.3, 0.3)) / f64::from(count), 2.0))
+        .collect();
+    points.extend((0..count).map(|k| at((f64::from(k) + 0.5) / f64::from(count), 1.7)));
+    points.push([0.0, 0.0]);
+    let n = count as u32;
+    let of = |k: u32| {
+        let next = (k + 1) % n;
+        [[k, next, n + k], [next, n + next, n + k], [n + k, n + next, 2 * n]]
+    };
+    let triangles = (0..n).flat_map(of).collect();
+    // The inner ones stay, so that only the outer ones matter.
+    let mesh = Mesh { points, triangles, fixed: (n..2 * n).collect() };
+    let (smoother, slides) = sliding(&mesh, &Slide::default());
+    assert_eq!(slides, 40);
+    let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
+    assert_eq!(outcome.stop, Stop::Converged);
+    let radii = outcome.points[..40].iter().map(|[x, y]| x.hypot(*y));
+    let off = radii.fold(0.0, |off: f64, radius| off.max((radius - 2.0).abs()));
+    // The cubic through four points of the circle, of edges of a sixth of the radius.
+    assert!(off < 1e-3, "{off}");
+    // Each between two of the inner ones.
+    for (k, point) in outcome.points[..40].iter().enumerate() {
+        let there = at(k as f64 / f64::from(count), 2.0);
+        assert!(support::check::squared_distance(*point, there).sqrt() < 0.02, "{k}: {point:?}");
+    }
+}
+
+#[test]
+fn targets_are_respected_by_what_slides() {
+    let (mesh, lines) = halves();
+    // Twice as high as wide: squares become rectangles, two wide for one high.
+    let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    smoother.set_slide(Some(&Slide { lines, ..Slide::default() })).unwrap();
+    let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
+    let f = history(&outcome, Metric::Imr);
+    assert_eq!(outcome.stop, Stop::Converged);
+    assert!(f[f.len() - 1] < f[0], "{f:?}");
+    let at = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
+    assert!((at(&outcome.points) / f[f.len() - 1] - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_combined_is_refused() {
+    let (mesh, _) = halves();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    for slide in [
+        Slide { corner_angle: 181.0, ..Slide::default() },
+        Slide { corner_angle: f64::NAN, ..Slide::default() },
+        Slide { hausdorff: Some(0.0), ..Slide::default() },
+    ] {
+        let error = smoother.set_slide(Some(&slide)).unwrap_err();
+        assert!(matches!(error, SmoothError::Option { .. }), "{error}");
+    }
+    let slide = Slide { held: vec![9999], ..Slide::default() };
+    let error = smoother.set_slide(Some(&slide)).unwrap_err();
+    assert!(matches!(error, SmoothError::Mesh(MeshError::IndexOutOfRange { .. })), "{error}");
+    assert_eq!(
+        smoother.set_slide(Some(&Slide { corner_angle: 0.0, ..Slide::default() })).unwrap(),
+        32
+    );
+    let auto = Some(Goal { fraction: 0.95, desired: Desired::Auto });
+    for options in [
+        Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() },
+        Options { scheme: Metric::Edge.into(), ..Options::default() },
+        Options { goal: auto, ..Options::default() },
+    ] {
+        let error = smoother
+            .run(&options, &Backend::Cpu, &mut |_| std::ops::ControlFlow::Continue(()))
+            .unwrap_err();
+        assert!(matches!(error, SmoothError::Option { option: "slide", .. }), "{error}");
+    }
+}
