@@ -156,7 +156,6 @@ fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
             }
         }
     }
-    println!("{smoothed} smoothed, {refused} refused");
     assert!(smoothed > 3 && refused > 3, "{smoothed} smoothed, {refused} refused");
 }
 
