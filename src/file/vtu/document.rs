@@ -71,6 +71,9 @@ pub(super) struct Appended {
     pub(super) base64: bool,
 }
 
+/// The most elements that may stand in each other. VTK writes no more than seven; each takes some memory until its end.
+const DEEPEST: usize = 100;
+
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
         let mut reader = Reader::from_reader(source.bytes.as_slice());
@@ -125,6 +128,11 @@ impl Document {
                     }
                     if !is_empty {
                         open.push(name);
+                    }
+                    if open.len() > DEEPEST {
+                        let place = Location::Line(source.line_of(at));
+                        let problem = format!("more than {DEEPEST} elements stand in each other");
+                        return Err(source.error_at(place, problem, CORRECT));
                     }
                 }
                 _ => {}
