@@ -5,16 +5,18 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::error::GpuError;
 
 /// Runs wgpu calls that panic where a driver reports what wgpu has no error for: a device that is lost while it is waited for, or memory
-/// that runs out while wgpu encodes something of its own. What was under way is given up, so nothing half done is seen.
-pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, GpuError> {
+/// that runs out while wgpu encodes something of its own. What was under way is given up, so nothing half done is seen. The error is what
+/// wgpu said, on one line.
+pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(calls)).map_err(|payload| {
         let text = match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
             (Some(text), _) => text,
             (None, Some(text)) => *text,
             (None, None) => "wgpu has failed",
         };
-        let words: Vec<_> = text.split_whitespace().collect();
-        GpuError::Lost(words.join(" "))
+        let text =
+            text.strip_prefix("called `Result::unwrap()` on an `Err` value: ").unwrap_or(text);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
     })
 }
 
@@ -23,7 +25,8 @@ pub(crate) fn poll(
     device: &wgpu::Device,
     what: wgpu::PollType,
 ) -> Result<wgpu::PollStatus, GpuError> {
-    caught(|| device.poll(what))?.map_err(|error| GpuError::Lost(error.to_string()))
+    let polled = caught(|| device.poll(what)).map_err(GpuError::Lost)?;
+    polled.map_err(|error| GpuError::Lost(error.to_string()))
 }
 
 /// Runs wgpu calls. A browser answers what it reports of them later, and a page cannot wait for that: there it goes to the
@@ -39,7 +42,7 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let value = caught(calls);
+    let value = caught(calls).map_err(GpuError::Lost);
     let internal = pollster::block_on(internal.pop());
     let memory = pollster::block_on(memory.pop());
     let validation = pollster::block_on(validation.pop());

@@ -56,8 +56,7 @@ impl Gpu {
             ..Default::default()
         };
         let none = |message| GpuError::NoDevice { adapter: summary.name.clone(), message };
-        let requested = caught(|| adapter.request_device(&descriptor))
-            .map_err(|error| none(error.to_string()))?;
+        let requested = caught(|| adapter.request_device(&descriptor)).map_err(none)?;
         let (device, queue) = requested.await.map_err(|error| none(error.to_string()))?;
         let lost = Arc::new(Mutex::new(None));
         let flag = Arc::clone(&lost);
