@@ -53,10 +53,24 @@ impl Backend {
     /// [`Gpu::open`] opens one. The estimate assumes slow GPUs, as none has been measured yet: `gpu-smooth bench`
     /// measures which backend is fastest.
     pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
+        Self::auto_tried(size, options, || Ok(()))
+    }
+
+    /// As [`auto`](Self::auto), but the drivers are tried before one is started in this process, which a driver that crashes
+    /// would end. `try_drivers` may start them in a process of its own and watch it, as the `gpu-smooth` command does; if it
+    /// returns an error, such as [`GpuError::Crashed`], the CPU is taken. It is not called where no driver would be started.
+    pub fn auto_tried(
+        size: MeshSize,
+        options: &Options,
+        try_drivers: impl FnOnce() -> Result<(), GpuError>,
+    ) -> (Self, Reason) {
         let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
         let best = pays_from(FASTEST, cores, sweeps);
         if best.is_none_or(|least| size.vertices < least) {
             return (Self::Cpu, Reason::CpuIsFaster { adapter: None, pays_from: best });
+        }
+        if let Err(error) = try_drivers() {
+            return (Self::Cpu, Reason::GpuFails(error));
         }
         let adapters = ranked_adapters();
         let Some(adapter) = adapters.first() else {

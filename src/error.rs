@@ -324,6 +324,9 @@ pub enum GpuError {
         /// What wgpu said.
         message: String,
     },
+    /// A driver ended the process that tried it, or never answered; see [`Backend::auto_tried`](crate::Backend::auto_tried).
+    #[error("the driver of the GPU failed when it was tried: {0}")]
+    Crashed(String),
     /// A limit of the device is too low.
     #[error("{what} needs {needed}, but the device's {limit} is {available}")]
     Limit {

@@ -1,5 +1,6 @@
 //! A short round of what the fuzzer does (`fuzz/`), on any toolchain and with the same inputs each time. `FUZZ_ROUNDS`, a factor,
-//! makes it longer. An input that fails is to be added literally; none has failed yet.
+//! makes it longer. Inputs that have failed are here
+//! literally.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -70,6 +71,14 @@ fn files_of_any_bytes() {
     for round in 0..rounds(600) {
         checks::any_file(&damaged(&texts[round % texts.len()], &mut random));
     }
+}
+
+/// The message quoted the tag, line ends and all.
+#[test]
+fn a_closing_tag_of_several_lines_is_told_on_one() {
+    checks::any_file(b"<?xml version=\"1.0\"?>\n</P 2.0 1.78 0.0\n12 3.0 1.73 0.0\n>\n");
+    let long = ["<?xml version=\"1.0\"?>\n</", &"long ".repeat(1000), ">\n"].concat();
+    checks::any_file(long.as_bytes());
 }
 
 #[test]

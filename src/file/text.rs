@@ -360,13 +360,18 @@ pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
 
 /// A token made fit for a message of one line: shortened, with control characters escaped.
 pub(crate) fn quoted(token: &[u8]) -> String {
-    const SHOWN: usize = 40;
-    let text = String::from_utf8_lossy(&token[..token.len().min(4 * SHOWN)]);
-    let mut quoted: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
-    if text.chars().nth(SHOWN).is_some() {
-        quoted.push_str("...");
+    on_one_line(token, 40)
+}
+
+/// A text that may quote any part of a file, made fit for a message of one line: so many characters of it, with control
+/// characters escaped.
+pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
+    let text = String::from_utf8_lossy(&text[..text.len().min(4 * most)]);
+    let mut shown: String = text.chars().take(most).flat_map(char::escape_debug).collect();
+    if text.chars().nth(most).is_some() {
+        shown.push_str("...");
     }
-    quoted
+    shown
 }
 
 /// The first byte from `at` on that is no blank. A line feed does not count as one.

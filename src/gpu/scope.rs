@@ -1,6 +1,33 @@
-//! Error scopes, which turn what wgpu reports of a call into an error.
+//! Calls of wgpu whose failures become errors: those that it reports to error scopes, and those of which it panics.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::GpuError;
+
+/// Runs wgpu calls that panic where a driver reports what wgpu has no error for: a device that is lost while it is waited for, or memory
+/// that runs out while wgpu encodes something of its own. What was under way is given up, so nothing half done is seen. The error is what
+/// wgpu said, on one line.
+pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(calls)).map_err(|payload| {
+        let text = match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
+            (Some(text), _) => text,
+            (None, Some(text)) => *text,
+            (None, None) => "wgpu has failed",
+        };
+        let text =
+            text.strip_prefix("called `Result::unwrap()` on an `Err` value: ").unwrap_or(text);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    })
+}
+
+/// Polls a device.
+pub(crate) fn poll(
+    device: &wgpu::Device,
+    what: wgpu::PollType,
+) -> Result<wgpu::PollStatus, GpuError> {
+    let polled = caught(|| device.poll(what)).map_err(GpuError::Lost)?;
+    polled.map_err(|error| GpuError::Lost(error.to_string()))
+}
 
 /// Runs wgpu calls. A browser answers what it reports of them later, and a page cannot wait for that: there it goes to the
 /// device's handler of uncaptured errors.
@@ -15,7 +42,7 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let value = calls();
+    let value = caught(calls).map_err(GpuError::Lost);
     let internal = pollster::block_on(internal.pop());
     let memory = pollster::block_on(memory.pop());
     let validation = pollster::block_on(validation.pop());
@@ -26,7 +53,7 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
         // Of a lost device wgpu reports only the consequences: "... is invalid".
         Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
         Some(error) => Err(GpuError::Refused(error.to_string())),
-        None => Ok(value),
+        None => value,
     }
 }
 

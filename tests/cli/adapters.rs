@@ -1,6 +1,6 @@
 //! Which adapter a run takes, and what happens without one.
 
-use super::{Folder, Run, assert_holds, finish, small, support};
+use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
 use std::process::Command;
 
 #[test]
@@ -41,16 +41,18 @@ fn an_unknown_adapter_is_answered_with_those_there_are() {
     assert!(folder.content() == before);
 }
 
+/// Hides every driver from the loader of Vulkan.
+#[cfg(target_os = "linux")]
+fn hide_vulkan(command: &mut Command) -> &mut Command {
+    command.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent");
+    command.env_remove("VK_ADD_DRIVER_FILES")
+}
+
 /// Hides every driver from the loaders of Vulkan and of OpenGL.
 #[cfg(target_os = "linux")]
 fn hide_drivers(command: &mut Command) -> &mut Command {
-    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "__EGL_VENDOR_LIBRARY_FILENAMES"] {
-        command.env(variable, "/nonexistent");
-    }
-    for variable in ["VK_ADD_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS"] {
-        command.env_remove(variable);
-    }
-    command
+    hide_vulkan(command).env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent");
+    command.env_remove("__EGL_VENDOR_LIBRARY_DIRS")
 }
 
 #[cfg(target_os = "linux")]
@@ -71,6 +73,28 @@ fn without_an_adapter_the_gpu_engine_tells_what_to_install() {
     assert!(folder.content() == before);
     let list = without_drivers(&folder, "adapters").clean().out;
     assert_holds(&list, &install[..1]);
+}
+
+/// `tests/run` installs a driver of OpenGL.
+#[cfg(target_os = "linux")]
+#[test]
+fn where_there_is_no_vulkan_a_driver_of_opengl_is_taken() {
+    let folder = small();
+    let list = finish(hide_vulkan(&mut folder.command()).arg("adapters")).clean().out;
+    let first = list.lines().next().unwrap();
+    assert_holds(first, &[", gl; ", "; arithmetic checked"]);
+    let line = "in out --engine gpu --max-sweeps 12 --report r.json";
+    finish(hide_vulkan(&mut folder.command()).args(line.split(' '))).clean();
+    let engine = &folder.json("r.json")["engine"];
+    assert_eq!(engine["kind"], "gpu");
+    assert_holds(first, &[engine["driver"].as_str().unwrap()]);
+    let on_opengl = folder.mesh("out");
+    assert_smoothed(&folder.mesh("in"), &on_opengl);
+    folder.line("in out --engine cpu --max-sweeps 12").clean();
+    for (a, b) in on_opengl.points.iter().zip(&folder.mesh("out").points) {
+        // Edges are about 1.
+        assert!(support::check::squared_distance(*a, *b) < 1e-4 * 1e-4, "{a:?}, {b:?}");
+    }
 }
 
 #[test]

@@ -463,3 +463,26 @@ fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     assert!(number(&folder.json("r.json")["sweeps"]) > 0.0);
     assert_eq!(folder.content().len(), 6);
 }
+
+/// Names of files are bytes: what is no text, a line end, or what a terminal obeys.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_of_any_bytes_are_read_and_written_and_told_on_one_line() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = small();
+    let named = |bytes: &'static [u8]| OsStr::from_bytes(bytes);
+    for (from, to) in [("in.node", &b"\xFF\n.node"[..]), ("in.ele", b"\xFF\n.ele")] {
+        fs::rename(folder.path(from), folder.0.path().join(OsStr::from_bytes(to))).unwrap();
+    }
+    let [cpu, quiet, report] = ["--engine=cpu", "-q", "--report"].map(OsStr::new);
+    let args = [named(b"\xFF\n"), named(b"\xFE\x1B[31m"), cpu, quiet, report, named(b"\xFD.json")];
+    folder.run(args).clean();
+    for written in [&b"\xFE\x1B[31m.node"[..], b"\xFE\x1B[31m.ele", b"\xFD.json"] {
+        assert!(folder.0.path().join(OsStr::from_bytes(written)).exists(), "{written:?}");
+    }
+    let run = folder.run([named(b"none\xFF\x1B[31m\x07"), named(b"out"), cpu]);
+    let run = run.refused(&["none\u{FFFD}\\u{1b}[31m\\u{7}"]);
+    assert_eq!(run.err.lines().count(), 1, "{}", run.err);
+}

@@ -10,6 +10,8 @@ mod bench;
 mod browser;
 mod compare;
 mod convert;
+#[cfg(target_os = "linux")]
+mod drivers;
 mod files;
 mod formats;
 mod groups;

@@ -9,8 +9,9 @@ mod support;
 mod app;
 mod budget;
 mod clamped;
+#[cfg(target_os = "linux")]
+mod drivers;
 mod exchange;
-
 mod futures;
 mod inverted;
 mod judged;

@@ -483,3 +483,20 @@ fn damaged_pieces_never_panic() {
         }
     }
 }
+
+/// Neither depth nor entities make a small file a large one.
+#[test]
+fn hostile_xml_takes_no_memory_and_no_time() {
+    let opening = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n";
+    let refused = |text: String| {
+        let error = MeshFile::from_bytes(std::path::Path::new("a.vtu"), text.into_bytes());
+        error.unwrap_err().to_string()
+    };
+    let deep = refused(format!("{opening}{}", "<a>".repeat(1_000_000)));
+    assert!(deep.starts_with("a.vtu:3: more than 100 elements stand in each other"), "{deep}");
+    let entities =
+        "<!DOCTYPE v [<!ENTITY a \"9999999999\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;\">]>\n";
+    let text = opening.replacen('\n', &format!("\n{entities}"), 1);
+    let entity = refused(format!("{text}<Piece NumberOfPoints=\"&b;\" NumberOfCells=\"1\">"));
+    assert!(entity.contains("a.vtu:4: NumberOfPoints is `&b;`"), "{entity}");
+}

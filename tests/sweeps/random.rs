@@ -1,7 +1,10 @@
 //! Random planar meshes of all kinds through both engines, with random options: what must hold for every one of them.
 //!
-//! `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few, `GPU_SMOOTH_RANDOM_SEED=K` the meshes from K on. A
-//! failure names the seed of its mesh.
+//! `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few, `GPU_SMOOTH_RANDOM_SEED=K` the meshes from K on,
+//! `GPU_SMOOTH_RANDOM_VERTICES=V` lets each part of a mesh have up to V vertices. A failure names the seed of its mesh.
+//!
+//! Meshes come from seeds, not from a library that shrinks what fails (proptest): a mesh with a triangle, a point or a map less is
+//! most often another mesh that does not fail, and most of these are small.
 
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
@@ -17,9 +20,15 @@ fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {
     10f64.powf(rng.range(low, high))
 }
 
-/// A Delaunay mesh of random points, in a square, a disk, or in clusters.
+/// How many vertices a part of a mesh may have.
+fn most_vertices() -> usize {
+    setting("GPU_SMOOTH_RANDOM_VERTICES", 65) as usize
+}
+
+/// A Delaunay mesh of random points, in a square, a disk, or in clusters: from one vertex on, few as often as many.
 fn scattered(rng: &mut SplitMix64) -> Mesh {
-    let count = 5 + rng.below(60);
+    let most = most_vertices() as f64;
+    let count = decades(rng, 0.0, most.log10()).ceil() as usize;
     let kind = rng.below(3);
     let mut all = DelaunayTriangulation::<Point2<f64>>::new();
     for _ in 0..count {
@@ -74,10 +83,24 @@ fn plain(rng: &mut SplitMix64) -> Mesh {
     match rng.below(5) {
         0 | 1 => scattered(rng),
         2 => hub(rng),
-        3 => support::lattice(2 + rng.below(12), 2 + rng.below(12)),
+        3 => {
+            let side = ((most_vertices() as f64).sqrt() as usize).max(12);
+            support::lattice(2 + rng.below(side), 2 + rng.below(side))
+        }
         // A strip.
         _ => support::lattice(2 + rng.below(60), 2),
     }
+}
+
+/// Two meshes as one of two components, the second to the right of the first.
+fn beside(mut left: Mesh, right: &Mesh) -> Mesh {
+    let end = |mesh: &Mesh, sign: f64| {
+        mesh.points.iter().fold(f64::NEG_INFINITY, |end, point| end.max(sign * point[0]))
+    };
+    let (shift, first) = (end(&left, 1.0) + end(right, -1.0) + 1.0, left.points.len() as u32);
+    left.points.extend(right.points.iter().map(|[x, y]| [x + shift, *y]));
+    left.triangles.extend(right.triangles.iter().map(|triangle| triangle.map(|v| v + first)));
+    left
 }
 
 /// Applies a map to all points, unless it inverts a triangle.
@@ -89,6 +112,12 @@ fn mapped(mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
 /// A random planar mesh: all triangles are counter-clockwise.
 fn random_mesh(rng: &mut SplitMix64) -> Mesh {
     let mut mesh = plain(rng);
+    if rng.below(5) == 0 {
+        mesh = beside(mesh, &plain(rng));
+    }
+    if mesh.triangles.is_empty() {
+        return mesh;
+    }
     if rng.below(2) == 0 {
         mesh = support::perturb_random(&mesh, rng.range(0.2, 1.0), rng.next_u64());
     }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
 use crate::run_args::{EngineChoice, SmoothArgs};
+use crate::trial;
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
@@ -47,7 +48,8 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
 
 /// Chooses the engine for a mesh of this size and opens it.
 pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
-    let (backend, reason) = Backend::auto(size, &args.options(Precision::Double));
+    let (backend, reason) =
+        Backend::auto_tried(size, &args.options(Precision::Double), trial::drivers);
     Taken::new(backend, Some(worded(&reason)))
 }
 
@@ -123,13 +125,15 @@ impl<'a> Engines<'a> {
         if let Some((taken, _)) = large.as_ref().filter(|(_, least)| size.vertices >= *least) {
             return taken.clone();
         }
-        let (backend, reason) = Backend::auto(size, &self.args.options(Precision::Double));
+        let (backend, reason) =
+            Backend::auto_tried(size, &self.args.options(Precision::Double), trial::drivers);
         let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
         let known = (taken.clone(), size.vertices);
         match reason {
             Reason::GpuIsFaster { pays_from } => *gpu = Some((taken.clone(), pays_from)),
             Reason::CpuIsFaster { .. } => *small = Some(known),
-            Reason::OnlySoftware(_) | Reason::GpuFails(GpuError::NoAdapter { .. }) => {
+            Reason::OnlySoftware(_)
+            | Reason::GpuFails(GpuError::NoAdapter { .. } | GpuError::Crashed(_)) => {
                 *large = Some(known);
             }
             // Another mesh may fit.
@@ -160,7 +164,8 @@ fn refusal(error: GpuError) -> String {
         }
         GpuError::NoAdapter { .. } => format!("no GPU adapter was found. {INSTALL}"),
         GpuError::Arithmetic { .. } => error.to_string(),
-        error => format!("{error}. {INSTALL}"),
+        // There is a driver, and it fails.
+        error => format!("{error}. Use --engine cpu, or another driver"),
     }
 }
 

@@ -15,6 +15,7 @@ mod keep;
 mod many;
 mod moving;
 mod numbers;
+mod panics;
 mod picture;
 mod progress;
 mod proof;
@@ -29,6 +30,7 @@ mod streams;
 mod target_args;
 mod task;
 mod tell;
+mod trial;
 mod untangle;
 
 use std::process::ExitCode;
@@ -36,6 +38,10 @@ use std::process::ExitCode;
 use cli::{Cli, Command, LogForm};
 
 fn main() -> ExitCode {
+    panics::told(run)
+}
+
+fn run() -> ExitCode {
     let cli = Cli::read();
     if cli.output.log == LogForm::Json {
         tell::log_json();

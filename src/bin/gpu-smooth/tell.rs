@@ -56,8 +56,18 @@ pub(crate) fn note(quiet: bool, text: &str) {
     match () {
         () if quiet => {}
         () if is_json() => event(json!({ "event": "note", "message": text })),
-        () => eprintln!("gpu-smooth: {text}"),
+        () => eprintln!("gpu-smooth: {}", printable(text)),
     }
+}
+
+/// A message without the control characters that names of files may have, but for the ends of its own lines: a terminal would obey
+/// them.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c.is_control() && c != '\n' {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(shown).collect()
 }
 
 /// Goes to a line of its own where a bar may stand on the last one.
@@ -68,10 +78,11 @@ pub(crate) fn leave_bar() {
 }
 
 pub(crate) fn error(text: &str) {
+    let shown = printable(text);
     match is_json() {
         true => event(json!({ "event": "error", "message": text })),
-        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {text}"),
-        false => eprintln!("gpu-smooth: error: {text}"),
+        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {shown}"),
+        false => eprintln!("gpu-smooth: error: {shown}"),
     }
 }
 

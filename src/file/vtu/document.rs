@@ -4,7 +4,7 @@ use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::numbers::Offset;
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::file::text::{CORRECT, CUT_OFF, on_one_line, quoted};
 use crate::file::vtu::blocks::Compressor;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -71,6 +71,9 @@ pub(super) struct Appended {
     pub(super) base64: bool,
 }
 
+/// The most elements that may stand in each other. VTK writes no more than seven; each takes some memory until its end.
+const DEEPEST: usize = 100;
+
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
         let mut reader = Reader::from_reader(source.bytes.as_slice());
@@ -90,6 +93,8 @@ impl Document {
             let at = reader.buffer_position() as usize;
             let event = reader.read_event().map_err(|error| {
                 let place = Location::Line(source.line_of(at.min(source.bytes.len())));
+                // It may quote a tag, which may be of any length.
+                let error = on_one_line(error.to_string().as_bytes(), 120);
                 source.error_at(place, format!("it is no XML: {error}"), CORRECT)
             })?;
             let after = reader.buffer_position() as usize;
@@ -123,6 +128,11 @@ impl Document {
                     }
                     if !is_empty {
                         open.push(name);
+                    }
+                    if open.len() > DEEPEST {
+                        let place = Location::Line(source.line_of(at));
+                        let problem = format!("more than {DEEPEST} elements stand in each other");
+                        return Err(source.error_at(place, problem, CORRECT));
                     }
                 }
                 _ => {}

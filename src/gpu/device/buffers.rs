@@ -6,6 +6,7 @@ use std::ops::Range;
 use wgpu::BufferUsages as Usage;
 
 use crate::gpu::device::Gpu;
+use crate::gpu::scope::poll;
 
 /// Binds a uniform that is read at a dynamic offset.
 pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
@@ -70,7 +71,8 @@ pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, byte
         if under_way.len() == UNDER_WAY {
             let submission_index = under_way.pop_front();
             // If the device is lost, reading back the results reports it.
-            let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
+            let wait = wgpu::PollType::Wait { submission_index, timeout: None };
+            let _ = poll(&gpu.device, wait);
         }
         gpu.queue.write_buffer(buffer, at, piece);
         under_way.push_back(gpu.queue.submit([]));

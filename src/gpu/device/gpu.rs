@@ -10,6 +10,7 @@ use crate::gpu::device::limits;
 use crate::gpu::device::size::MeshSize;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::table::{Kernel, Positions};
+use crate::gpu::scope::poll;
 use crate::run::Options;
 
 /// A device with its pipelines. Made once, it serves many meshes. It is a handle: clones are the same device.
@@ -205,7 +206,7 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     queue.on_submitted_work_done(move || flag.store(true, Ordering::Relaxed));
     // Another thread may have taken the report in a poll of its own, and be about to make it.
     (0..PATIENCE).any(|_| {
-        let idle = device.poll(wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
+        let idle = poll(device, wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
         let is_own = reported.load(Ordering::Relaxed) || !idle;
         if !is_own {
             std::thread::sleep(Duration::from_millis(1));

@@ -7,6 +7,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters, ranked_adapters_async};
 use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::readback::Waiting;
+use crate::gpu::scope::caught;
 
 impl Gpu {
     /// Opens the best adapter, or the best whose name contains `name` (whatever the case). Discrete GPUs come before
@@ -48,16 +49,15 @@ impl Gpu {
 
     async fn start_async(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let summary = AdapterSummary::new(&adapter.get_info());
-        let requested = adapter.request_device(&wgpu::DeviceDescriptor {
+        let descriptor = wgpu::DeviceDescriptor {
             label: Some("gpu-smooth device"),
             required_features: adapter.features() & Self::optional_features(),
             required_limits: adapter.limits(),
             ..Default::default()
-        });
-        let (device, queue) = requested.await.map_err(|error| GpuError::NoDevice {
-            adapter: summary.name.clone(),
-            message: error.to_string(),
-        })?;
+        };
+        let none = |message| GpuError::NoDevice { adapter: summary.name.clone(), message };
+        let requested = caught(|| adapter.request_device(&descriptor)).map_err(none)?;
+        let (device, queue) = requested.await.map_err(|error| none(error.to_string()))?;
         let lost = Arc::new(Mutex::new(None));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
@@ -72,7 +72,12 @@ impl Gpu {
         let gpu = Self::with(device, queue, summary, lost)?;
         // A browser polls by itself. Elsewhere nobody else has the device to poll it.
         let browser = cfg!(target_arch = "wasm32");
-        gpu.arithmetic_checked(if browser { Waiting::Await } else { Waiting::Block }).await?;
+        let waiting = if browser { Waiting::Await } else { Waiting::Block };
+        if let Err(error) = gpu.arithmetic_checked(waiting).await {
+            // Of a device that has failed, wgpu may miss what it never made.
+            let _ = caught(|| drop(gpu));
+            return Err(error);
+        }
         Ok(gpu)
     }
 }

@@ -7,7 +7,7 @@ use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::{poll, scoped};
 
 /// Who polls the device while a readback is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,9 +76,9 @@ impl<T: Pod> Copied<'_, T> {
             if cfg!(target_arch = "wasm32") {
                 return Err(GpuError::WouldBlock);
             }
-            let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            let polled = poll(&gpu.device, wgpu::PollType::wait_indefinitely());
             gpu.check()?;
-            polled.map_err(|error| GpuError::Lost(error.to_string()))?;
+            polled?;
         }
         match arrival.receive().await {
             Some(Ok(())) => gpu.check()?,

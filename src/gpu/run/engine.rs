@@ -242,7 +242,7 @@ impl Engine for GpuEngine<'_> {
         let Some(levels) = &self.levels else {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
         };
-        levels.set_length(self.gpu, length as f32);
+        levels.set_length(self.gpu, length as f32)?;
         let mut secants = self.secants.take().filter(|_| accelerated);
         if accelerated && secants.is_none() {
             let (params, free) = (&self.dispatches.params, self.problem.free_count() as u32);
@@ -267,7 +267,7 @@ impl Engine for GpuEngine<'_> {
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         let Some(levels) = &self.levels else { return Ok(None) };
-        levels.set_length(self.gpu, length as f32);
+        levels.set_length(self.gpu, length as f32)?;
         let objective = |passes: &mut Passes<'_>| levels.encode_objective(passes);
         let totals = self.submit_and_copy(objective, &levels.vectors, TOTALS)?;
         Ok(self.proposal(totals).await?.there)
@@ -275,7 +275,7 @@ impl Engine for GpuEngine<'_> {
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
         let Some(levels) = &self.levels else { return Ok(()) };
-        levels.set_length(self.gpu, length as f32);
+        levels.set_length(self.gpu, length as f32)?;
         self.submit(|passes| levels.encode_movement(passes))
     }
 

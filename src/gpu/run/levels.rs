@@ -360,12 +360,14 @@ impl Levels {
     }
 
     /// Sets how far the next submission goes along the correction, as a multiple of it.
-    pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) {
-        for step in self.objective.iter().chain([&self.movement]) {
-            let op = LevelOp { a: length, ..step.op };
-            let at = u64::from(step.number * self.stride);
-            gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
-        }
+    pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) -> Result<(), GpuError> {
+        scoped(&gpu.device, || {
+            for step in self.objective.iter().chain([&self.movement]) {
+                let op = LevelOp { a: length, ..step.op };
+                let at = u64::from(step.number * self.stride);
+                gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
+            }
+        })
     }
 
     fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {

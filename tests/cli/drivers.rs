@@ -1,0 +1,183 @@
+//! Drivers that fail: a driver is put before Mesa's, which makes one function fail from a certain call on (`faulty_driver.c`).
+
+use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::process::Command;
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// Results of Vulkan.
+const LOST: &str = "-4";
+const NO_MEMORY: &str = "-2";
+
+/// The path of Mesa's software driver, as it is registered on this machine.
+fn real_driver() -> String {
+    let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    let files = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
+    let mut lavapipe = files.filter(|file| file.file_name().to_string_lossy().starts_with("lvp"));
+    let file = lavapipe.next().expect("these tests need Mesa's lavapipe; tests/run installs it");
+    let registered: serde_json::Value =
+        serde_json::from_slice(&fs::read(file.path()).unwrap()).unwrap();
+    registered["ICD"]["library_path"].as_str().unwrap().to_owned()
+}
+
+/// A folder with the driver that fails.
+fn faulty_driver() -> &'static TempDir {
+    static FOLDER: OnceLock<TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = TempDir::new().unwrap();
+        let library = folder.path().join("libfaulty.so");
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cli/faulty_driver.c");
+        let compiled = Command::new("cc")
+            .args(["-shared", "-fPIC", "-o"])
+            .arg(&library)
+            .args([source, "-ldl"])
+            .output()
+            .expect("these tests need cc, with which Rust links as well");
+        assert!(compiled.status.success(), "{compiled:?}");
+        let icd = serde_json::json!({
+            "file_format_version": "1.0.0",
+            "ICD": { "library_path": library, "api_version": "1.1.0" },
+        });
+        fs::write(folder.path().join("icd.json"), icd.to_string()).unwrap();
+        folder
+    })
+}
+
+/// Has the command find the driver that fails alone.
+fn with_fault<'c>(
+    command: &'c mut Command,
+    function: &str,
+    from: usize,
+    result: &str,
+) -> &'c mut Command {
+    let icd = faulty_driver().path().join("icd.json");
+    command.env("VK_DRIVER_FILES", &icd).env("VK_ICD_FILENAMES", icd);
+    command.env_remove("VK_ADD_DRIVER_FILES").env("REAL_DRIVER", real_driver());
+    command.env("FAULT_FUNCTION", function).env("FAULT_FROM", from.to_string());
+    command.env("FAULT_RESULT", result)
+}
+
+/// Nothing of a fault may be told as a defect of the program.
+fn assert_told(run: &Run, label: &str) {
+    for word in ["panicked", "unwrap", "RUST_BACKTRACE"] {
+        assert!(!run.err.contains(word), "{label}:\n{}", run.err);
+    }
+}
+
+const RUN: &str = "in out --engine gpu --tolerance 0 --max-sweeps 40 --report r.json";
+
+#[test]
+fn a_device_that_is_lost_in_the_middle_does_not_end_the_run() {
+    let folder = small();
+    folder.line(&RUN.replace("gpu", "cpu")).clean();
+    let f = |folder: &Folder| folder.json("r.json")["after"]["f"]["imr"].as_f64().unwrap();
+    let on_cpu = f(&folder);
+    // A submission fails; the driver's reset is noticed while the device is waited for.
+    for (function, from) in
+        [("vkQueueSubmit", 12), ("vkWaitSemaphores", 7), ("vkGetSemaphoreCounterValue", 15)]
+    {
+        let mut command = folder.command();
+        let command = with_fault(&mut command, function, from, LOST);
+        let run = finish(command.args(RUN.split(' ')));
+        assert_eq!(run.code, Some(0), "{function}: {}", run.err);
+        let told = "gpu-smooth: the GPU failed: the device was lost: ";
+        assert_holds(&run.err, &[told, "The run goes on on the CPU, from sweep "]);
+        assert_told(&run, function);
+        let report = folder.json("r.json");
+        assert_holds(report["engine"]["fault"].to_string().as_str(), &["the device was lost"]);
+        assert_eq!(report["sweeps"], 40, "{function}");
+        assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+        assert!((f(&folder) / on_cpu - 1.0).abs() < 1e-5, "{function}: {}", f(&folder));
+    }
+}
+
+/// Functions of a driver that a run calls, and how each fails.
+const FAULTS: [(&str, &str); 17] = [
+    ("vkQueueSubmit", LOST),
+    ("vkQueueSubmit", NO_MEMORY),
+    ("vkWaitSemaphores", LOST),
+    ("vkGetSemaphoreCounterValue", LOST),
+    ("vkAllocateMemory", NO_MEMORY),
+    ("vkMapMemory", "-5"),
+    ("vkCreateBuffer", NO_MEMORY),
+    ("vkBindBufferMemory", NO_MEMORY),
+    ("vkCreateComputePipelines", NO_MEMORY),
+    ("vkCreateComputePipelines", LOST),
+    ("vkCreateShaderModule", NO_MEMORY),
+    ("vkBeginCommandBuffer", NO_MEMORY),
+    ("vkEndCommandBuffer", NO_MEMORY),
+    ("vkAllocateCommandBuffers", NO_MEMORY),
+    ("vkAllocateDescriptorSets", NO_MEMORY),
+    ("vkCreateDevice", "-3"),
+    ("vkEnumeratePhysicalDevices", "-3"),
+];
+
+/// A call of each function fails, and all later ones: the mesh is smoothed, or nothing is written and the message has a remedy. A
+/// few calls of each, or all of them if the environment variable ALL_FAULTS is set.
+#[test]
+fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
+    let line = "in out --engine gpu --max-sweeps 6";
+    let (mut smoothed, mut refused) = (0, 0);
+    for (function, result) in FAULTS {
+        let folder = small();
+        let count = folder.path("count");
+        fs::write(&count, "").unwrap();
+        let mut command = folder.command();
+        command.env("FAULT_COUNT", &count);
+        finish(with_fault(&mut command, function, usize::MAX >> 40, result).args(line.split(' ')))
+            .clean();
+        let calls = fs::read(&count).unwrap().len();
+        assert!(calls > 0, "{function} is not called");
+        let numbers: Vec<usize> = match std::env::var_os("ALL_FAULTS") {
+            Some(_) => (1..=calls).collect(),
+            None => vec![calls.div_ceil(2)],
+        };
+        for from in numbers {
+            let folder = small();
+            let before = folder.content();
+            let mut command = folder.command();
+            let run =
+                finish(with_fault(&mut command, function, from, result).args(line.split(' ')));
+            let label = format!("{function} from call {from} of {calls}: {result}");
+            assert_told(&run, &label);
+            match run.code {
+                Some(0) => {
+                    assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+                    smoothed += 1;
+                }
+                _ => {
+                    assert!(folder.content() == before, "{label}");
+                    let run = run.refused(&["--engine cpu"]);
+                    assert!(run.err.lines().count() == 1, "{label}:\n{}", run.err);
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(smoothed > 3 && refused > 3, "{smoothed} smoothed, {refused} refused");
+}
+
+#[test]
+fn a_driver_that_crashes_on_start_does_not_end_a_run_that_was_free_to_choose() {
+    // So large, and of so many sweeps, that one core looks for a GPU.
+    let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    for function in ["vkCreateInstance", "vkCreateDevice", "vkQueueSubmit"] {
+        let mut command = folder.command();
+        let command = with_fault(&mut command, function, 1, "crash").env("RAYON_NUM_THREADS", "1");
+        let run = finish(command.args(["in", "out", "--scheme", "edge", "--desired", "1e6"]));
+        let told =
+            "edge on cpu (all cores): the driver of the GPU failed when it was tried: signal: 6";
+        assert_holds(&run.clean().out, &[told]);
+    }
+    // Where a GPU is asked for, the driver ends the process, and no file is touched.
+    let folder = small();
+    let before = folder.content();
+    let mut command = folder.command();
+    let command = with_fault(&mut command, "vkCreateInstance", 1, "crash");
+    let ended = command.args(["in", "out", "--engine", "gpu"]).output().unwrap();
+    assert_eq!(ended.status.signal(), Some(6));
+    assert!(folder.content() == before);
+}

@@ -1,0 +1,80 @@
+/* A Vulkan driver that passes every call on to a real one (the library REAL_DRIVER), but for one function, FAULT_FUNCTION: from
+   its call number FAULT_FROM on it returns FAULT_RESULT (a VkResult below 0), ends the process ("crash") or never
+   returns ("hang"). Each call of it is also counted in the file FAULT_COUNT, a byte for each, if there is one.
+
+   It is for functions of up to six arguments, each an integer or a pointer, that return a VkResult. Names and types are those of
+   the interface between Vulkan's loader and its drivers, so no header is needed. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef void (*function)(void);
+typedef function (*lookup)(void *, const char *);
+typedef int (*six)(void *, void *, void *, void *, void *, void *);
+
+static six real;
+static atomic_int calls;
+static lookup device_lookup;
+
+static const char *setting(const char *name) {
+    const char *value = getenv(name);
+    return value ? value : "";
+}
+
+static function of_driver(const char *name) {
+    static void *library;
+    if (!library) library = dlopen(setting("REAL_DRIVER"), RTLD_NOW | RTLD_LOCAL);
+    return library ? (function)dlsym(library, name) : 0;
+}
+
+static int faulty(void *a, void *b, void *c, void *d, void *e, void *f) {
+    int call = atomic_fetch_add(&calls, 1) + 1;
+    int count = open(setting("FAULT_COUNT"), O_WRONLY | O_APPEND);
+    if (count >= 0) {
+        if (write(count, "x", 1) < 0) abort();
+        close(count);
+    }
+    if (call < atoi(setting("FAULT_FROM"))) return real(a, b, c, d, e, f);
+    const char *result = setting("FAULT_RESULT");
+    if (!strcmp(result, "crash")) abort();
+    while (!strcmp(result, "hang")) pause();
+    return atoi(result);
+}
+
+static function of_device(void *device, const char *name);
+
+static function wrapped(const char *name, function found) {
+    if (!found) return found;
+    if (!strcmp(name, "vkGetDeviceProcAddr")) {
+        device_lookup = (lookup)found;
+        return (function)of_device;
+    }
+    if (strcmp(name, setting("FAULT_FUNCTION"))) return found;
+    real = (six)found;
+    return (function)faulty;
+}
+
+static function of_device(void *device, const char *name) {
+    return wrapped(name, device_lookup(device, name));
+}
+
+function vk_icdGetInstanceProcAddr(void *instance, const char *name) {
+    lookup find = (lookup)of_driver("vk_icdGetInstanceProcAddr");
+    return find ? wrapped(name, find(instance, name)) : 0;
+}
+
+function vk_icdGetPhysicalDeviceProcAddr(void *instance, const char *name) {
+    lookup find = (lookup)of_driver("vk_icdGetPhysicalDeviceProcAddr");
+    return find ? wrapped(name, find(instance, name)) : 0;
+}
+
+int vk_icdNegotiateLoaderICDInterfaceVersion(uint32_t *version) {
+    typedef int (*negotiation)(uint32_t *);
+    negotiation negotiate = (negotiation)of_driver("vk_icdNegotiateLoaderICDInterfaceVersion");
+    return negotiate ? negotiate(version) : -9;
+}
