@@ -3,7 +3,7 @@
 use crate::error::{Location, ReadError};
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk};
+use crate::file::sink::{Copies, Element, Kind, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::{CORRECT, Cursor};
@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 /// Reads a mesh.
 pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
     let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
-    let Layout { format, numbers, encoded } = W::walk(source, &mut reader)?;
+    let Layout { format, numbers, encoded, copies } = W::walk(source, &mut reader)?;
     let has_parameters = reader.has_parameters;
     let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } = reader;
     if quadrilaterals > 0 {
@@ -33,7 +33,22 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
         }
     }
     let regions = regions.finish();
-    Ok(Parsed { format, mesh, x_at, numbers, encoded, regions, notes, data, has_parameters })
+    let (x_at, owners) = match copies {
+        None => (x_at, None),
+        Some(Copies { x_at, vertices }) => (x_at, Some(vertices)),
+    };
+    Ok(Parsed {
+        format,
+        mesh,
+        x_at,
+        owners,
+        numbers,
+        encoded,
+        regions,
+        notes,
+        data,
+        has_parameters,
+    })
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.

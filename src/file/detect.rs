@@ -1,7 +1,7 @@
 //! Which format a file is in, by its content first and its ending second.
 
 use crate::error::ReadError;
-use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, Reader, TRIANGLE};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, Reader, STL, TRIANGLE};
 use crate::file::source::{Source, file_name};
 use crate::file::text::{Cursor, integer};
 use crate::file::triangle::{Names, appended};
@@ -36,7 +36,12 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
         return Ok(Content::Triangle(Names::of(&source.path)));
     }
     // Of the others that are told by their rows, those whose ending is theirs alone.
-    let by_ending = |family: &&&Family| promised(family) && family.endings != FREEFEM.endings;
+    // Text is STL only by its first word.
+    let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
+    let by_ending = |family: &&&Family| {
+        let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
+        promised(family) && family.endings != FREEFEM.endings && !is_told_otherwise
+    };
     match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
         Some(family) => of(source, family),
         None => by_rows(source),
@@ -92,7 +97,13 @@ pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
 fn of(source: &Source, family: &'static Family) -> Result<Content, ReadError> {
     match &family.reader {
         Some(reader) => Ok(Content::Of(reader)),
-        None => Err(source.error(format!("not read yet: {}", family.name), formats_read())),
+        None => {
+            let remedy = match family.instead {
+                "" => formats_read(),
+                instead => instead.to_owned(),
+            };
+            Err(source.error(format!("{} is not read", family.name), remedy))
+        }
     }
 }
 
@@ -137,7 +148,8 @@ mod tests {
     use super::*;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
-        let source = Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None };
+        let source =
+            Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None, welds: false };
         match content(&source) {
             Ok(Content::Of(reader)) => {
                 let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
@@ -160,9 +172,11 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 11] = [
+        let cases: [(&[u8], &str); 13] = [
             (b"<?xml version=\"1.0\"?>", "VTK XML"),
-            (b"solid part\n", "not read yet: STL"),
+            (b"solid part\n", "STL"),
+            (b"CDF\x02\0\0", "Exodus II"),
+            (b"\x89HDF\r\n", "HDF5 is not read"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),
             (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),

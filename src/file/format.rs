@@ -51,11 +51,17 @@ pub enum Format {
     FreeFem,
     /// TELEMAC's SELAFIN, in either byte order and precision.
     Selafin,
+    /// STL, as text, with corners at the same place joined.
+    Stl,
+    /// STL, in binary, with corners at the same place joined.
+    StlBinary,
+    /// Exodus II, in netCDF's classic formats.
+    Exodus,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 22] = [
+    pub const ALL: [Format; 25] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -78,6 +84,9 @@ impl Format {
         Format::Sms2dm,
         Format::FreeFem,
         Format::Selafin,
+        Format::Stl,
+        Format::StlBinary,
+        Format::Exodus,
     ];
 
     /// The name for messages.
@@ -105,6 +114,9 @@ impl Format {
             Format::Sms2dm => "SMS 2dm",
             Format::FreeFem => "FreeFem .msh",
             Format::Selafin => "SELAFIN",
+            Format::Stl => "STL ASCII",
+            Format::StlBinary => "STL binary",
+            Format::Exodus => "Exodus II",
         }
     }
 }

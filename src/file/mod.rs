@@ -8,6 +8,7 @@ mod compare;
 mod convert;
 mod detect;
 mod disk;
+mod exodus;
 mod families;
 #[cfg(test)]
 mod faults;
@@ -44,6 +45,7 @@ mod sink;
 mod sms;
 mod solution;
 mod source;
+mod stl;
 mod su2;
 mod tags;
 mod text;

@@ -14,6 +14,9 @@ use crate::file::text::{CORRECT, Cursor};
 
 pub(crate) struct Sms;
 
+/// Stands for the material of lines that have none.
+const NO_MATERIAL: i64 = i64::MIN;
+
 /// A row that is used.
 enum Row {
     Node(u64, usize, [f64; 2], (usize, f64)),
@@ -51,7 +54,10 @@ impl Walk for Sms {
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
-        let materials = || vec![Column::tags("material", 1)];
+        let materials = || {
+            let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
+            vec![Column { what: "material".into(), from_dimension: 1, label }]
+        };
         sink.columns(materials());
         each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
             match row {
@@ -122,7 +128,9 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let nodes = nodes(cursor, kind)?;
     // A material is a number. Some programs leave it out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
-    Ok(Row::Element(Element { tag, kind, region: [material, 0], nodes }))
+    let of_none = kind == Kind::Line && material == 0;
+    let region = [if of_none { NO_MATERIAL } else { material }, 0];
+    Ok(Row::Element(Element { tag, kind, region, nodes }))
 }
 
 /// Reads the nodes of a row of a node string. The last node of a string is negative; what follows is its name.

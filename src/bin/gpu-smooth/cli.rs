@@ -13,6 +13,7 @@ use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
 use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
+use crate::streams::ReadArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -23,7 +24,7 @@ use crate::run_args::SmoothArgs;
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are. Formats: \
                   Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
-                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
+                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh --picture better.png\n  \
@@ -119,6 +120,8 @@ pub(crate) struct GroupsArgs {
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 #[derive(Args)]
@@ -132,6 +135,8 @@ pub(crate) struct CompareArgs {
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 #[derive(Args)]
@@ -146,6 +151,8 @@ pub(crate) struct ConvertArgs {
     /// Write the mesh even if the format does not hold all of it
     #[arg(long)]
     pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 /// The format of this short name.

@@ -12,6 +12,7 @@ use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
 use crate::riding::RidingArgs;
+use crate::streams::ReadArgs;
 use crate::target_args::TargetArgs;
 
 #[derive(Args)]
@@ -108,6 +109,9 @@ pub(crate) struct SmoothArgs {
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,

@@ -1,6 +1,7 @@
 //! Meshes in the formats of other programs, each in several legal ways of writing it, and what reading them has to give.
 
 pub(crate) mod binary;
+mod exodus;
 mod gmsh;
 mod grids;
 mod ply;
@@ -82,9 +83,8 @@ pub(crate) fn base() -> Mesh {
 
 /// Every variant of every format. The mesh has to have the triangles of [`base`] but for their vertices.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
-    let families =
-        [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all].map(|all| all(mesh));
-    families.into_iter().flatten().collect()
+    let families = [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all];
+    families.into_iter().flat_map(|all| all(mesh)).collect()
 }
 
 /// The mesh with these vertices fixed.
