@@ -25,7 +25,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
         return of(source, &ADCIRC);
     }
     // Comments that `#` starts are looked behind too, but one of VTK's is its name.
-    let heads = [head, &source.bytes, self::head(head, b"%#")];
+    let heads = [head, &source.bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     let promised = |family: &&&Family| family.has_ending_of(&source.path);
     let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
@@ -124,6 +124,17 @@ fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     head
 }
 
+/// The content from the first element of XML on: without its declaration, the type of the document and comments.
+fn after_prolog(bytes: &[u8]) -> &[u8] {
+    let mut head = bytes;
+    while head.starts_with(b"<?") || head.starts_with(b"<!") {
+        let end: &[u8] = if head.starts_with(b"<!--") { b"-->" } else { b">" };
+        let Some(at) = memchr::memmem::find(head, end) else { break };
+        head = head[at + end.len()..].trim_ascii_start();
+    }
+    head
+}
+
 fn first_rows(source: &Source) -> [Vec<&[u8]>; 3] {
     // Longer rows belong to none of the formats told apart here.
     const TOKENS: usize = 8;
@@ -172,8 +183,9 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 13] = [
-            (b"<?xml version=\"1.0\"?>", "VTK XML"),
+        let cases: [(&[u8], &str); 14] = [
+            (b"<?xml version=\"1.0\"?>\n<!-- <Xdmf> -->\n<VTKFile>", "VTK XML"),
+            (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
             (b"solid part\n", "STL"),
             (b"CDF\x02\0\0", "Exodus II"),
             (b"\x89HDF\r\n", "HDF5 is not read"),

@@ -10,7 +10,7 @@ use crate::file::sink::Walk;
 use crate::file::source::{Source, file_name};
 use crate::file::{
     adcirc, assemble, convert, exodus, freefem, gather, gmsh, medit, meditb, obj, off, packed,
-    parametric, ply, selafin, sms, stl, su2, vtk, vtu,
+    parametric, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -83,6 +83,7 @@ impl Family {
             Format::Selafin => &SELAFIN,
             Format::Stl | Format::StlBinary => &STL,
             Format::Exodus => &EXODUS,
+            Format::Xdmf => &XDMF,
         }
     }
 
@@ -156,9 +157,9 @@ static SELAFIN: Family = family(
     reader::<selafin::Selafin>(),
 );
 static VTK_XML: Family =
-    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
+    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile"], reader::<vtu::Vtu>());
 static VTK_XML_POLYGONS: Family =
-    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
+    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile"], reader::<vtu::Vtu>());
 pub(crate) static STL: Family =
     family("STL", &[".stl"], &[b"solid ", b"solid\n", b"solid\r"], reader::<stl::Stl>());
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
@@ -168,6 +169,8 @@ static EXODUS: Family = family(
     &[b"CDF\x01", b"CDF\x02", b"CDF\x05"],
     reader::<exodus::Exodus>(),
 );
+static XDMF: Family =
+    family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
 static ABAQUS: Family = unread(
     "Abaqus",
     &[".inp"],
@@ -185,7 +188,7 @@ static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 20] = [
+pub(crate) static FAMILIES: [&Family; 21] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -203,6 +206,7 @@ pub(crate) static FAMILIES: [&Family; 20] = [
     &STL,
     &PLY,
     &EXODUS,
+    &XDMF,
     &ABAQUS,
     &HDF,
     &GMSH_1,

@@ -57,11 +57,13 @@ pub enum Format {
     StlBinary,
     /// Exodus II, in netCDF's classic formats.
     Exodus,
+    /// XDMF, with its numbers in the XML.
+    Xdmf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 25] = [
+    pub const ALL: [Format; 26] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -87,6 +89,7 @@ impl Format {
         Format::Stl,
         Format::StlBinary,
         Format::Exodus,
+        Format::Xdmf,
     ];
 
     /// The name for messages.
@@ -117,6 +120,7 @@ impl Format {
             Format::Stl => "STL ASCII",
             Format::StlBinary => "STL binary",
             Format::Exodus => "Exodus II",
+            Format::Xdmf => "XDMF",
         }
     }
 }

@@ -54,6 +54,7 @@ mod triangle_data;
 mod triangle_groups;
 mod vtk;
 mod vtu;
+mod xdmf;
 
 pub use compare::Difference;
 pub use convert::Conversion;

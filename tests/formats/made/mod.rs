@@ -7,6 +7,7 @@ mod grids;
 mod ply;
 mod text;
 mod vtk;
+mod xdmf;
 
 use super::regions::interfaces;
 use super::support::{SplitMix64, lattice};
@@ -83,7 +84,8 @@ pub(crate) fn base() -> Mesh {
 
 /// Every variant of every format. The mesh has to have the triangles of [`base`] but for their vertices.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
-    let families = [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all];
+    let families =
+        [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all, xdmf::all];
     families.into_iter().flat_map(|all| all(mesh)).collect()
 }
 
