@@ -151,7 +151,7 @@ fn item(
         kind: small(of, &["TopologyType", "GeometryType", "Type"]),
         name: of.value(&["Name"]).unwrap_or_default().to_owned(),
         center: small(of, &["Center"]),
-        elements: optional(of, &["NumberOfElements"]).unwrap_or(None),
+        elements: optional(of, &["NumberOfElements"])?,
         corners: optional(of, &["NodesPerElement"])?,
         dimensions,
         precision: (is_real.is_empty() || is_real == "float").then_some(precision),

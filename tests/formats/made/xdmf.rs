@@ -38,9 +38,9 @@ fn mixed(mesh: &Mesh) -> Made {
         triangle += usize::from(cell.len() == 3);
     }
     text.put("0 0</DataItem></Attribute>\n");
-    for step in 0..2 {
+    for _ in 0..2 {
         text.put("<Attribute Center=\"Node\" Name=\"T\"><DataItem Format='XML' DataType=\"Float\" Precision=\"4\" Dimensions=\"30\">\n");
-        (0..mesh.points.len()).for_each(|i| text.put(&format!("{} ", (i * step) as f64 * 0.5)));
+        (0..mesh.points.len()).for_each(|i| text.put(&format!("{} ", i as f64 * 0.5)));
         text.put("</DataItem></Attribute>\n");
     }
     text.put("</Grid></Domain></Xdmf>\n");
