@@ -8,6 +8,8 @@ mod compare;
 mod convert;
 mod detect;
 mod disk;
+#[cfg(test)]
+mod documented;
 mod exodus;
 mod families;
 #[cfg(test)]

@@ -68,7 +68,8 @@ impl Rewrite<'_> {
             column.changes(self.bytes, items, &mut changes);
         }
         if self.columns.len() > 1 {
-            changes.sort_unstable_by_key(|change| change.range.start);
+            // Those of each column ascend already, which a stable sort makes use of.
+            changes.sort_by_key(|change| change.range.start);
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;

@@ -8,7 +8,7 @@ use crate::file::format::Format;
 use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
 
@@ -39,10 +39,9 @@ impl Walk for Sms {
     const VERTICES: &'static str = "the list of ND rows";
 
     fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
-        let rows = Cursor::new(source).rows();
         let nodes_first = &mut Cursor::new(source);
         let mut heights = Heights::new(sink);
-        each_row(nodes_first, rows, "rows", sink, node, |cursor, sink, _, row| {
+        all_rows(nodes_first, sink, node, |cursor, sink, row| {
             if let Row::Node(tag, x_at, at, z) = row {
                 sink.node(cursor, tag, 2, x_at, at);
                 heights.see(z);
@@ -59,7 +58,7 @@ impl Walk for Sms {
             vec![Column { what: "material".into(), from_dimension: 1, label }]
         };
         sink.columns(materials());
-        each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
+        all_rows(cursor, sink, element, |cursor, sink, row| {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
                 Row::String(nodes, end) => {

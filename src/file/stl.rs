@@ -14,7 +14,7 @@ use crate::file::sink::{
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
 use crate::mesh::Precision;
-use std::collections::HashMap;
+use rayon::slice::ParallelSliceMut;
 
 pub(crate) struct Stl;
 
@@ -198,6 +198,19 @@ impl Soup<'_> {
     }
 }
 
+/// For each corner the first one at the same place.
+fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
+    // Zeros of either sign are one place.
+    let key = |corner: u32| corners[corner as usize].map(|x| (x + 0.0).to_bits());
+    let mut order: Vec<u32> = (0..corners.len() as u32).collect();
+    order.par_sort_unstable_by_key(|&corner| (key(corner), corner));
+    let mut first = vec![0; corners.len()];
+    for equal in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        equal.iter().for_each(|&corner| first[corner as usize] = equal[0]);
+    }
+    first
+}
+
 /// Joins corners at the same place, and hands on vertices in the order in which the file first has them, and triangles. Returns
 /// where the copies of each vertex stand.
 fn hand_on(
@@ -212,27 +225,29 @@ fn hand_on(
         false => Cursor::new(source),
     };
     place.check_vertex_count(corners.len() as u64)?;
-    let mut numbers = HashMap::with_capacity(corners.len() / 5);
-    // Zeros of either sign are one place.
-    let key = |[x, y]: [f64; 2]| [x + 0.0, y + 0.0].map(f64::to_bits);
-    let mut vertices = Vec::with_capacity(corners.len());
-    for (&at, &x_at) in corners.iter().zip(&x_at) {
-        let next = numbers.len() as u32;
-        let vertex = *numbers.entry(key(at)).or_insert(next);
-        if vertex == next {
-            place.go_to(x_at);
-            sink.node(&place, u64::from(vertex) + 1, 2, x_at, at);
+    let first = first_there(&corners);
+    let count = (0..).zip(&first).filter(|&(corner, first)| corner == *first).count();
+    sink.expect_nodes(count);
+    let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
+    let mut next = 0;
+    for (corner, &first) in first.iter().enumerate() {
+        if first as usize == corner {
+            place.go_to(x_at[corner]);
+            vertices.push(next);
+            next += 1;
+            sink.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
+        } else {
+            vertices.push(vertices[first as usize]);
         }
-        vertices.push(vertex);
     }
-    sink.note(&format!("{} corners are joined to {} vertices", corners.len(), numbers.len()));
+    sink.note(&format!("{} corners are joined to {count} vertices", corners.len()));
     sink.end_nodes(&place)?;
     if let Some(z) = z.filter(|&z| z != 0.0)
         && sink.asks_for_data()
         && sink.height_array(b"z")
     {
         // It is the same everywhere, so it need not be replaced anywhere.
-        let numbers = vec![z; numbers.len()];
+        let numbers = vec![z; count];
         sink.point_numbers(PointNumbers { numbers, nodes: None, stored: None });
     }
     sink.expect_elements(triangles.len());

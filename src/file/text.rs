@@ -176,15 +176,6 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
     }
 
-    /// How many rows follow.
-    pub(crate) fn rows(mut self) -> u64 {
-        let mut rows = 0;
-        while self.next_row() {
-            rows += 1;
-        }
-        rows
-    }
-
     /// Takes the next line whole, without what ends it, be it a row or not.
     pub(crate) fn line(&mut self) -> Option<&'a [u8]> {
         let start = self.next_line();

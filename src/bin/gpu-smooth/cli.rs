@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -146,7 +147,7 @@ pub(crate) struct ConvertArgs {
     /// Where to write it; its ending tells the format. - for the standard output, with --to
     pub(crate) output: PathBuf,
     /// The format to write, where the ending does not tell it: .msh is gmsh 4.1 without it
-    #[arg(long, value_name = "FORMAT", value_parser = target)]
+    #[arg(long, value_name = "FORMAT", value_parser = targets())]
     pub(crate) to: Option<Format>,
     /// Write the mesh even if the format does not hold all of it
     #[arg(long)]
@@ -155,11 +156,11 @@ pub(crate) struct ConvertArgs {
     pub(crate) reading: ReadArgs,
 }
 
-/// The format of this short name.
-fn target(text: &str) -> Result<Format, String> {
-    let found = Conversion::targets().find(|(name, _)| *name == text);
-    let names = || Conversion::targets().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
-    found.map(|(_, format)| format).ok_or_else(|| format!("it is one of {}", names()))
+/// The formats that meshes are converted to, by their short names.
+fn targets() -> impl TypedValueParser<Value = Format> {
+    let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
+    PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
+        .try_map(move |name| format(name).map(|(_, format)| format).ok_or("not a format"))
 }
 
 #[derive(Args)]
