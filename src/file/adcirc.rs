@@ -18,7 +18,7 @@ pub(crate) struct Adcirc;
 impl Walk for Adcirc {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         // The first line is a title of any text, or of none.
         cursor.line();
@@ -72,7 +72,7 @@ impl Walk for Adcirc {
 
 /// Hands on the boundaries as lines: open ones, and those of land, of which islands are called so. What is damaged ends the
 /// search without an error: the mesh does not depend on it.
-fn boundaries(cursor: &mut Cursor<'_>, sink: &mut impl Sink) {
+fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
     for is_open in [true, false] {
         let Some(count) = number(cursor) else { return };
         // How many nodes all of them have together.

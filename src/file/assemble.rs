@@ -3,18 +3,19 @@
 use crate::error::{Location, ReadError};
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
-use crate::file::sink::{Copies, Element, Kind, Layout, Sink, Walk};
+use crate::file::sink::{Copies, Element, Kind, Layout, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
 
 /// Reads a mesh.
-pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
-    let mut reader = Reader { vertices_of: W::VERTICES, ..Reader::default() };
-    let Layout { format, numbers, encoded, copies } = W::walk(source, &mut reader)?;
-    let has_parameters = reader.has_parameters;
-    let Reader { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } = reader;
+pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
+    let mut assembler = Assembler { vertices_of: reader.vertices, ..Assembler::default() };
+    let Layout { format, numbers, encoded, copies } = (reader.walk)(source, &mut assembler)?;
+    let has_parameters = assembler.has_parameters;
+    let Assembler { mut mesh, x_at, regions, quadrilaterals, mut notes, data, on_lower, .. } =
+        assembler;
     if quadrilaterals > 0 {
         notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
     }
@@ -26,7 +27,7 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
     for (vertex, point) in mesh.points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let (location, label) = vertex_places::<W>(source, &[vertex])[0];
+            let (location, label) = vertex_places(reader, source, &[vertex])[0];
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
             return Err(source.error_at(location, problem, CORRECT));
@@ -52,17 +53,25 @@ pub(crate) fn parse<W: Walk>(source: &Source) -> Result<Parsed, ReadError> {
 }
 
 /// Location and tag of the vertices with these indices, ascending, in a file that was read before.
-pub(crate) fn vertex_places<W: Walk>(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
-    find::<W>(source, indices, &[])
+pub(crate) fn vertex_places(
+    reader: &Reader,
+    source: &Source,
+    indices: &[usize],
+) -> Vec<(Location, u64)> {
+    find(reader, source, indices, &[])
 }
 
 /// Location and tag of the triangles with these indices, ascending, in a file that was read before.
-pub(crate) fn triangle_places<W: Walk>(source: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
-    find::<W>(source, &[], indices)
+pub(crate) fn triangle_places(
+    reader: &Reader,
+    source: &Source,
+    indices: &[usize],
+) -> Vec<(Location, u64)> {
+    find(reader, source, &[], indices)
 }
 
 #[derive(Default)]
-struct Reader {
+struct Assembler {
     mesh: Mesh,
     x_at: Vec<usize>,
     /// The tag of each node, until the map is made.
@@ -82,8 +91,10 @@ struct Reader {
     on_lower: usize,
 }
 
-impl Sink for Reader {
-    const TAKES_AHEAD: bool = true;
+impl Sink for Assembler {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn expect_nodes(&mut self, count: usize) {
         self.mesh.points.reserve_exact(count);
@@ -193,12 +204,17 @@ struct Wanted<'a> {
     next: usize,
 }
 
-fn find<W: Walk>(source: &Source, nodes: &[usize], triangles: &[usize]) -> Vec<(Location, u64)> {
+fn find(
+    reader: &Reader,
+    source: &Source,
+    nodes: &[usize],
+    triangles: &[usize],
+) -> Vec<(Location, u64)> {
     let wanted = |left| Wanted { left, next: 0 };
     let places = Vec::with_capacity(nodes.len() + triangles.len());
     let mut locator = Locator { nodes: wanted(nodes), triangles: wanted(triangles), places };
     // There is no error to handle: the file was read before without one.
-    let _ = W::walk(source, &mut locator);
+    let _ = (reader.walk)(source, &mut locator);
     locator.places
 }
 

@@ -1,7 +1,8 @@
 //! Which format a file is in, by its content first and its ending second.
 
 use crate::error::ReadError;
-use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, Reader, STL, TRIANGLE};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
+use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
 use crate::file::text::{Cursor, integer};
 use crate::file::triangle::{Names, appended};

@@ -1,45 +1,16 @@
 //! What each format is known by, and its reader.
 
-use crate::error::{Location, ReadError};
-use crate::file::field::PointField;
 use crate::file::format::Format;
-use crate::file::group_table::GroupTable;
-use crate::file::parsed::Parsed;
-use crate::file::point_data::{self, PointData, Wanted};
-use crate::file::sink::Walk;
-use crate::file::source::{Source, file_name};
+use crate::file::sink::{Reader, Walk};
+use crate::file::source::file_name;
 use crate::file::{
-    adcirc, assemble, convert, exodus, freefem, gather, gmsh, medit, meditb, obj, off, packed,
-    parametric, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
+    adcirc, exodus, freefem, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms, stl, su2,
+    vtk, vtu, xdmf,
 };
 use std::path::Path;
 
-/// Finds location and tag of items by their indices, ascending, in a file that was read before.
-type Places = fn(&Source, &[usize]) -> Vec<(Location, u64)>;
-
-/// The functions of a reader of a format that keeps a mesh in one file.
-pub(crate) struct Reader {
-    pub(crate) parse: fn(&Source) -> Result<Parsed, ReadError>,
-    pub(crate) vertex_places: Places,
-    pub(crate) triangle_places: Places,
-    pub(crate) groups: fn(&Source) -> Result<GroupTable, ReadError>,
-    pub(crate) labels: fn(&Source) -> Result<Vec<u64>, ReadError>,
-    pub(crate) content: fn(&Source) -> Result<convert::Content, ReadError>,
-    pub(crate) parameters: fn(&Source) -> Result<Vec<PointField>, ReadError>,
-    pub(crate) point_data: fn(&Source, Wanted<'_>) -> Result<PointData, ReadError>,
-}
-
 const fn reader<W: Walk>() -> Option<Reader> {
-    Some(Reader {
-        parse: assemble::parse::<W>,
-        vertex_places: assemble::vertex_places::<W>,
-        triangle_places: assemble::triangle_places::<W>,
-        groups: gather::groups::<W>,
-        labels: gather::labels::<W>,
-        content: convert::content::<W>,
-        parameters: parametric::parameters::<W>,
-        point_data: point_data::point_data::<W>,
-    })
+    Some(Reader::of::<W>())
 }
 
 /// Formats that one reader reads, or that messages name though there is none. A new format is a row of this kind, a variant of

@@ -5,7 +5,7 @@ use crate::file::families::Family;
 use crate::file::field::PointField;
 use crate::file::group::distance;
 use crate::file::mesh_file::MeshFile;
-use crate::file::point_data::{PointData, Wanted};
+use crate::file::point_data::{self, PointData, Wanted};
 use crate::file::text::quoted;
 use crate::file::triangle_data;
 
@@ -93,7 +93,7 @@ impl MeshFile {
     fn data_of(&self, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
         let sources = self.sources();
         match &Family::of(self.format()).reader {
-            Some(reader) => (reader.point_data)(&sources[0], wanted),
+            Some(reader) => point_data::point_data(reader, &sources[0], wanted),
             None => triangle_data::point_data(&sources[0], wanted),
         }
     }

@@ -15,7 +15,7 @@ pub(crate) struct FreeFem;
 impl Walk for FreeFem {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "lines of counts")?;
         let vertices = cursor.vertex_count()?;

@@ -4,22 +4,22 @@ use crate::error::ReadError;
 use crate::file::group_table::GroupTable;
 use crate::file::label::Label;
 use crate::file::regions::Numbering;
-use crate::file::sink::{Column, Element, Kind, Sink, Walk, Within};
+use crate::file::sink::{Column, Element, Kind, Reader, Sink, Within};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 
 /// The groups of a file.
-pub(crate) fn groups<W: Walk>(source: &Source) -> Result<GroupTable, ReadError> {
+pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {
     let mut gatherer = Gatherer::default();
-    W::walk(source, &mut gatherer)?;
+    (reader.walk)(source, &mut gatherer)?;
     Ok(gatherer.table)
 }
 
 /// The file's own number of each vertex.
-pub(crate) fn labels<W: Walk>(source: &Source) -> Result<Vec<u64>, ReadError> {
+pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = Labels::default();
-    W::walk(source, &mut labels)?;
+    (reader.walk)(source, &mut labels)?;
     Ok(labels.tags)
 }
 
@@ -74,7 +74,9 @@ impl Gatherer {
 }
 
 impl Sink for Gatherer {
-    const TAKES_AHEAD: bool = true;
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);
@@ -137,7 +139,9 @@ struct Labels {
 }
 
 impl Sink for Labels {
-    const TAKES_AHEAD: bool = true;
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);

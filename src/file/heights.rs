@@ -14,7 +14,7 @@ pub(crate) struct Heights {
 }
 
 impl Heights {
-    pub(crate) fn new(sink: &impl Sink) -> Heights {
+    pub(crate) fn new(sink: &dyn Sink) -> Heights {
         let collected = sink.asks_for_data().then(Default::default);
         Heights { first: None, differ: false, collected }
     }
@@ -33,12 +33,12 @@ impl Heights {
     }
 
     /// Hands them to the sink under this name, if they differ or it asks for data.
-    pub(crate) fn send(self, name: &str, form: Form, sink: &mut impl Sink) {
+    pub(crate) fn send(self, name: &str, form: Form, sink: &mut dyn Sink) {
         self.send_from(name, form, Home::File, sink);
     }
 
     /// The same, if they stand elsewhere than in the file itself.
-    pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut impl Sink) {
+    pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut dyn Sink) {
         let is_told = self.differ || (self.collected.is_some() && self.first.is_some());
         if is_told
             && sink.height_array(name.as_bytes())

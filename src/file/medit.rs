@@ -29,7 +29,7 @@ struct List<'a> {
 impl Walk for Medit {
     const VERTICES: &'static str = "Vertices";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let mut lists: Vec<List<'_>> = Vec::new();
         let mut required = Vec::new();
@@ -131,7 +131,7 @@ fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadEr
 fn hold_required(
     triangles: Vec<(Cursor<'_>, u64)>,
     mut required: Vec<u64>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     required.sort_unstable();
     required.dedup();
@@ -179,11 +179,7 @@ fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.integer(what)
 }
 
-fn vertices(
-    cursor: &mut Cursor<'_>,
-    dimension: u64,
-    sink: &mut impl Sink,
-) -> Result<(), ReadError> {
+fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
     if !cursor.next_word() {
         return Err(cursor.error("the file ends before the number of vertices", CUT_OFF));
     }

@@ -45,7 +45,7 @@ const END: i32 = 54;
 impl Walk for MeditBinary {
     const VERTICES: &'static str = "Vertices";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let order = if source.bytes.first() == Some(&1) { Order::Little } else { Order::Big };
         let small = Widths { order, precision: Precision::Single, place: 4, integer: 4 };
@@ -179,7 +179,7 @@ fn vertices(
     cursor: &mut Cursor<'_>,
     widths: Widths,
     dimension: i64,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     let count = integer(cursor, widths, widths.integer, "the number of vertices")?;
     cursor.check_vertex_count(u64::try_from(count).unwrap_or(0))?;
@@ -229,7 +229,7 @@ fn hold_required(
     lists: &[List<'_>],
     mut required: Vec<u64>,
     widths: Widths,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     required.sort_unstable();
     required.dedup();
@@ -256,7 +256,7 @@ fn hold_required(
     Ok(())
 }
 
-fn elements(list: &List<'_>, widths: Widths, sink: &mut impl Sink) -> Result<(), ReadError> {
+fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
     // Points have no reference: the list they stand in is what tells them apart.
     let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };

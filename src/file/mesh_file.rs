@@ -1,6 +1,7 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
 use crate::error::{Location, MeshError, ReadError};
+use crate::file::assemble;
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
@@ -134,7 +135,7 @@ impl MeshFile {
         };
         given.welds = welds;
         match detect::content(&given)? {
-            Content::Of(reader) => Self::new((reader.parse)(&given)?, vec![given]),
+            Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
             Content::Triangle(names) => Self::read_triangle(given, &names),
         }
     }
@@ -159,7 +160,7 @@ impl MeshFile {
 
     fn of_source(given: Source) -> Result<MeshFile, ReadError> {
         match detect::content(&given)? {
-            Content::Of(reader) => Self::new((reader.parse)(&given)?, vec![given]),
+            Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
             Content::Triangle(_) => {
                 let problem = "one of the two files of a Triangle mesh";
                 Err(given.error(problem, "Name its .node, so that both are read"))
@@ -394,7 +395,7 @@ impl MeshFile {
         let source = &self.sources[0];
         let found = match &Family::of(self.format).reader {
             None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),
-            Some(reader) => (reader.vertex_places)(source, &wanted),
+            Some(reader) => assemble::vertex_places(reader, source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };
         wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
@@ -422,7 +423,7 @@ impl MeshFile {
         let source = &self.sources[usize::from(self.format == Format::Triangle)];
         let found = match &Family::of(self.format).reader {
             None => triangle::triangle_places(source, &wanted),
-            Some(reader) => (reader.triangle_places)(source, &wanted),
+            Some(reader) => assemble::triangle_places(reader, source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };
         wanted.iter().copied().zip(found.into_iter().map(place)).collect()

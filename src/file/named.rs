@@ -2,6 +2,7 @@
 
 use crate::error::ReadError;
 use crate::file::families::Family;
+use crate::file::gather;
 use crate::file::group::Groups;
 use crate::file::mesh_file::MeshFile;
 use crate::file::source::Source;
@@ -35,7 +36,7 @@ impl MeshFile {
     pub fn groups(&self) -> Result<Groups, ReadError> {
         let sources = self.sources();
         let table = match &Family::of(self.format()).reader {
-            Some(reader) => (reader.groups)(&sources[0])?,
+            Some(reader) => gather::groups(reader, &sources[0])?,
             None => triangle_groups::groups(&sources[0], &sources[1], sources.get(2))?,
         };
         let mesh = self.mesh();
@@ -75,7 +76,7 @@ impl MeshFile {
     fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
         let source = &self.sources()[0];
         match &Family::of(self.format()).reader {
-            Some(reader) => (reader.labels)(source),
+            Some(reader) => gather::labels(reader, source),
             None => {
                 let places = triangle::vertex_places(source, self.x_at().iter().copied());
                 Ok(places.into_iter().map(|(_, label)| label).collect())

@@ -63,7 +63,7 @@ impl Corners {
 impl Walk for Obj {
     const VERTICES: &'static str = "the list of v rows";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let mut count = 0;
         let mut heights = Heights::new(sink);
@@ -183,7 +183,7 @@ fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64
 /// Hands on a face. Polygons of more than four corners keep their vertices fixed.
 fn face(
     cursor: &Cursor<'_>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
     tag: u64,
     region: [i64; 2],
     corners: &[u64],
@@ -200,7 +200,7 @@ fn face(
 
 /// Tells the sink what rows there are of those that are not read.
 #[cold]
-fn left_out(source: &Source, sink: &mut impl Sink) {
+fn left_out(source: &Source, sink: &mut dyn Sink) {
     let mut cursor = Cursor::new(source);
     while cursor.next_row() {
         match cursor.token() {

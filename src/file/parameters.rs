@@ -4,6 +4,7 @@ use crate::error::MeshError;
 use crate::file::families::Family;
 use crate::file::field::PointField;
 use crate::file::mesh_file::MeshFile;
+use crate::file::parametric;
 
 /// How far parameters may be from those of a plane, as a share of how far they reach.
 const FLAT: f64 = 1e-8;
@@ -25,7 +26,8 @@ impl MeshFile {
         }
         let reader = Family::of(self.format()).reader.as_ref().filter(|_| self.has_parameters());
         // What was read once can be read again.
-        let fields = reader.and_then(|reader| (reader.parameters)(&self.sources()[0]).ok());
+        let fields =
+            reader.and_then(|reader| parametric::parameters(reader, &self.sources()[0]).ok());
         let (mut plane, mut others) = (Vec::new(), 0);
         for mut field in fields.unwrap_or_default() {
             let Some(slopes) = slopes(old, field.values()) else {

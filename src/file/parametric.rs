@@ -2,15 +2,15 @@
 
 use crate::error::ReadError;
 use crate::file::field::PointField;
-use crate::file::sink::{Element, PointNumbers, Sink, Walk};
+use crate::file::sink::{Element, PointNumbers, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 
 /// The parameters of the vertices of each surface, two numbers a vertex, of a file that was read before.
-pub(crate) fn parameters<W: Walk>(source: &Source) -> Result<Vec<PointField>, ReadError> {
+pub(crate) fn parameters(reader: &Reader, source: &Source) -> Result<Vec<PointField>, ReadError> {
     let mut seeker = Seeker::default();
-    W::walk(source, &mut seeker)?;
+    (reader.walk)(source, &mut seeker)?;
     // There is no error to tell: the file was read before without one.
     let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
     let field = |(surface, numbers): (i64, PointNumbers)| {
@@ -30,7 +30,9 @@ struct Seeker {
 }
 
 impl Sink for Seeker {
-    const TAKES_AHEAD: bool = true;
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);

@@ -47,7 +47,7 @@ struct Items {
 impl Walk for Ply {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let (items, lists) = header(cursor)?;
         let Some(vertices) = lists.iter().position(|list| list.name == b"vertex") else {
@@ -160,7 +160,7 @@ struct Data<'l, 'a> {
 }
 
 impl<'l, 'a> Data<'l, 'a> {
-    fn new(list: &'l List<'a>, z: Option<usize>, sink: &impl Sink) -> Self {
+    fn new(list: &'l List<'a>, z: Option<usize>, sink: &dyn Sink) -> Self {
         let is_data = |(index, property): &(usize, &Property<'_>)| {
             property.length.is_none() && Some(*index) != z && !matches!(property.name, b"x" | b"y")
         };
@@ -179,7 +179,7 @@ impl<'l, 'a> Data<'l, 'a> {
         }
     }
 
-    fn send(self, items: Items, sink: &mut impl Sink) {
+    fn send(self, items: Items, sink: &mut dyn Sink) {
         let mut numbers = self.numbers.map(Vec::into_iter);
         for (_, property) in self.properties {
             let precision = property.precision();
@@ -282,7 +282,7 @@ impl Items {
         self,
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) -> Result<Layout, ReadError> {
         cursor.check_vertex_count(list.count)?;
         let named =
@@ -338,7 +338,7 @@ impl Items {
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
         names: &[&[u8]],
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
         let mut tag = 0;
         let properties = &list.properties;

@@ -2,7 +2,7 @@
 
 use crate::error::ReadError;
 use crate::file::field::PointField;
-use crate::file::sink::{Element, PointNumbers, Sink, Walk};
+use crate::file::sink::{Element, PointNumbers, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
@@ -26,12 +26,13 @@ pub(crate) struct PointData {
 }
 
 /// The arrays of point data that are wanted.
-pub(crate) fn point_data<W: Walk>(
+pub(crate) fn point_data(
+    reader: &Reader,
     source: &Source,
     wanted: Wanted<'_>,
 ) -> Result<PointData, ReadError> {
     let mut seeker = Seeker { wanted, ..Seeker::new() };
-    W::walk(source, &mut seeker)?;
+    (reader.walk)(source, &mut seeker)?;
     Ok(seeker.found)
 }
 
@@ -58,7 +59,9 @@ impl Seeker<'_> {
 }
 
 impl Sink for Seeker<'_> {
-    const TAKES_AHEAD: bool = true;
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);

@@ -17,7 +17,7 @@ pub(crate) struct Selafin;
 impl Walk for Selafin {
     const VERTICES: &'static str = "the list of points";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         let order = match source.bytes.starts_with(&[0, 0, 0, 80]) {
             true => Order::Big,
@@ -109,7 +109,7 @@ fn steps(
     precision: Precision,
     names: &[&[u8]],
     bytes: usize,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) {
     let cursor = &mut cursor;
     while record(cursor, order, "the time of a step", None).is_ok() {

@@ -104,7 +104,9 @@ pub(crate) struct Within<'w> {
 pub(crate) trait Sink {
     /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
     /// another cursor. Where it returns an error it must not have changed.
-    const TAKES_AHEAD: bool = false;
+    fn takes_ahead(&self) -> bool {
+        false
+    }
     /// Announces about how many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
     /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
@@ -255,21 +257,36 @@ pub(crate) trait Walk {
     /// Where the file lists its vertices, for messages.
     const VERTICES: &'static str;
     /// Feeds the file's nodes and elements to the sink.
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError>;
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError>;
+}
+
+/// The reader of a format of one file. All that is read of a file is read by its one way through it, which takes any sink, so
+/// that it is compiled once.
+pub(crate) struct Reader {
+    /// [`Walk::walk`].
+    pub(crate) walk: fn(&Source, &mut dyn Sink) -> Result<Layout, ReadError>,
+    /// [`Walk::VERTICES`].
+    pub(crate) vertices: &'static str,
+}
+
+impl Reader {
+    pub(crate) const fn of<W: Walk>() -> Reader {
+        Reader { walk: W::walk, vertices: W::VERTICES }
+    }
 }
 
 /// Reads a list of one row an item and hands the items to the sink with their positions: on all threads as far as its
 /// rows are plain and the sink allows that, and then row by row.
-pub(crate) fn each_row<'a, S: Sink, T: Send>(
+pub(crate) fn each_row<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
     what: &str,
-    sink: &mut S,
+    sink: &mut dyn Sink,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
-    mut take: impl FnMut(&Cursor<'a>, &mut S, u64, T) -> Result<(), ReadError>,
+    mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut done = 0;
-    if S::TAKES_AHEAD {
+    if sink.takes_ahead() {
         // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
         let nowhere = &Cursor::new(cursor.source);
         take_rows(cursor, count, &read, |item| {
@@ -292,13 +309,13 @@ pub(crate) fn each_row<'a, S: Sink, T: Send>(
 }
 
 /// The same for all rows that follow, of whatever kind each is.
-pub(crate) fn all_rows<'a, S: Sink, T: Send>(
+pub(crate) fn all_rows<'a, T: Send>(
     cursor: &mut Cursor<'a>,
-    sink: &mut S,
+    sink: &mut dyn Sink,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
-    mut take: impl FnMut(&Cursor<'a>, &mut S, T) -> Result<(), ReadError>,
+    mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
-    if S::TAKES_AHEAD && cursor.is_long() {
+    if sink.takes_ahead() && cursor.is_long() {
         let nowhere = &Cursor::new(cursor.source);
         take_rows(cursor, u64::MAX, &read, |item| take(nowhere, sink, item).is_ok());
     }

@@ -38,7 +38,7 @@ enum End {
 impl Walk for Sms {
     const VERTICES: &'static str = "the list of ND rows";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let nodes_first = &mut Cursor::new(source);
         let mut heights = Heights::new(sink);
         all_rows(nodes_first, sink, node, |cursor, sink, row| {

@@ -51,7 +51,7 @@ enum Row<'a> {
 impl Walk for Stl {
     const VERTICES: &'static str = "the list of corners";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         if !source.welds {
             let problem = "an STL lists corners of triangles, and has no vertices that these share";
             let remedy = "Have corners at the same place joined: --weld, or MeshFile::read_welded";
@@ -83,7 +83,7 @@ fn announced(bytes: &[u8]) -> Option<usize> {
     usize::try_from(Order::Little.whole(count)).ok()
 }
 
-fn binary<'a>(source: &'a Source, sink: &mut impl Sink) -> Result<Soup<'a>, ReadError> {
+fn binary<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
     let order = Order::Little;
     let bytes = source.bytes.as_slice();
     let at = |at: usize| Cursor::at_byte_of(source, at);
@@ -121,7 +121,7 @@ fn binary<'a>(source: &'a Source, sink: &mut impl Sink) -> Result<Soup<'a>, Read
     Ok(soup)
 }
 
-fn text<'a>(source: &'a Source, sink: &mut impl Sink) -> Result<Soup<'a>, ReadError> {
+fn text<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut soup = Soup::default();
     let mut is_open = false;
@@ -217,7 +217,7 @@ fn hand_on(
     source: &Source,
     soup: Soup<'_>,
     is_binary: bool,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<Copies, ReadError> {
     let Soup { triangles, x_at, corners, z, solids } = soup;
     let mut place = match is_binary {

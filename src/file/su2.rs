@@ -34,7 +34,7 @@ type Small = (Kind, [u32; 4]);
 impl Walk for Su2 {
     const VERTICES: &'static str = "NPOIN";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source).with_comments(b'%');
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
@@ -113,7 +113,7 @@ fn elements(
     count: u64,
     zone: usize,
     Range { start: first, end: last }: Range<u64>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
     let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (Kind, [u64; 4])| {
@@ -148,9 +148,9 @@ fn elements(
 }
 
 /// Reads the first elements of a long list on all threads, if the sink allows that, as far as its rows are plain.
-fn read_ahead<S: Sink>(cursor: &mut Cursor<'_>, count: u64, _: &S) -> Vec<Small> {
+fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small> {
     let mut ahead = Vec::new();
-    if S::TAKES_AHEAD {
+    if sink.takes_ahead() {
         ahead.reserve(cursor.capacity(count, "5 0 1 2\n".len()));
         let read = |cursor: &mut Cursor<'_>| -> Result<Option<Small>, ReadError> {
             let (kind, nodes) = element(cursor)?;

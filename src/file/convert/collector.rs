@@ -3,16 +3,16 @@
 use super::content::{Content, Data, Group};
 use crate::error::ReadError;
 use crate::file::label::Label;
-use crate::file::sink::{Column, Element, Kind, PointNumbers, Sink, Walk, Within};
+use crate::file::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.
-pub(crate) fn content<W: Walk>(source: &Source) -> Result<Content, ReadError> {
+pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadError> {
     let mut collector = Collector::default();
-    W::walk(source, &mut collector)?;
+    (reader.walk)(source, &mut collector)?;
     Ok(collector.finish())
 }
 
@@ -151,7 +151,9 @@ impl Collector {
 }
 
 impl Sink for Collector {
-    const TAKES_AHEAD: bool = true;
+    fn takes_ahead(&self) -> bool {
+        true
+    }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
         self.content.labels.push(tag);

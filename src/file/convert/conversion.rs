@@ -1,5 +1,6 @@
 //! Writing a mesh in another format than it was read in.
 
+use super::collector;
 use super::content::Content;
 use super::job::Job;
 use super::targets::{TARGETS, Target, Write};
@@ -58,7 +59,7 @@ impl Conversion {
         };
         let sources = file.sources();
         let mut content = match &Family::of(file.format()).reader {
-            Some(reader) => (reader.content)(&sources[0])?,
+            Some(reader) => collector::content(reader, &sources[0])?,
             None => triangle_source::content(&sources[0], &sources[1], sources.get(2))?,
         };
         // As they are read, in the digits of the file.

@@ -27,6 +27,4 @@ mod triangle;
 mod triangle_source;
 mod vtk;
 
-pub(crate) use collector::content;
-pub(crate) use content::Content;
 pub use conversion::Conversion;

@@ -37,7 +37,7 @@ impl Block {
 
 impl File<'_> {
     /// Hands on the elements of all blocks.
-    pub(super) fn blocks(&self, sink: &mut impl Sink) -> Result<Vec<Block>, ReadError> {
+    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block>, ReadError> {
         let ids = self.ids("eb_prop1");
         let names = self.header.variable("eb_names").map(|names| names.texts(self.source));
         let mut blocks = Vec::new();

@@ -11,7 +11,7 @@ use std::ops::Range;
 impl File<'_> {
     /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
     /// the lengths it should have is passed over.
-    pub(super) fn data(&self, blocks: &[Block], sink: &mut impl Sink) {
+    pub(super) fn data(&self, blocks: &[Block], sink: &mut dyn Sink) {
         self.of_nodes(sink);
         if sink.asks_for_data() {
             self.of_elements(blocks, sink);
@@ -24,7 +24,7 @@ impl File<'_> {
         table.map(|names| names.texts(self.source)).unwrap_or_default()
     }
 
-    fn of_nodes(&self, sink: &mut impl Sink) {
+    fn of_nodes(&self, sink: &mut dyn Sink) {
         let names = self.names("name_nod_var");
         let nodes = self.nodes as u64;
         let each = self.header.numbered("vals_nod_var");
@@ -52,7 +52,7 @@ impl File<'_> {
         }
     }
 
-    fn point_array(&self, name: &[u8], number: Number, range: Range<usize>, sink: &mut impl Sink) {
+    fn point_array(&self, name: &[u8], number: Number, range: Range<usize>, sink: &mut dyn Sink) {
         let Number::Real(precision) = number else { return };
         if sink.point_array(name, 1, true) {
             let size = precision.bytes();
@@ -63,7 +63,7 @@ impl File<'_> {
         }
     }
 
-    fn of_elements(&self, blocks: &[Block], sink: &mut impl Sink) {
+    fn of_elements(&self, blocks: &[Block], sink: &mut dyn Sink) {
         for (place, name) in self.names("name_elem_var").iter().enumerate() {
             let of = |block: &Block| {
                 let name = format!("vals_elem_var{}eb{}", place + 1, block.number);
@@ -102,7 +102,7 @@ impl File<'_> {
         numbers.map(|number| Order::Big.real(precision, number)).collect()
     }
 
-    fn left_out(&self, sink: &mut impl Sink) {
+    fn left_out(&self, sink: &mut dyn Sink) {
         let starts_so =
             |name: &str| self.header.variables.iter().any(|v| v.name.starts_with(name.as_bytes()));
         for (name, what) in [

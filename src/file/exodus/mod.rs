@@ -37,7 +37,7 @@ const NO_BLOCK: i64 = i64::MIN;
 impl Walk for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let header = Header::read(source)?;
         let start = Cursor::at_byte_of(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
@@ -61,7 +61,7 @@ impl Walk for Exodus {
 
 impl File<'_> {
     /// Hands on the nodes. Returns how their coordinates stand.
-    fn points(&self, sink: &mut impl Sink) -> Result<Numbers, ReadError> {
+    fn points(&self, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
         let (precision, axes) = self.axes()?;
         let [x, y] = [0, 1].map(|axis| axes.get(axis).cloned().unwrap_or_default());
         let (order, size) = (Order::Big, precision.bytes());

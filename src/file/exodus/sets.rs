@@ -9,11 +9,7 @@ use crate::file::text::{CORRECT, Cursor};
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.
-    pub(super) fn side_sets(
-        &self,
-        blocks: &[Block],
-        sink: &mut impl Sink,
-    ) -> Result<(), ReadError> {
+    pub(super) fn side_sets(&self, blocks: &[Block], sink: &mut dyn Sink) -> Result<(), ReadError> {
         let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, sink);
         for (number, elements) in self.header.numbered("elem_ss") {
             let sides = self.header.variable(&format!("side_ss{number}"));
@@ -67,7 +63,7 @@ impl File<'_> {
     }
 
     /// Hands on which nodes are in which node sets.
-    pub(super) fn node_sets(&self, sink: &mut impl Sink) -> Result<(), ReadError> {
+    pub(super) fn node_sets(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
         let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, sink);
         for (number, variable) in self.header.numbered("node_ns") {
             let nodes = if variable.is_record { None } else { variable.integers(self.source) };
@@ -91,7 +87,7 @@ impl File<'_> {
         what: &str,
         [numbers, names]: [&str; 2],
         dimension: u8,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) -> Vec<i64> {
         let ids = self.ids(numbers);
         if let (true, Some(names)) = (sink.asks_for_groups(), self.header.variable(names)) {

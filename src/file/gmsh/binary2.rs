@@ -16,7 +16,7 @@ pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     (order, parametric): (Order, bool),
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     const TAG: usize = 4;
     const NODE: usize = TAG + 24;
@@ -48,7 +48,7 @@ pub(super) fn nodes(
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     order: Order,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     const HEADER: usize = 12;
     row(cursor, 0, 1, "counts")?;

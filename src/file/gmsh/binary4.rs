@@ -19,7 +19,7 @@ pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: Order,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, Version::V4, order)?;
     cursor.check_vertex_count(count)?;
@@ -65,7 +65,7 @@ pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     (version, order): (Version, Order),
     model: &Model,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, version, order)?;
     let tag_bytes = if version == Version::V40 { 4 } else { 8 };

@@ -18,7 +18,7 @@ pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: Order,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, Version::V40, order)?;
     cursor.check_vertex_count(count)?;

@@ -18,7 +18,7 @@ pub(super) fn read(
     cursor: &Cursor<'_>,
     nodes: Option<u64>,
     order: Option<Order>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) {
     let cursor = &mut cursor.clone();
     let Some((name, components, count)) = head(cursor) else { return };

@@ -54,7 +54,7 @@ pub(crate) struct Gmsh;
 impl Walk for Gmsh {
     const VERTICES: &'static str = "$Nodes";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let Encoding { version, order } = walk(source, sink)?;
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
@@ -73,7 +73,7 @@ impl Walk for Gmsh {
 }
 
 /// Feeds a file's nodes and elements to the sink.
-fn walk(source: &Source, sink: &mut impl Sink) -> Result<Encoding, ReadError> {
+fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
@@ -212,13 +212,13 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
 }
 
 /// Remarks that nodes have parameters.
-fn note_parameters(sink: &mut impl Sink) {
+fn note_parameters(sink: &mut dyn Sink) {
     sink.note(PARAMETRIC);
     sink.leaves_out("parameters of nodes on surfaces");
 }
 
 /// Announces that nodes have parameters on a surface. Whether these are wanted.
-fn has_parameters(sink: &mut impl Sink, surface: i64) -> bool {
+fn has_parameters(sink: &mut dyn Sink, surface: i64) -> bool {
     sink.leaves_out("parameters of nodes on surfaces");
     sink.parameters(surface)
 }
@@ -251,14 +251,14 @@ fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(),
 
 /// Reads the plain rows of a list in parallel, if the sink allows that. Returns how many of `count` it took; the rest is
 /// to be read one by one.
-fn ahead<'a, S: Sink, T: Send>(
+fn ahead<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
-    sink: &mut S,
+    sink: &mut dyn Sink,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
-    mut take: impl FnMut(&Cursor<'a>, &mut S, T) -> bool,
+    mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, T) -> bool,
 ) -> u64 {
-    if !S::TAKES_AHEAD {
+    if !sink.takes_ahead() {
         return 0;
     }
     // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 /// Reads `$PhysicalNames` after its first line and hands on the names. Returns their number.
 pub(super) fn physical_names(
     cursor: &mut Cursor<'_>,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of physical names")?;

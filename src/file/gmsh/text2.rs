@@ -11,7 +11,7 @@ use crate::file::text::{CORRECT, Cursor};
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.vertex_count()?;
@@ -36,7 +36,7 @@ pub(super) fn columns() -> Vec<Column> {
 }
 
 /// Reads `$Elements` after its first line. Returns their number.
-pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut impl Sink) -> Result<u64, ReadError> {
+pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of elements")?;
     sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));

@@ -14,7 +14,7 @@ use std::fmt::Display;
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of node blocks")?;
@@ -65,7 +65,7 @@ pub(super) fn nodes(
 
 /// Reads the parameters at the end of the rows of nodes of these tags.
 #[cold]
-fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut impl Sink) -> Result<(), ReadError> {
+fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Result<(), ReadError> {
     let mut numbers = TextNumbers::default();
     for (done, _) in (0..).zip(tags) {
         row(&mut cursor, done, tags.len() as u64, "nodes")?;
@@ -83,7 +83,7 @@ pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     version: Version,
     model: &Model,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of element blocks")?;

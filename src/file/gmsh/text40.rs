@@ -10,7 +10,7 @@ use crate::file::text::Cursor;
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let blocks = cursor.integer("the number of node blocks")?;

@@ -20,7 +20,7 @@ impl Cell<'_> {
     pub(in crate::file) fn send(
         &self,
         cursor: &Cursor<'_>,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
         let Cell { tag, cell_type, points, region } = *self;
         let kind = kind_of(cursor, tag, cell_type, points.len())?;

@@ -65,7 +65,7 @@ pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
     keyword: &[u8],
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Vec<Regions> {
     let of_cells = keyword == b"CELL_DATA";
     let mut data = Data { binary, of_cells, count: 0, found: Vec::new(), sink };
@@ -81,15 +81,15 @@ pub(super) fn regions(
     data.found
 }
 
-struct Data<'s, S> {
+struct Data<'s> {
     binary: bool,
     of_cells: bool,
     count: u64,
     found: Vec<Regions>,
-    sink: &'s mut S,
+    sink: &'s mut dyn Sink,
 }
 
-impl<S: Sink> Data<'_, S> {
+impl Data<'_> {
     /// Reads one attribute.
     fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
         let keyword = cursor.token()?.to_ascii_uppercase();

@@ -54,7 +54,7 @@ enum List {
 impl Walk for Vtk {
     const VERTICES: &'static str = "POINTS";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.line();
         cursor.line();
@@ -164,7 +164,7 @@ fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
     heights: &mut Heights,
-    sink: &mut impl Sink,
+    sink: &mut dyn Sink,
 ) -> Result<Precision, ReadError> {
     let count = cursor.vertex_count()?;
     let precision = match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
@@ -358,12 +358,12 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 /// Hands cells to the sink.
-fn elements<S: Sink>(
+fn elements(
     cursor: &Cursor<'_>,
     cells: &Cells<'_>,
     regions: &[Regions],
     tag: &mut u64,
-    sink: &mut S,
+    sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     sink.expect_elements(cells.starts.len() - 1);
     if cells.kind == List::Cells && cells.types.is_none() && cells.starts.len() > 1 {
@@ -387,7 +387,7 @@ fn elements<S: Sink>(
             *number = regions.names.get(*tag as usize).copied().unwrap_or(0);
         }
         let cell = Cell { tag: *tag, cell_type, points, region };
-        if S::TAKES_AHEAD {
+        if sink.takes_ahead() {
             if cell.send(cursor, sink).is_err() {
                 (0..index).for_each(|before| cells.pass(&mut place, before));
                 cells.stand(&mut place);

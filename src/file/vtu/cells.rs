@@ -22,7 +22,7 @@ struct List {
 
 impl File<'_> {
     /// Hands the cells of all pieces to the sink.
-    pub(super) fn cells(&self, sink: &mut impl Sink) -> Result<(), ReadError> {
+    pub(super) fn cells(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
         let regions = self.region_names();
         sink.columns(regions.iter().map(|name| Column::tags(name, 0)).collect());
         let (mut first_point, mut first_cell) = (0, 0);
@@ -130,7 +130,7 @@ impl File<'_> {
 
     /// Hands the arrays of point data to the sink that it wants. Those that are damaged are passed over: the mesh does not
     /// depend on them.
-    pub(super) fn point_arrays(&self, sink: &mut impl Sink) {
+    pub(super) fn point_arrays(&self, sink: &mut dyn Sink) {
         let pieces = &self.document.pieces;
         let mut first = 0;
         for (piece, announced) in pieces.iter().enumerate() {
@@ -163,7 +163,7 @@ impl File<'_> {
         piece: usize,
         regions: &[String],
         cells: std::ops::Range<u64>,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) {
         for array in &self.document.arrays {
             let is_region = tells_regions(array) && regions.contains(&array.name);

@@ -23,7 +23,7 @@ pub(crate) struct Vtu;
 impl Walk for Vtu {
     const VERTICES: &'static str = "Points";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let document = Document::read(source)?;
         let offsets = document.offsets().into();
         let file = File { source, document, offsets };

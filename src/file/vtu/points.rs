@@ -20,8 +20,8 @@ pub(super) struct Stored {
 }
 
 /// The arrays of points read so far.
-struct Points<'s, S> {
-    sink: &'s mut S,
+struct Points<'s> {
+    sink: &'s mut dyn Sink,
     heights: Heights,
     /// How the numbers stand: the same in all pieces.
     numbers: Option<(Numbers, bool)>,
@@ -35,7 +35,7 @@ struct Points<'s, S> {
 }
 
 /// Hands on the points of all pieces.
-pub(super) fn read(file: &File<'_>, sink: &mut impl Sink) -> Result<Stored, ReadError> {
+pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadError> {
     let heights = Heights::new(sink);
     let mut points =
         Points { sink, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
@@ -58,7 +58,7 @@ pub(super) fn read(file: &File<'_>, sink: &mut impl Sink) -> Result<Stored, Read
     Ok(Stored { numbers, encoded })
 }
 
-impl<S: Sink> Points<'_, S> {
+impl Points<'_> {
     fn read(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
         let cursor = &mut Cursor::standing_at(file.source, points.at);
         cursor.check_vertex_count(self.count.saturating_add(count))?;

@@ -24,7 +24,7 @@ const MOST: usize = 2;
 impl Walk for Xdmf {
     const VERTICES: &'static str = "Geometry";
 
-    fn walk(source: &Source, sink: &mut impl Sink) -> Result<Layout, ReadError> {
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let items = document::items(source)?;
         let file = File { source, items };
         let geometry = file.only("Geometry")?;
@@ -93,7 +93,7 @@ impl File<'_> {
     }
 
     /// Hands on the points. Returns how many there are.
-    fn points(&self, item: &Item, sink: &mut impl Sink) -> Result<u64, ReadError> {
+    fn points(&self, item: &Item, sink: &mut dyn Sink) -> Result<u64, ReadError> {
         let axes = match item.kind.as_str() {
             "xy" => 2,
             "" | "xyz" => 3,
@@ -146,7 +146,7 @@ impl File<'_> {
     }
 
     /// Hands on the elements and their data.
-    fn elements(&self, item: &Item, sink: &mut impl Sink) -> Result<(), ReadError> {
+    fn elements(&self, item: &Item, sink: &mut dyn Sink) -> Result<(), ReadError> {
         let is_region =
             |item: &&Item| item.precision.is_none() && vtk::names_regions(item.name.as_bytes());
         let mut regions: Vec<(&Item, Vec<i64>)> = Vec::new();
@@ -246,7 +246,7 @@ impl File<'_> {
     }
 
     /// Hands on the data of cells but for those that tell regions.
-    fn cell_data(&self, regions: &[&Item], cells: u64, sink: &mut impl Sink) {
+    fn cell_data(&self, regions: &[&Item], cells: u64, sink: &mut dyn Sink) {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let is_real = item.precision.is_some();
