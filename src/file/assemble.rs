@@ -4,7 +4,7 @@ use crate::error::{Location, ReadError};
 use crate::file::curves::Curves;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
-use crate::file::sink::{Element, Kind, Layout, Reader, Sink};
+use crate::file::sink::{Copies, Element, Kind, Layout, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::{CORRECT, Cursor};
@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 /// Reads a mesh.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
     let mut assembler = Assembler { vertices_of: reader.vertices, ..Assembler::default() };
-    let Layout { format, numbers, encoded } = (reader.walk)(source, &mut assembler)?;
+    let Layout { format, numbers, encoded, copies } = (reader.walk)(source, &mut assembler)?;
     let has_parameters = assembler.has_parameters;
     let Assembler { mut mesh, x_at, regions, curves, .. } = assembler;
     let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
@@ -35,10 +35,15 @@ pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadErro
         }
     }
     let regions = regions.finish();
+    let (x_at, owners) = match copies {
+        None => (x_at, None),
+        Some(Copies { x_at, vertices }) => (x_at, Some(vertices)),
+    };
     Ok(Parsed {
         format,
         mesh,
         x_at,
+        owners,
         numbers,
         encoded,
         regions,

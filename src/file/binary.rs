@@ -53,6 +53,13 @@ impl Order {
     /// A whole number of up to eight bytes, without a sign.
     #[inline]
     pub(crate) fn whole(self, bytes: &[u8]) -> u64 {
+        // The usual lengths by themselves, which is several times as fast.
+        if let Ok(bytes) = <[u8; 4]>::try_from(bytes) {
+            return u64::from(self.i32(bytes).cast_unsigned());
+        }
+        if let Ok(bytes) = <[u8; 8]>::try_from(bytes) {
+            return self.u64(bytes);
+        }
         let append = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
         match self {
             Order::Big => bytes.iter().fold(0, append),

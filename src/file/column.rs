@@ -15,6 +15,8 @@ pub(crate) struct Column<'a> {
     /// The number of item `i` is `first + step * i` of those lists.
     first: usize,
     step: usize,
+    /// What counts as `i` for each item, if several items are one number.
+    owners: Option<&'a [u32]>,
 }
 
 /// Where the items of a column start.
@@ -37,16 +39,17 @@ pub(crate) struct Change {
 }
 
 impl<'a> Column<'a> {
-    /// The coordinates of vertices, whose x start at these places.
+    /// The coordinates of vertices, whose x start at these places. A vertex may have several: then its index is given for each
+    /// place.
     pub(crate) fn of_points(
-        x_at: &'a [usize],
+        (x_at, owners): (&'a [usize], Option<&'a [u32]>),
         numbers: Numbers,
         old: &'a [[f64; 2]],
         new: &'a [[f64; 2]],
     ) -> Vec<Column<'a>> {
         let column = |at, first| {
             let (old, new) = (old.as_flattened(), new.as_flattened());
-            Column { at, form: numbers.into(), old, new, first, step: 2 }
+            Column { at, form: numbers.into(), old, new, first, step: 2, owners }
         };
         match numbers {
             Numbers::Text { .. } => vec![column(At::Pairs(x_at), 0)],
@@ -67,7 +70,7 @@ impl<'a> Column<'a> {
             Places::List(list) => At::After(list, 0),
             &Places::Regular { start, stride } => At::Regular { start, stride },
         };
-        Column { at, form, old, new, first: 0, step: 1 }
+        Column { at, form, old, new, first: 0, step: 1, owners: None }
     }
 
     fn count(&self) -> usize {
@@ -122,7 +125,8 @@ impl<'a> Column<'a> {
             }
         };
         for item in items {
-            let (start, number) = (self.start(item), self.first + self.step * item);
+            let index = self.owners.map_or(item, |owners| owners[item] as usize);
+            let (start, number) = (self.start(item), self.first + self.step * index);
             match self.at {
                 At::Pairs(_) => {
                     let end = number_end(bytes, start);

@@ -1,7 +1,7 @@
 //! Which format a file is in, by its content first and its ending second.
 
 use crate::error::ReadError;
-use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, TRIANGLE};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
 use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
 use crate::file::text::{Cursor, integer};
@@ -26,7 +26,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
         return of(source, &ADCIRC);
     }
     // Comments that `#` starts are looked behind too, but one of VTK's is its name.
-    let heads = [head, &source.bytes, self::head(head, b"%#")];
+    let heads = [head, &source.bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     let promised = |family: &&&Family| family.has_ending_of(&source.path);
     let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
@@ -37,7 +37,12 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
         return Ok(Content::Triangle(Names::of(&source.path)));
     }
     // Of the others that are told by their rows, those whose ending is theirs alone.
-    let by_ending = |family: &&&Family| promised(family) && family.endings != FREEFEM.endings;
+    // Text is STL only by its first word.
+    let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
+    let by_ending = |family: &&&Family| {
+        let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
+        promised(family) && family.endings != FREEFEM.endings && !is_told_otherwise
+    };
     match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
         Some(family) => of(source, family),
         None => by_rows(source),
@@ -93,7 +98,13 @@ pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
 fn of(source: &Source, family: &'static Family) -> Result<Content, ReadError> {
     match &family.reader {
         Some(reader) => Ok(Content::Of(reader)),
-        None => Err(source.error(format!("not read yet: {}", family.name), formats_read())),
+        None => {
+            let remedy = match family.instead {
+                "" => formats_read(),
+                instead => instead.to_owned(),
+            };
+            Err(source.error(format!("{} is not read", family.name), remedy))
+        }
     }
 }
 
@@ -110,6 +121,17 @@ fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     while head.first().is_some_and(|first| comments.contains(first)) {
         let end = memchr::memchr(b'\n', head).unwrap_or(head.len());
         head = head[end..].trim_ascii_start();
+    }
+    head
+}
+
+/// The content from the first element of XML on: without its declaration, the type of the document and comments.
+fn after_prolog(bytes: &[u8]) -> &[u8] {
+    let mut head = bytes;
+    while head.starts_with(b"<?") || head.starts_with(b"<!") {
+        let end: &[u8] = if head.starts_with(b"<!--") { b"-->" } else { b">" };
+        let Some(at) = memchr::memmem::find(head, end) else { break };
+        head = head[at + end.len()..].trim_ascii_start();
     }
     head
 }
@@ -138,7 +160,8 @@ mod tests {
     use super::*;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
-        let source = Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None };
+        let source =
+            Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None, welds: false };
         match content(&source) {
             Ok(Content::Of(reader)) => {
                 let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
@@ -161,9 +184,12 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 11] = [
-            (b"<?xml version=\"1.0\"?>", "VTK XML"),
-            (b"solid part\n", "not read yet: STL"),
+        let cases: [(&[u8], &str); 14] = [
+            (b"<?xml version=\"1.0\"?>\n<!-- <Xdmf> -->\n<VTKFile>", "VTK XML"),
+            (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
+            (b"solid part\n", "STL"),
+            (b"CDF\x02\0\0", "Exodus II"),
+            (b"\x89HDF\r\n", "HDF5 is not read"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),
             (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),

@@ -4,7 +4,8 @@ use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
-    adcirc, freefem, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms, su2, vtk, vtu,
+    adcirc, exodus, freefem, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms, stl, su2,
+    vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -23,6 +24,8 @@ pub(crate) struct Family {
     pub(crate) opens: &'static [&'static [u8]],
     /// None for Triangle, which has two files, and for formats that are not read.
     pub(crate) reader: Option<Reader>,
+    /// What to do about a file of a format that is not read; empty where the formats that are read say enough.
+    pub(crate) instead: &'static str,
 }
 
 impl Family {
@@ -49,6 +52,9 @@ impl Family {
             Format::Sms2dm => &SMS,
             Format::FreeFem => &FREEFEM,
             Format::Selafin => &SELAFIN,
+            Format::Stl | Format::StlBinary => &STL,
+            Format::Exodus => &EXODUS,
+            Format::Xdmf => &XDMF,
         }
     }
 
@@ -70,7 +76,17 @@ const fn family(
     opens: &'static [&'static [u8]],
     reader: Option<Reader>,
 ) -> Family {
-    Family { name, endings, opens, reader }
+    Family { name, endings, opens, reader, instead: "" }
+}
+
+/// A format that is not read, and what to do about its files.
+const fn unread(
+    name: &'static str,
+    endings: &'static [&'static str],
+    opens: &'static [&'static [u8]],
+    instead: &'static str,
+) -> Family {
+    Family { name, endings, opens, reader: None, instead }
 }
 
 pub(crate) static TRIANGLE: Family = family("Triangle .node/.ele", &[".node", ".ele"], &[], None);
@@ -112,19 +128,38 @@ static SELAFIN: Family = family(
     reader::<selafin::Selafin>(),
 );
 static VTK_XML: Family =
-    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
+    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile"], reader::<vtu::Vtu>());
 static VTK_XML_POLYGONS: Family =
-    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile", b"<?xml"], reader::<vtu::Vtu>());
-static STL: Family = family("STL", &[".stl"], &[b"solid "], None);
+    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile"], reader::<vtu::Vtu>());
+pub(crate) static STL: Family =
+    family("STL", &[".stl"], &[b"solid ", b"solid\n", b"solid\r"], reader::<stl::Stl>());
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
-static ABAQUS: Family =
-    family("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"], None);
-static HDF: Family =
-    family("netCDF or HDF5", &[".exo", ".med", ".cgns"], &[b"CDF", b"\x89HDF"], None);
-static GMSH_1: Family = family("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], None);
+static EXODUS: Family = family(
+    "Exodus II",
+    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc"],
+    &[b"CDF\x01", b"CDF\x02", b"CDF\x05"],
+    reader::<exodus::Exodus>(),
+);
+static XDMF: Family =
+    family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
+static ABAQUS: Family = unread(
+    "Abaqus",
+    &[".inp"],
+    &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"],
+    "Convert it to a format that is read, with meshio for example",
+);
+static HDF: Family = unread(
+    "HDF5",
+    &[".h5", ".hdf5", ".med", ".cgns"],
+    &[b"\x89HDF"],
+    "If it is Exodus, `nccopy -k classic IN OUT` (-k cdf5 for large ones) makes of it one that is read; convert MED and \
+     CGNS to gmsh or Exodus",
+);
+static GMSH_1: Family =
+    unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 19] = [
+pub(crate) static FAMILIES: [&Family; 21] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -141,6 +176,8 @@ pub(crate) static FAMILIES: [&Family; 19] = [
     &VTK_XML_POLYGONS,
     &STL,
     &PLY,
+    &EXODUS,
+    &XDMF,
     &ABAQUS,
     &HDF,
     &GMSH_1,

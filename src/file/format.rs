@@ -51,11 +51,19 @@ pub enum Format {
     FreeFem,
     /// TELEMAC's SELAFIN, in either byte order and precision.
     Selafin,
+    /// STL, as text, with corners at the same place joined.
+    Stl,
+    /// STL, in binary, with corners at the same place joined.
+    StlBinary,
+    /// Exodus II, in netCDF's classic formats.
+    Exodus,
+    /// XDMF, with its numbers in the XML.
+    Xdmf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 22] = [
+    pub const ALL: [Format; 26] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -78,6 +86,10 @@ impl Format {
         Format::Sms2dm,
         Format::FreeFem,
         Format::Selafin,
+        Format::Stl,
+        Format::StlBinary,
+        Format::Exodus,
+        Format::Xdmf,
     ];
 
     /// The name for messages.
@@ -105,6 +117,10 @@ impl Format {
             Format::Sms2dm => "SMS 2dm",
             Format::FreeFem => "FreeFem .msh",
             Format::Selafin => "SELAFIN",
+            Format::Stl => "STL ASCII",
+            Format::StlBinary => "STL binary",
+            Format::Exodus => "Exodus II",
+            Format::Xdmf => "XDMF",
         }
     }
 }

@@ -52,6 +52,7 @@ impl fmt::Display for Place {
 /// | OBJ | material, group and object |
 /// | SU2 | zone |
 /// | VTK | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
+/// | STL | solid |
 /// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
@@ -82,8 +83,10 @@ pub struct MeshFile {
     notes: Vec<String>,
     data: Vec<String>,
     has_parameters: bool,
-    /// The byte at which the x of each vertex starts in the first of the sources.
+    /// The bytes at which the x of vertices start in the first of the sources.
     x_at: Vec<usize>,
+    /// The vertex of each of these, if there are several to a vertex.
+    owners: Option<Vec<u32>>,
     /// How the first of the sources has the coordinates.
     numbers: Numbers,
     /// The points, if the first of the sources has them encoded.
@@ -110,16 +113,31 @@ impl MeshFile {
     /// [`Format`], does not hold what its format asks for, or holds other than first-order
     /// elements of the plane, or no triangle.
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
+        Self::read_as(path, false)
+    }
+
+    /// Reads a mesh as [`read`](Self::read) does, an STL too: there corners of triangles at the same place become one
+    /// vertex. Vertices are numbered in the order in which the file first has them, and are written wherever it has
+    /// them. Meshes of other formats are read as they are.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for [`read`](Self::read), and for an STL whose corners have not all the same third coordinate.
+    pub fn read_welded(path: &Path) -> Result<MeshFile, ReadError> {
+        Self::read_as(path, true)
+    }
+
+    fn read_as(path: &Path, welds: bool) -> Result<MeshFile, ReadError> {
         let names = Names::of(path);
         let has_half = names.node.is_file() || names.ele.is_file();
         let has_ending = TRIANGLE.has_ending_of(path);
         if has_half && !has_ending && !path.is_file() {
-            return Self::read(&names.node);
+            return Self::read_as(&names.node, welds);
         }
-        let given = match Source::load(path) {
+        let mut given = match Source::load(path) {
             Err(_) if has_half && has_ending && !path.exists() => half_missing(path, &names)?,
             given => given?,
         };
+        given.welds = welds;
         match detect::content(&given)? {
             Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
             Content::Triangle(names) => Self::read_triangle(given, &names),
@@ -132,7 +150,19 @@ impl MeshFile {
     /// # Errors
     /// [`ReadError`] as for [`read`](Self::read), and for files of Triangle, of which there are two to a mesh.
     pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
-        let given = Source::new(name, bytes)?;
+        Self::of_source(Source::new(name, bytes)?)
+    }
+
+    /// Reads a mesh in memory as [`from_bytes`](Self::from_bytes) does, an STL too, as
+    /// [`read_welded`](Self::read_welded) tells.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for these two.
+    pub fn from_bytes_welded(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        Self::of_source(Source { welds: true, ..Source::new(name, bytes)? })
+    }
+
+    fn of_source(given: Source) -> Result<MeshFile, ReadError> {
         match detect::content(&given)? {
             Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
             Content::Triangle(_) => {
@@ -168,6 +198,7 @@ impl MeshFile {
             format,
             mut mesh,
             x_at,
+            owners,
             numbers,
             encoded,
             regions,
@@ -194,6 +225,7 @@ impl MeshFile {
             data,
             has_parameters,
             x_at,
+            owners,
             numbers,
             encoded,
             regions,
@@ -341,6 +373,10 @@ impl MeshFile {
         &self.x_at
     }
 
+    pub(crate) fn owners(&self) -> Option<&[u32]> {
+        self.owners.as_deref()
+    }
+
     pub(crate) fn numbers(&self) -> Numbers {
         self.numbers
     }
@@ -389,7 +425,7 @@ impl MeshFile {
     /// Indices of no vertex are left out.
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
-        keep_ascending(&mut wanted, self.x_at.len());
+        keep_ascending(&mut wanted, self.mesh.points.len());
         let source = &self.sources[0];
         let found = match &Family::of(self.format).reader {
             None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),

@@ -9,6 +9,9 @@ mod convert;
 mod curves;
 mod detect;
 mod disk;
+#[cfg(test)]
+mod documented;
+mod exodus;
 mod families;
 #[cfg(test)]
 mod faults;
@@ -45,6 +48,7 @@ mod sink;
 mod sms;
 mod solution;
 mod source;
+mod stl;
 mod su2;
 mod tags;
 mod text;
@@ -53,6 +57,7 @@ mod triangle_data;
 mod triangle_groups;
 mod vtk;
 mod vtu;
+mod xdmf;
 
 pub use compare::Difference;
 pub use convert::Conversion;

@@ -10,7 +10,7 @@ use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
-use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row};
+use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor, integer, quoted};
 
@@ -20,25 +20,54 @@ pub(crate) struct Obj;
 enum Row<'a> {
     Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
-    Face(Vec<i64>),
+    Face(Corners),
     /// The vertices of a line.
-    Line(Vec<i64>),
+    Line(Corners),
     /// Vertices that are points.
-    Points(Vec<i64>),
+    Points(Corners),
     /// The start of a group, object or material, all of the row.
     Name(&'a [u8]),
     Other,
+}
+
+/// The vertices of an element. A list for each takes long to make where there are millions, so most have none.
+enum Corners {
+    Few([i64; 4], usize),
+    Many(Vec<i64>),
+}
+
+impl Corners {
+    fn push(&mut self, corner: i64) {
+        match self {
+            Corners::Few(few, count) if *count < few.len() => {
+                few[*count] = corner;
+                *count += 1;
+            }
+            Corners::Few(few, _) => {
+                let mut many = few.to_vec();
+                many.push(corner);
+                *self = Corners::Many(many);
+            }
+            Corners::Many(many) => many.push(corner),
+        }
+    }
+
+    fn all(&self) -> &[i64] {
+        match self {
+            Corners::Few(few, count) => &few[..*count],
+            Corners::Many(many) => many,
+        }
+    }
 }
 
 impl Walk for Obj {
     const VERTICES: &'static str = "the list of v rows";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let rows = Cursor::new(source).rows();
         let cursor = &mut Cursor::new(source);
         let mut count = 0;
         let mut heights = Heights::new(sink);
-        each_row(cursor, rows, "rows", sink, vertex, |cursor, sink, _, row| {
+        all_rows(cursor, sink, vertex, |cursor, sink, row| {
             if let Row::Vertex(x_at, at, z) = row {
                 count += 1;
                 sink.node(cursor, count, 2, x_at, at);
@@ -57,7 +86,7 @@ impl Walk for Obj {
         let mut names = Numbering::default();
         let mut region = [0; 2];
         let mut named = Named::default();
-        each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
+        all_rows(cursor, sink, element, |cursor, sink, row| {
             match row {
                 Row::Vertex(..) => before += 1,
                 Row::Name(name) => {
@@ -70,19 +99,28 @@ impl Walk for Obj {
                 }
                 Row::Face(corners) => {
                     let tag = faces + 1;
-                    let nodes = counted(cursor, &corners, before)?;
-                    face(cursor, sink, tag, region, &nodes)?;
+                    match corners {
+                        Corners::Few([a, b, c, _], 3) if a > 0 && b > 0 && c > 0 => {
+                            let nodes = [a, b, c, 0].map(i64::unsigned_abs);
+                            let kind = Kind::Triangle;
+                            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                        }
+                        corners => {
+                            let nodes = counted(cursor, corners.all(), before)?;
+                            face(cursor, sink, tag, region, &nodes)?;
+                        }
+                    }
                     faces = tag;
                 }
                 Row::Points(points) => {
-                    let nodes = counted(cursor, &points, before)?;
+                    let nodes = counted(cursor, points.all(), before)?;
                     for &node in &nodes {
                         let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
                         sink.element(cursor, &Element { tag: 0, kind, region, nodes })?;
                     }
                 }
                 Row::Line(points) => {
-                    let nodes = counted(cursor, &points, before)?;
+                    let nodes = counted(cursor, points.all(), before)?;
                     sink.polyline(cursor, (0, region), &nodes)?;
                 }
                 Row::Other => {}
@@ -192,7 +230,7 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     match cursor.token() {
         Some(b"v") => Ok(Row::Vertex(0, [0.0; 2], (0, 0.0))),
         Some(kind @ (b"f" | b"l" | b"p")) => {
-            let mut corners = Vec::with_capacity(3);
+            let mut corners = Corners::Few([0; 4], 0);
             while let Some(token) = cursor.token() {
                 let end = memchr::memchr(b'/', token).unwrap_or(token.len());
                 corners.push(signed(&token[..end]).ok_or_else(|| {
@@ -200,7 +238,7 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
                     cursor.error(problem, CORRECT)
                 })?);
             }
-            if corners.is_empty() {
+            if corners.all().is_empty() {
                 return Err(cursor.error("an element without vertices", CORRECT));
             }
             Ok(match kind {

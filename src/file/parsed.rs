@@ -12,6 +12,8 @@ pub(crate) struct Parsed {
     pub(crate) mesh: Mesh,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
     pub(crate) x_at: Vec<usize>,
+    /// The vertex of each of these, if they are not one for each vertex in their order.
+    pub(crate) owners: Option<Vec<u32>>,
     /// How the file has its coordinates.
     pub(crate) numbers: Numbers,
     /// The points, if they are encoded.

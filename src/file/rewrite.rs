@@ -68,7 +68,8 @@ impl Rewrite<'_> {
             column.changes(self.bytes, items, &mut changes);
         }
         if self.columns.len() > 1 {
-            changes.sort_unstable_by_key(|change| change.range.start);
+            // Those of each column ascend already, which a stable sort makes use of.
+            changes.sort_by_key(|change| change.range.start);
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;
@@ -110,7 +111,7 @@ mod tests {
     use crate::mesh::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
-        let columns = Column::of_points(x_at, Numbers::TEXT, old, new);
+        let columns = Column::of_points((x_at, None), Numbers::TEXT, old, new);
         let mut out = Vec::new();
         Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
         out
@@ -167,7 +168,7 @@ mod tests {
             bytes.extend_from_slice(b"tail 1 2 3");
             expected.extend_from_slice(b"tail 1 2 3");
             assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
-            let mut columns = Column::of_points(&x_at, Numbers::TEXT, &old, &new);
+            let mut columns = Column::of_points((&x_at, None), Numbers::TEXT, &old, &new);
             let places = Places::List(z_at);
             let form = Form::Text(Precision::Double);
             columns.push(Column::of_array(&places, form, &z_old, &z_new));
@@ -192,8 +193,12 @@ mod tests {
         let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
         let bytes = [b"head", &rows[..], b"tail"].concat();
         let x_at: Vec<usize> = (0..old.len()).map(|v| 4 + 20 * v).collect();
-        let mut columns =
-            Column::of_points(&x_at, Numbers::adjacent(order, Precision::Double), &old, &new);
+        let mut columns = Column::of_points(
+            (&x_at, None),
+            Numbers::adjacent(order, Precision::Double),
+            &old,
+            &new,
+        );
         let places = Places::Regular { start: 20, stride: 20 };
         let form = Form::Binary(order, Precision::Single);
         columns.push(Column::of_array(&places, form, &z_old, &z_new));

@@ -135,7 +135,10 @@ impl MeshFile {
     ) -> io::Result<()> {
         let bytes = &self.sources()[part].bytes;
         let Some((points, fields)) = content else { return out.write_all(bytes) };
-        let points = || Column::of_points(self.x_at(), self.numbers(), &self.mesh().points, points);
+        let points = || {
+            let places = (self.x_at(), self.owners());
+            Column::of_points(places, self.numbers(), &self.mesh().points, points)
+        };
         // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
         let mut splices = Vec::new();

@@ -235,12 +235,22 @@ pub(crate) struct Layout {
     pub(crate) numbers: Numbers,
     /// The points, if they are encoded. Places of coordinates are then those in its bytes.
     pub(crate) encoded: Option<Box<dyn Encoded>>,
+    /// Where the coordinates stand, if a vertex may have them in several places.
+    pub(crate) copies: Option<Copies>,
+}
+
+/// All places of coordinates in a file that repeats them.
+pub(crate) struct Copies {
+    /// Where each x starts, ascending.
+    pub(crate) x_at: Vec<usize>,
+    /// The index of the vertex of each.
+    pub(crate) vertices: Vec<u32>,
 }
 
 impl Layout {
     /// Of a file that has its coordinates in place.
     pub(crate) fn in_place(format: Format, numbers: Numbers) -> Layout {
-        Layout { format, numbers, encoded: None }
+        Layout { format, numbers, encoded: None, copies: None }
     }
 }
 
@@ -296,6 +306,24 @@ pub(crate) fn each_row<'a, T: Send>(
         let item = read(cursor)?;
         take(cursor, sink, done, item)?;
         done += 1;
+    }
+    Ok(())
+}
+
+/// The same for all rows that follow, of whatever kind each is.
+pub(crate) fn all_rows<'a, T: Send>(
+    cursor: &mut Cursor<'a>,
+    sink: &mut dyn Sink,
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
+    mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, T) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    if sink.takes_ahead() && cursor.is_long() {
+        let nowhere = &Cursor::new(cursor.source);
+        take_rows(cursor, u64::MAX, &read, |item| take(nowhere, sink, item).is_ok());
+    }
+    while cursor.next_row() {
+        let item = read(cursor)?;
+        take(cursor, sink, item)?;
     }
     Ok(())
 }

@@ -8,11 +8,14 @@ use crate::file::format::Format;
 use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
-use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
+use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
 
 pub(crate) struct Sms;
+
+/// Stands for the material of lines that have none.
+const NO_MATERIAL: i64 = i64::MIN;
 
 /// A row that is used.
 enum Row {
@@ -36,10 +39,9 @@ impl Walk for Sms {
     const VERTICES: &'static str = "the list of ND rows";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let rows = Cursor::new(source).rows();
         let nodes_first = &mut Cursor::new(source);
         let mut heights = Heights::new(sink);
-        each_row(nodes_first, rows, "rows", sink, node, |cursor, sink, _, row| {
+        all_rows(nodes_first, sink, node, |cursor, sink, row| {
             if let Row::Node(tag, x_at, at, z) = row {
                 sink.node(cursor, tag, 2, x_at, at);
                 heights.see(z);
@@ -51,9 +53,12 @@ impl Walk for Sms {
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
-        let materials = || vec![Column::tags("material", 1)];
+        let materials = || {
+            let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
+            vec![Column { what: "material".into(), from_dimension: 1, label }]
+        };
         sink.columns(materials());
-        each_row(cursor, rows, "rows", sink, element, |cursor, sink, _, row| {
+        all_rows(cursor, sink, element, |cursor, sink, row| {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
                 Row::String(nodes, end) => {
@@ -122,7 +127,9 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let nodes = nodes(cursor, kind)?;
     // A material is a number. Some programs leave it out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
-    Ok(Row::Element(Element { tag, kind, region: [material, 0], nodes }))
+    let of_none = kind == Kind::Line && material == 0;
+    let region = [if of_none { NO_MATERIAL } else { material }, 0];
+    Ok(Row::Element(Element { tag, kind, region, nodes }))
 }
 
 /// Reads the nodes of a row of a node string. The last node of a string is negative; what follows is its name.

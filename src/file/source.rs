@@ -12,6 +12,8 @@ pub(crate) struct Source {
     pub(crate) bytes: Vec<u8>,
     /// The file's own bytes, if it is compressed.
     pub(crate) packed: Option<Packed>,
+    /// Whether corners at the same place are to be one vertex, where the format has no vertices.
+    pub(crate) welds: bool,
 }
 
 impl Source {
@@ -33,12 +35,12 @@ impl Source {
 
     /// The content of a file, decompressed if need be.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
-        let source = Source { path: path.to_owned(), bytes, packed: None };
+        let source = Source { path: path.to_owned(), bytes, packed: None, welds: false };
         match packed::unpack(&source.bytes) {
             Ok(None) => Ok(source),
             Ok(Some((packing, content))) => {
                 let packed = Some(Packed { packing, bytes: source.bytes });
-                Ok(Source { bytes: content, packed, path: source.path })
+                Ok(Source { bytes: content, packed, path: source.path, welds: false })
             }
             Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
         }

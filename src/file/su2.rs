@@ -7,6 +7,7 @@ use crate::error::ReadError;
 use crate::file::format::Format;
 use crate::file::label::Label;
 use crate::file::numbers::Numbers;
+use crate::file::parallel_rows::take_rows;
 use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
@@ -16,14 +17,19 @@ use std::ops::Range;
 
 pub(crate) struct Su2;
 
-/// A list of elements that was passed over, as they may stand before the points.
+/// A list of elements, which may stand before the points.
 struct List<'a> {
     cursor: Cursor<'a>,
+    /// Its first elements, if they were read already.
+    ahead: Vec<Small>,
     count: u64,
     zone: usize,
     /// The name of the marker whose elements these are.
     marker: Option<&'a [u8]>,
 }
+
+/// An element with its nodes, as small as most are.
+type Small = (Kind, [u32; 4]);
 
 impl Walk for Su2 {
     const VERTICES: &'static str = "NPOIN";
@@ -67,13 +73,15 @@ impl Walk for Su2 {
                     let count = number(cursor, name, value)?;
                     let zone = zones.len() - 1;
                     let marker = if key == b"NELEM" { None } else { marker };
-                    lists.push(List { cursor: cursor.clone(), count, zone, marker });
+                    let start = cursor.clone();
+                    let ahead = read_ahead(cursor, count, sink);
                     // Not `row`, so that the error comes from the list itself, which knows more.
-                    for _ in 0..count {
+                    for _ in ahead.len() as u64..count {
                         if !cursor.next_row() {
                             break;
                         }
                     }
+                    lists.push(List { cursor: start, ahead, count, zone, marker });
                 }
                 b"NMARK" | b"NZONE" | b"IZONE" => {}
                 // Counts of other lists, boxes of free-form deformation.
@@ -88,12 +96,12 @@ impl Walk for Su2 {
             let label = |zone| Some(Label::Tag(zone + 1));
             sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
         }
-        for List { mut cursor, count, zone, marker } in lists {
+        for List { mut cursor, ahead, count, zone, marker } in lists {
             let within =
                 |name| Within { what: "marker", label: Label::name(name), dimension: None };
             sink.within(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
-            elements(&mut cursor, count, zone, zones[zone]..last, sink)?;
+            elements((&mut cursor, &ahead), count, zone, zones[zone]..last, sink)?;
         }
         Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
     }
@@ -101,15 +109,14 @@ impl Walk for Su2 {
 
 /// Hands on the elements of a list, whose nodes are those of a zone.
 fn elements(
-    cursor: &mut Cursor<'_>,
+    (cursor, ahead): (&mut Cursor<'_>, &[Small]),
     count: u64,
     zone: usize,
     Range { start: first, end: last }: Range<u64>,
     sink: &mut dyn Sink,
 ) -> Result<(), ReadError> {
     sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
-    each_row(cursor, count, "elements", sink, element, |cursor, sink, done, read| {
-        let (kind, nodes) = read;
+    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (Kind, [u64; 4])| {
         let listed = &nodes[..kind.nodes()];
         if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
             let kind = kind.name();
@@ -118,7 +125,45 @@ fn elements(
         }
         let nodes = nodes.map(|node| node.saturating_add(first));
         sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
-    })
+    };
+    let mut done = 0;
+    // Errors are dropped: reading row by row meets them again.
+    let nowhere = &Cursor::new(cursor.source);
+    for &(kind, nodes) in ahead {
+        if take(nowhere, done, (kind, nodes.map(u64::from))).is_err() {
+            break;
+        }
+        done += 1;
+    }
+    if done < count {
+        (0..done).for_each(|_| _ = cursor.next_row());
+    }
+    while done < count {
+        cursor.row(done, count, "elements")?;
+        let read = element(cursor)?;
+        take(cursor, done, read)?;
+        done += 1;
+    }
+    Ok(())
+}
+
+/// Reads the first elements of a long list on all threads, if the sink allows that, as far as its rows are plain.
+fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small> {
+    let mut ahead = Vec::new();
+    if sink.takes_ahead() {
+        ahead.reserve(cursor.capacity(count, "5 0 1 2\n".len()));
+        let read = |cursor: &mut Cursor<'_>| -> Result<Option<Small>, ReadError> {
+            let (kind, nodes) = element(cursor)?;
+            let small = |node: u64| u32::try_from(node).ok();
+            let [Some(a), Some(b), Some(c), Some(d)] = nodes.map(small) else { return Ok(None) };
+            Ok(Some((kind, [a, b, c, d])))
+        };
+        take_rows(cursor, count, read, |small| {
+            ahead.extend(small);
+            small.is_some()
+        });
+    }
+    ahead
 }
 
 /// The two sides of the equals sign of a row. The row itself and nothing if there is none.

@@ -113,6 +113,21 @@ impl<'a> Cursor<'a> {
         Some(taken)
     }
 
+    /// Moves to a byte of the whole file, for messages, and there counts the line it stands on. Quick where it moves forward.
+    pub(crate) fn go_to(&mut self, at: usize) {
+        match self.taken {
+            Some(_) => self.taken = Some(at),
+            None if at < self.at || self.line == 0 => self.line = self.source.line_of(at),
+            None => self.line += memchr::memchr_iter(b'\n', &self.bytes[self.at..at]).count(),
+        }
+        self.at = at;
+    }
+
+    /// Whether so much follows that it is worth reading on several threads.
+    pub(crate) fn is_long(&self) -> bool {
+        self.bytes.len() - self.at > 1 << 18
+    }
+
     /// Passes over bytes that are there, without counting them as taken.
     pub(crate) fn pass(&mut self, count: usize) {
         self.at += count;
@@ -159,15 +174,6 @@ impl<'a> Cursor<'a> {
             return Ok(());
         }
         Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
-    }
-
-    /// How many rows follow.
-    pub(crate) fn rows(mut self) -> u64 {
-        let mut rows = 0;
-        while self.next_row() {
-            rows += 1;
-        }
-        rows
     }
 
     /// Takes the next line whole, without what ends it, be it a row or not.
@@ -438,7 +444,7 @@ mod tests {
     use super::*;
 
     fn source(text: &[u8]) -> Source {
-        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None }
+        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None, welds: false }
     }
 
     fn row_of(source: &Source) -> Cursor<'_> {

@@ -74,6 +74,7 @@ pub(crate) fn parse(
         format: Format::Triangle,
         mesh,
         x_at,
+        owners: None,
         numbers: numbers::Numbers::TEXT,
         encoded: None,
         regions,

@@ -271,11 +271,8 @@ fn files_of_other_kinds_are_told() {
     );
     assert_gmsh_refused("2 2 0 1 10", "4 2 0 1 10", &["in.msh:14: ", "makes this a volume mesh"]);
     assert_refused(&[("in.txt", "hello\n")], "in.txt", &["in.txt: the format is not recognized. "]);
-    assert_refused(
-        &[("in.stl", "solid part\n")],
-        "in.stl",
-        &["in.stl: not read yet: STL. Formats read: Triangle .node/.ele, gmsh, legacy VTK"],
-    );
+    assert_refused(&[("in.stl", "solid part\n")], "in.stl", &["in.stl: an STL lists", "--weld"]);
+    assert_refused(&[("in.inp", "*NODE\n")], "in.inp", &["in.inp: Abaqus is not read. Convert "]);
 }
 
 #[test]

@@ -152,8 +152,8 @@ fn gmsh_errors_name_line_and_remedy() {
 fn other_files_are_refused_by_name() {
     let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
                    Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, FreeFem .msh, SELAFIN";
-    assert_error(&[("a.stl", "solid part\n")], &["a.stl: not read yet: STL. ", formats]);
-    assert_error(&[("a.inp", "*HEADING\nbay\n")], &["not read yet: Abaqus. ", formats]);
+    assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "--weld"]);
+    assert_error(&[("a.inp", "*HEADING\nbay\n")], &["Abaqus is not read. Convert it "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
     let folder = Folder::new(&[]);
     let of = |path: &Path| MeshFile::read(path).unwrap_err().to_string();

@@ -16,6 +16,7 @@ mod refused;
 mod regions;
 mod special;
 mod spoiled;
+mod stl;
 #[path = "../support/mod.rs"]
 mod support;
 mod vtu;

@@ -128,6 +128,8 @@ fn list_of(made: &Made) -> &'static str {
         Format::FreeFem | Format::Off | Format::Ply | Format::PlyBinary => "the list of vertices",
         Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",
         Format::Selafin => "the list of points",
+        Format::Xdmf => "Geometry",
+        Format::Exodus => "the list of coordinates",
         other => panic!("no list of {other}"),
     }
 }

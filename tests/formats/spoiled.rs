@@ -9,10 +9,10 @@ use std::fs;
 use std::time::Instant;
 
 /// What a file gives that may be damaged: a mesh whose parts are found again, or an error of one line with its name.
-fn mesh_or_error(folder: &Folder, made: &Made) -> Result<MeshFile, String> {
-    match MeshFile::read(&folder.path(made.name)) {
+pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, String> {
+    match MeshFile::read_welded(&folder.path(name)) {
         Ok(file) => {
-            let length = fs::metadata(folder.path(made.name)).unwrap().len() as usize;
+            let length = fs::metadata(folder.path(name)).unwrap().len() as usize;
             let mesh = file.mesh();
             let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
             let mut named = mesh.triangles.iter().flatten().chain(&mesh.fixed);
@@ -32,7 +32,7 @@ fn mesh_or_error(folder: &Folder, made: &Made) -> Result<MeshFile, String> {
         }
         Err(error) => {
             let error = error.to_string();
-            assert!(error.contains(made.name), "{error}");
+            assert!(error.contains(name), "{error}");
             assert_eq!(error.lines().count(), 1, "{error}");
             Err(error)
         }
@@ -45,7 +45,7 @@ fn a_file_cut_off_anywhere_is_an_error_or_a_mesh() {
         let folder = folder(made, &[]);
         for cut in 0..made.bytes.len() {
             fs::write(folder.path(made.name), &made.bytes[..cut]).unwrap();
-            let read = mesh_or_error(&folder, made);
+            let read = mesh_or_error(&folder, made.name);
             let in_a_list = made.lists.iter().any(|list| list.contains(&cut));
             assert!(!in_a_list || read.is_err(), "a mesh of the first {cut} bytes");
         }
@@ -80,7 +80,7 @@ fn counts_beyond_the_file_are_errors() {
                 let [before, after] = [&made.bytes[..count.start], &made.bytes[count.end..]];
                 let folder = folder(made, &[before, &huge, after].concat());
                 let start = Instant::now();
-                let read = mesh_or_error(&folder, made);
+                let read = mesh_or_error(&folder, made.name);
                 let seconds = start.elapsed().as_secs_f64();
                 let shown = String::from_utf8_lossy(&huge);
                 assert!(read.is_err(), "{shown:?} at byte {} is read", count.start);
@@ -100,7 +100,7 @@ fn wrong_counts_are_errors() {
             // One more than there are: the row after the list, or the end of the file, is none of its rows.
             let more = (number + 1).to_string();
             let parts = [&bytes[..count.start], more.as_bytes(), &bytes[count.end..]];
-            let read = mesh_or_error(&folder(made, &parts.concat()), made);
+            let read = mesh_or_error(&folder(made, &parts.concat()), made.name);
             assert!(read.is_err(), "{more} for {number} at byte {}", count.start);
         }
     });
@@ -124,7 +124,7 @@ fn damaged_files_of_other_programs_never_panic() {
             let content = damaged(&made.bytes, &mut random);
             fs::write(folder.path(made.name), &content).unwrap();
             let start = Instant::now();
-            if let Ok(file) = mesh_or_error(folder, made) {
+            if let Ok(file) = mesh_or_error(folder, made.name) {
                 read += 1;
                 if round % 7 == 0 {
                     file.write(&folder.path("out"), &file.mesh().points).unwrap();

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -14,6 +15,7 @@ use crate::quality::QualityArgs;
 use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
 use crate::slide_args::SlideArgs;
+use crate::streams::ReadArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -24,7 +26,7 @@ use crate::slide_args::SlideArgs;
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
                   Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
-                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, in ASCII or binary. Ctrl-C ends a run at \
+                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh --picture better.png\n  \
@@ -120,6 +122,8 @@ pub(crate) struct GroupsArgs {
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 #[derive(Args)]
@@ -135,6 +139,8 @@ pub(crate) struct CompareArgs {
     pub(crate) sliding: SlideArgs,
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 #[derive(Args)]
@@ -144,18 +150,20 @@ pub(crate) struct ConvertArgs {
     /// Where to write it; its ending tells the format. - for the standard output, with --to
     pub(crate) output: PathBuf,
     /// The format to write, where the ending does not tell it: .msh is gmsh 4.1 without it
-    #[arg(long, value_name = "FORMAT", value_parser = target)]
+    #[arg(long, value_name = "FORMAT", value_parser = targets())]
     pub(crate) to: Option<Format>,
     /// Write the mesh even if the format does not hold all of it
     #[arg(long)]
     pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
-/// The format of this short name.
-fn target(text: &str) -> Result<Format, String> {
-    let found = Conversion::targets().find(|(name, _)| *name == text);
-    let names = || Conversion::targets().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
-    found.map(|(_, format)| format).ok_or_else(|| format!("it is one of {}", names()))
+/// The formats that meshes are converted to, by their short names.
+fn targets() -> impl TypedValueParser<Value = Format> {
+    let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
+    PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
+        .try_map(move |name| format(name).map(|(_, format)| format).ok_or("not a format"))
 }
 
 #[derive(Args)]

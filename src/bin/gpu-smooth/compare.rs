@@ -12,8 +12,8 @@ const LISTED: usize = 10;
 
 /// Compares two files. An error if more than vertices that may move is different.
 pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
-    let mut before = read(&args.before)?;
-    let after = read(&args.after)?;
+    let mut before = read(&args.before, args.reading)?;
+    let after = read(&args.after, args.reading)?;
     let choice = args.moving.apply(&mut before)?;
     if choice.nothing_to_do.is_some() {
         before.fix_all_but(&[]).map_err(|error| error.to_string())?;

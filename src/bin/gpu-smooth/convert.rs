@@ -11,7 +11,7 @@ use crate::tell;
 /// Writes a mesh in another format. An error if that does not hold all of it, unless it is to be written all the same.
 pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     let format = format(args)?;
-    let file = read(&args.input)?;
+    let file = read(&args.input, args.reading)?;
     let conversion = Conversion::new(&file, format).map_err(|error| error.to_string())?;
     let (path, out) = (file.path().display(), args.output.display());
     let Some(conversion) = conversion else {

@@ -11,7 +11,7 @@ use crate::tell;
 
 /// Prints what can be named in a mesh, and how.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
-    let file = read(&args.mesh)?;
+    let file = read(&args.mesh, args.reading)?;
     let groups = file.groups().map_err(|error| error.to_string())?;
     let (path, format) = (file.path().display(), file.format());
     if args.json {

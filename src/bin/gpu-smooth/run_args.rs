@@ -13,6 +13,7 @@ use crate::numbers::number;
 use crate::picture::PictureArgs;
 use crate::riding::RidingArgs;
 use crate::slide_args::SlideArgs;
+use crate::streams::ReadArgs;
 use crate::target_args::TargetArgs;
 
 #[derive(Args)]
@@ -114,6 +115,9 @@ pub(crate) struct SmoothArgs {
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 
     #[command(flatten)]
     pub(crate) moving: MoveArgs,

@@ -3,18 +3,29 @@
 use std::io::Read;
 use std::path::Path;
 
+use clap::Args;
 use gpu_smooth::{MeshFile, PointField};
 
 use crate::tell;
 
+/// How meshes are read, whatever the command.
+#[derive(Args, Clone, Copy)]
+pub(crate) struct ReadArgs {
+    /// Join corners of triangles at the same place, without which an STL has no vertices. Of no effect on other formats
+    #[arg(long)]
+    pub(crate) weld: bool,
+}
+
 /// Reads a mesh, from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
+pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
     if !is_standard(path) {
-        return MeshFile::read(path).map_err(|error| error.to_string());
+        let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
+        return read(path).map_err(|error| error.to_string());
     }
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
-    MeshFile::from_bytes(Path::new("standard input"), bytes).map_err(|error| error.to_string())
+    let read = if args.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
+    read(Path::new("standard input"), bytes).map_err(|error| error.to_string())
 }
 
 /// Whether a name stands for the standard input or output.

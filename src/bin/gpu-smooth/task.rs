@@ -76,7 +76,7 @@ pub(crate) fn carry_out<T>(
     let start = Instant::now();
     let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
     follow.stage(Stage::Reading { bytes });
-    let mut file = streams::read(input)?;
+    let mut file = streams::read(input, args.reading)?;
     let choice = args.moving.apply(&mut file)?;
     let mut riding = args.riding.choose(&file)?;
     let file = file;
@@ -222,7 +222,7 @@ fn certificate(
     input: Vec<FileHash>,
     (out, smoother): (&Path, &Smoother<'_>),
 ) -> Result<Certificate, String> {
-    let after = streams::read(out)?;
+    let after = streams::read(out, args.reading)?;
     let mut theirs = args.riding.choose(&after)?;
     theirs.add_parameters(&after, &after.mesh().points)?;
     let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());

@@ -119,7 +119,7 @@ impl Content {
     /// What groups of a dimension are called, those first that matter most.
     pub(crate) fn whats(&self, dimension: u8) -> Vec<&str> {
         // What users give names to comes before what programs number.
-        const LAST: [&str; 3] = ["reference", "entity", "zone"];
+        const LAST: [&str; 4] = ["reference", "block", "entity", "zone"];
         let mut whats: Vec<&str> = Vec::new();
         for group in self.groups.iter().filter(|group| group.dimension == dimension) {
             if !whats.contains(&group.what.as_str()) {

@@ -19,6 +19,8 @@ mod medit;
 mod ply;
 mod su2;
 mod surface;
+#[cfg(test)]
+pub(crate) mod tables;
 mod tags;
 mod targets;
 mod triangle;

@@ -34,6 +34,6 @@ impl Walk for Vtu {
             Content::Grid => Format::Vtu,
             Content::Polygons => Format::Vtp,
         };
-        Ok(Layout { format, numbers, encoded })
+        Ok(Layout { encoded, ..Layout::in_place(format, numbers) })
     }
 }

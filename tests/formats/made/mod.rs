@@ -1,11 +1,13 @@
 //! Meshes in the formats of other programs, each in several legal ways of writing it, and what reading them has to give.
 
 pub(crate) mod binary;
+mod exodus;
 mod gmsh;
 mod grids;
 mod ply;
 mod text;
 mod vtk;
+mod xdmf;
 
 use super::regions::interfaces;
 use super::support::{SplitMix64, lattice};
@@ -83,8 +85,8 @@ pub(crate) fn base() -> Mesh {
 /// Every variant of every format. The mesh has to have the triangles of [`base`] but for their vertices.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
     let families =
-        [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all].map(|all| all(mesh));
-    families.into_iter().flatten().collect()
+        [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all, xdmf::all];
+    families.into_iter().flat_map(|all| all(mesh)).collect()
 }
 
 /// The mesh with these vertices fixed.

@@ -7,6 +7,7 @@ use gpu_smooth::Scheme;
 
 use crate::numbers::number;
 use crate::run_args::EngineChoice;
+use crate::streams::ReadArgs;
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {
@@ -44,6 +45,8 @@ pub(crate) struct BenchArgs {
     /// Compare with measurements that `bench --json` has printed
     #[arg(long, value_name = "FILE")]
     pub(crate) baseline: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

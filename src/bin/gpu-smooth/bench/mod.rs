@@ -33,7 +33,7 @@ struct Place {
 type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
-    let file = args.mesh.as_deref().map(read).transpose()?;
+    let file = args.mesh.as_deref().map(|mesh| read(mesh, args.reading)).transpose()?;
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
     let form = Form::new(args);

@@ -7,6 +7,7 @@ use clap::Args;
 use gpu_smooth::{Better, Measure};
 
 use crate::picture::PictureArgs;
+use crate::streams::ReadArgs;
 
 #[derive(Args)]
 pub(crate) struct QualityArgs {
@@ -43,6 +44,8 @@ pub(crate) struct QualityArgs {
     pub(crate) ascii: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
 }
 
 /// Values of a measure that no triangle may have.

@@ -92,7 +92,7 @@ pub(crate) struct Violation {
 impl Sheet {
     /// Reads and measures a mesh.
     pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
-        let file = read(path)?;
+        let file = read(path, args.reading)?;
         let mesh = file.mesh();
         let refused = |error| explain::mesh_error(&file, &error);
         let topology = Topology::new(mesh).map_err(refused)?;

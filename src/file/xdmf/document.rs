@@ -1,0 +1,167 @@
+//! The items of an XDMF file: what its tags say of them, and where their text stands.
+
+use crate::error::{Location, ReadError};
+use crate::file::source::Source;
+use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::mesh::Precision;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use std::ops::Range;
+
+/// A `DataItem` whose numbers stand in the file.
+pub(super) struct Item {
+    /// `Geometry`, `Topology` or `Attribute`.
+    pub(super) section: String,
+    /// The type that the section names, such as `XYZ` or `Triangle`, in small letters.
+    pub(super) kind: String,
+    /// Of an attribute what it is called, and what it belongs to, in small letters.
+    pub(super) name: String,
+    pub(super) center: String,
+    /// How many elements a topology announces, and how many nodes each has where its kind does not tell.
+    pub(super) elements: Option<u64>,
+    pub(super) corners: Option<u64>,
+    pub(super) dimensions: Vec<u64>,
+    /// How many digits the numbers have, if they are real.
+    pub(super) precision: Option<Precision>,
+    /// Where its text stands.
+    pub(super) content: Range<usize>,
+    /// Where its tag starts.
+    pub(super) at: usize,
+}
+
+impl Item {
+    /// How many numbers it announces, if it does.
+    pub(super) fn announced(&self) -> Option<u64> {
+        let product = || self.dimensions.iter().try_fold(1_u64, |n, &length| n.checked_mul(length));
+        (!self.dimensions.is_empty()).then(|| product().unwrap_or(u64::MAX))
+    }
+}
+
+/// A section that may have items, with what its tag says.
+#[derive(Clone, Default)]
+struct Section {
+    name: String,
+    attributes: Vec<(String, String)>,
+}
+
+impl Section {
+    /// The value of an attribute of one of these names.
+    fn value(&self, names: &[&str]) -> Option<&str> {
+        let found = self.attributes.iter().find(|(name, _)| names.contains(&name.as_str()));
+        found.map(|(_, value)| value.as_str())
+    }
+}
+
+/// The items of a file, in its order, but for those that refer to others.
+pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
+    let mut reader = Reader::from_reader(source.bytes.as_slice());
+    reader.config_mut().check_end_names = false;
+    let mut open: Vec<Section> = Vec::new();
+    let mut items = Vec::new();
+    let mut seen = false;
+    loop {
+        let at = reader.buffer_position() as usize;
+        let event = reader
+            .read_event()
+            .map_err(|error| error_at(source, at, &format!("it is no XML: {error}"), CORRECT))?;
+        let after = reader.buffer_position() as usize;
+        match event {
+            Event::Eof => break,
+            Event::End(_) => _ = open.pop(),
+            Event::Start(tag) | Event::Empty(tag) => {
+                let is_empty = source.bytes[at..after].ends_with(b"/>");
+                let section = section(source, at, &tag)?;
+                seen |= section.name == "Xdmf";
+                if section.name == "DataItem"
+                    && let Some(of) = open.last()
+                    && ["Geometry", "Topology", "Attribute"].contains(&of.name.as_str())
+                    && section.value(&["Reference"]).is_none()
+                    && !is_empty
+                {
+                    items.push(item(source, at, after, &section, of)?);
+                }
+                if !is_empty {
+                    open.push(section);
+                }
+            }
+            _ => {}
+        }
+    }
+    match seen {
+        true => Ok(items),
+        false => Err(source.error("it has no Xdmf element", "Save the mesh again")),
+    }
+}
+
+fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, ReadError> {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let mut attributes = Vec::new();
+    for attribute in tag.attributes().with_checks(false) {
+        let attribute = attribute
+            .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
+        attributes.push((text(attribute.key.as_ref()), text(&attribute.value)));
+    }
+    Ok(Section { name: text(tag.name().as_ref()), attributes })
+}
+
+/// The item of this tag, in this section.
+fn item(
+    source: &Source,
+    at: usize,
+    after: usize,
+    tag: &Section,
+    of: &Section,
+) -> Result<Item, ReadError> {
+    match tag.value(&["Format"]).unwrap_or("XML").to_ascii_uppercase().as_str() {
+        "XML" => {}
+        other => {
+            let problem = match other {
+                "HDF" | "HDF5" => {
+                    "its numbers are in an HDF5 file beside it, which is not read".into()
+                }
+                "BINARY" => "its numbers are in a binary file beside it, which is not read".into(),
+                _ => format!("numbers of the format {}", quoted(other.as_bytes())),
+            };
+            let remedy = "Save with the numbers in the XML, as meshio does by data_format=\"XML\"";
+            return Err(error_at(source, at, &problem, remedy));
+        }
+    }
+    let Some(length) = memchr::memchr(b'<', &source.bytes[after..]) else {
+        return Err(error_at(source, at, "an item without an end", CUT_OFF));
+    };
+    let number = |text: &str| {
+        text.trim().parse::<u64>().map_err(|_| {
+            let problem = format!("`{}` is no whole number", quoted(text.as_bytes()));
+            error_at(source, at, &problem, CORRECT)
+        })
+    };
+    let optional = |section: &Section, names: &[&str]| section.value(names).map(number).transpose();
+    let small = |section: &Section, names: &[&str]| {
+        section.value(names).unwrap_or_default().trim().to_ascii_lowercase()
+    };
+    let is_real = small(tag, &["NumberType", "DataType"]);
+    let precision = match optional(tag, &["Precision"])? {
+        Some(8) => Precision::Double,
+        _ => Precision::Single,
+    };
+    let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
+    let dimensions = dimensions.split_whitespace().map(number).collect::<Result<_, _>>()?;
+    Ok(Item {
+        section: of.name.clone(),
+        kind: small(of, &["TopologyType", "GeometryType", "Type"]),
+        name: of.value(&["Name"]).unwrap_or_default().to_owned(),
+        center: small(of, &["Center"]),
+        elements: optional(of, &["NumberOfElements"])?,
+        corners: optional(of, &["NodesPerElement"])?,
+        dimensions,
+        precision: (is_real.is_empty() || is_real == "float").then_some(precision),
+        content: after..after + length,
+        at,
+    })
+}
+
+#[cold]
+fn error_at(source: &Source, at: usize, problem: &str, remedy: &str) -> ReadError {
+    let place = Location::Line(source.line_of(at.min(source.bytes.len())));
+    source.error_at(place, problem, remedy)
+}
