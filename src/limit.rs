@@ -6,7 +6,8 @@ use glam::DVec2;
 use crate::attempt::{Attempt, Ended};
 use crate::error::{MeshError, SmoothError};
 use crate::layout::{Problem, prepare};
-use crate::mesh::Mesh;
+use crate::measure::mean_edges;
+use crate::mesh::{Mesh, Precision};
 use crate::rounds::{Rounds, is_sound, objectives};
 use crate::run::{
     Keeper, Keeping, Observer, Options, Plan, Step, Stop, StopRule, line_search, set_guards,
@@ -39,13 +40,23 @@ pub(crate) struct Limit<'s> {
 }
 
 impl<'s> Limit<'s> {
-    /// Bounds in the unit of the mesh, one for each of its vertices.
+    /// Bounds such that no vertex moves by more than so many lengths of an edge there, as its place is stored with so many digits.
     pub(crate) fn new(
         mesh: &'s Mesh,
         topology: &Topology<'_>,
         problem: &'s Problem,
-        bounds: &[f64],
+        (most, stored): (f64, Precision),
     ) -> Self {
+        let digits = match stored {
+            Precision::Single => f64::from(f32::EPSILON),
+            Precision::Double => f64::EPSILON,
+        };
+        let edges = mean_edges(topology, &mesh.points);
+        let bound = |v: u32| {
+            let [x, y] = mesh.points[v as usize];
+            let rounding = 2.0 * digits * x.abs().max(y.abs());
+            (most * edges[v as usize] * (1.0 - 1e-9) - rounding).max(0.0)
+        };
         let (_, scale) = problem.normalization();
         let mut number = vec![u32::MAX; mesh.points.len()];
         for (new, &v) in (0..).zip(problem.vertices()) {
@@ -60,7 +71,7 @@ impl<'s> Limit<'s> {
         Self {
             mesh,
             problem,
-            bounds: free.iter().map(|&v| bounds[v as usize] * scale).collect(),
+            bounds: free.iter().map(|&v| bound(v) * scale).collect(),
             held: vec![false; free.len()],
             fans: free.iter().map(fan).collect(),
             number,

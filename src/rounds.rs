@@ -7,12 +7,16 @@ use crate::attempt::{Attempt, Ended};
 use crate::cpu::mean_excess;
 use crate::error::SmoothError;
 use crate::layout::Problem;
+use crate::mesh::Mesh;
+use crate::outcome::Slid;
 use crate::parallel::map_parts;
 use crate::run::{
     Derivatives, Desired, Goal, Guard, Keeper, Keeping, Objectives, Observer, Options, Plan, Stop,
     StopRule, set_guards,
 };
 use crate::slide::{Acceleration, Params, Sliding};
+use crate::topology::Topology;
+use crate::topology::predicates::orientation;
 
 /// Number of sweeps in a round. With two a run takes as many sweeps and more rounds, with four more sweeps.
 const SWEEPS: u32 = 3;
@@ -113,6 +117,29 @@ impl<'s> Rounds<'s> {
         }
     }
 
+    /// What slid in rounds that ended at `points`, or at the mesh as it was if nothing was gained.
+    pub(crate) fn slid(
+        &self,
+        mesh: &Mesh,
+        topology: &Topology<'_>,
+        gains: bool,
+        points: &[[f64; 2]],
+    ) -> Slid {
+        let (before, free) = (&mesh.points, topology.free());
+        let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
+        let area = |points: &[[f64; 2]]| {
+            let of = |t: &[u32; 3]| orientation(points, t);
+            topology.triangles().iter().map(of).sum::<f64>()
+        };
+        Slid {
+            vertices: self.sliding.count(),
+            moved,
+            rounds: self.count,
+            off: if gains { self.sliding.off(&self.params) } else { 0.0 },
+            area: area(points) / area(before) - 1.0,
+        }
+    }
+
     /// Goes along the curves. Then goes on as the last rounds did, if that lowers the objective. Returns the objectives.
     fn slide(
         &mut self,
@@ -129,10 +156,10 @@ impl<'s> Rounds<'s> {
         }
         let here = objectives(problem, plan, positions);
         let change = self.sliding.change(&began, &self.params);
-        let Some((params, mut there)) = memory.next(change, &self.params, positions) else {
+        let Some((mut params, mut there)) = memory.next(change, &self.params, positions) else {
             return here;
         };
-        if self.sliding.place(problem, &params, &mut there)
+        if self.sliding.place(problem, &mut params, &self.params, &mut there)
             && is_sound(problem, positions, &there, step.shape_guard)
         {
             let lower = objectives(problem, plan, &there);

@@ -13,11 +13,10 @@ use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::limit::Limit;
-use crate::measure::mean_edges;
-use crate::mesh::{Mesh, Precision};
+use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
-use crate::outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
+use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::quality::Quality;
 use crate::resume;
 use crate::rounds::Rounds;
@@ -27,7 +26,6 @@ use crate::run::{
 };
 use crate::slide::{Slide, Sliding};
 use crate::targets::Targets;
-use crate::topology::predicates::orientation;
 use crate::topology::{Topology, certify};
 
 /// The processor that does the sweeps.
@@ -267,8 +265,8 @@ impl<'a> Smoother<'a> {
             }
             (None, Some(most)) => {
                 keeping.about = None;
-                let bounds = self.bounds(most, options.stored);
-                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, &bounds);
+                let bound = (most, options.stored);
+                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, bound);
                 limit.run(run, options, target, &mut keeping, observe).await?
             }
             (None, None) => {
@@ -306,7 +304,7 @@ impl<'a> Smoother<'a> {
             points.clone_from(&self.mesh.points);
             returned = 0;
         }
-        let slid = rounds.map(|rounds| self.slid(&rounds, gains, &points));
+        let slid = rounds.map(|rounds| rounds.slid(self.mesh, &self.topology, gains, &points));
         let best = if gains { written } else { initial };
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
@@ -331,37 +329,6 @@ impl<'a> Smoother<'a> {
             device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
-    }
-
-    /// How far each vertex may move such that, stored with so many digits, it has not moved by more than this in edges there.
-    fn bounds(&self, most: f64, stored: Precision) -> Vec<f64> {
-        let digits = match stored {
-            Precision::Single => f64::from(f32::EPSILON),
-            Precision::Double => f64::EPSILON,
-        };
-        let edges = mean_edges(&self.topology, &self.mesh.points);
-        let bound = |(edge, [x, y]): (f64, &[f64; 2])| {
-            (most * edge * (1.0 - 1e-9) - 2.0 * digits * x.abs().max(y.abs())).max(0.0)
-        };
-        edges.into_iter().zip(&self.mesh.points).map(bound).collect()
-    }
-
-    /// What slid in rounds that ended at `points`.
-    fn slid(&self, rounds: &Rounds<'_>, gains: bool, points: &[[f64; 2]]) -> Slid {
-        let (before, free) = (&self.mesh.points, self.topology.free());
-        let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
-        let area = |points: &[[f64; 2]]| {
-            let of = |t: &[u32; 3]| orientation(points, t);
-            self.topology.triangles().iter().map(of).sum::<f64>()
-        };
-        let off = if gains { rounds.sliding.off(&rounds.params) } else { 0.0 };
-        Slid {
-            vertices: rounds.sliding.count(),
-            moved,
-            rounds: rounds.count,
-            off,
-            area: area(points) / area(before) - 1.0,
-        }
     }
 
     /// The outcome of a run that was cancelled before its first sweep.

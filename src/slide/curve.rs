@@ -186,3 +186,87 @@ fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     let share = ((point - from).dot(line) / line.length_squared()).clamp(0.0, 1.0);
     point.distance(from + line * if share.is_nan() { 0.0 } else { share })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve from corner to corner: a straight run along y = 1, and then an arc about (3, 0) of radius 1.
+    fn slot() -> (Curve, Vec<[f64; 2]>) {
+        let mut points: Vec<[f64; 2]> = (0..4).map(|k| [f64::from(k), 1.0]).collect();
+        points.extend((1..=6).map(|k| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_2 / 6.0).sin_cos();
+            [3.0 + sin, cos]
+        }));
+        let straight = (0..9).map(|piece| piece < 3).collect();
+        let chain = Chain { vertices: (0..10).collect(), is_closed: false, straight };
+        (Curve::new(&points, &chain, &Slide::default()), points)
+    }
+
+    #[test]
+    fn a_curve_goes_through_its_vertices_straight_where_they_are_and_near_the_arc_elsewhere() {
+        let (curve, points) = slot();
+        for (k, (&param, &point)) in curve.params().iter().zip(&points).enumerate() {
+            assert!(curve.at(param).point.distance(point.into()) < 1e-15, "{k}");
+            assert!((curve.find(point.into(), k, 1e-12).unwrap() - param).abs() < 1e-12, "{k}");
+        }
+        for k in 0..100 {
+            let share = f64::from(k) / 100.0;
+            assert_eq!(curve.at(3.0 * share).point.y, 1.0);
+            let param = 3.0 + (curve.period() - 3.0) * share;
+            let place = curve.at(param);
+            let radius = place.point.distance(DVec2::new(3.0, 0.0));
+            assert!((radius - 1.0).abs() < 2e-4, "{share}: {radius}");
+            assert_eq!(curve.find(place.point + DVec2::new(0.1, 0.1), 5, 1e-9), None);
+        }
+        // The tangent goes on from the straight run into the arc.
+        let [before, after] = [3.0 - 1e-9, 3.0 + 1e-9].map(|at| curve.at(at).first.normalize());
+        assert!(before.distance(after) < 1e-7, "{before} {after}");
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_point() {
+        let (curve, _) = slot();
+        let h = 1e-5;
+        for param in [0.5, 3.1, 3.2, 4.0, 4.4] {
+            let [low, here, high] = [param - h, param, param + h].map(|param| curve.at(param));
+            let first = (high.point - low.point) / (2.0 * h);
+            let second = (high.first - low.first) / (2.0 * h);
+            assert!(first.distance(here.first) < 1e-8, "{param}: {first} {}", here.first);
+            assert!(second.distance(here.second) < 1e-8, "{param}: {second} {}", here.second);
+        }
+    }
+
+    #[test]
+    fn vertices_that_would_cut_an_arc_off_are_not_near() {
+        let (curve, _) = slot();
+        let at = |k: usize| curve.params()[k];
+        assert!(curve.is_near([at(0), 1.5, at(3)]) && curve.is_near([at(5), at(6), at(7)]));
+        assert!(curve.is_near([at(4), 0.5 * (at(5) + at(6)), at(7)]));
+        assert!(!curve.is_near([at(4), at(6), at(8)]) && !curve.is_near([at(3), at(4), at(9)]));
+        assert!(curve.off(at(0), at(3)) == 0.0 && curve.off(at(3), at(9)) > 0.2);
+    }
+
+    #[test]
+    fn a_closed_curve_goes_on_after_a_turn() {
+        let at = |k: usize| {
+            let (sin, cos) = (k as f64 * std::f64::consts::TAU / 12.0).sin_cos();
+            [cos, sin]
+        };
+        let points: Vec<[f64; 2]> = (0..12).map(at).collect();
+        let chain =
+            Chain { vertices: (0..12).collect(), is_closed: true, straight: vec![false; 12] };
+        let curve = Curve::new(&points, &chain, &Slide::default());
+        let edge = curve.period() / 12.0;
+        for param in [-0.3, 0.2, 5.0] {
+            let turned = curve.at(param + curve.period()).point;
+            assert!(curve.at(param).point.distance(turned) < 1e-12);
+            assert!((turned.length() - 1.0).abs() < 1e-3);
+        }
+        // Over the first vertex, and too far over it.
+        assert!(curve.is_near([-0.5 * edge, 0.1 * edge, 0.6 * edge]));
+        assert!(!curve.is_near([-3.5 * edge, -3.0 * edge, 3.0 * edge]));
+        let before = curve.at(-0.25 * edge).point;
+        assert!((curve.find(before, 0, 1e-12).unwrap() + 0.25 * edge).abs() < 1e-9);
+    }
+}

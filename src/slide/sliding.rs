@@ -45,6 +45,9 @@ impl Slide {
     }
 }
 
+/// How often vertices may give way to others that did.
+const GIVE_WAY: u32 = 5;
+
 /// Where the vertices of each curve are on it.
 pub(crate) type Params = Vec<Vec<f64>>;
 
@@ -122,22 +125,36 @@ impl Sliding {
         self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
     }
 
-    /// Moves the vertices that slide to where `params` are. Returns whether each is between its neighbors, and near the lines that were
-    /// given.
+    /// Moves the vertices that slide to where `params` are. Those that would not be between their neighbors, or too far from the lines
+    /// that were given, go to where `safe` has them instead. Returns whether all are sound then.
     pub(crate) fn place(
         &self,
         problem: &Problem,
-        params: &Params,
+        params: &mut Params,
+        safe: &Params,
         positions: &mut [DVec2],
     ) -> bool {
         let (center, scale) = problem.normalization();
-        self.tracks.iter().zip(params).all(|(track, params)| {
-            track.fans.iter().enumerate().all(|(k, fan)| {
-                let Some(fan) = fan else { return true };
+        self.tracks.iter().zip(params).zip(safe).all(|((track, params), safe)| {
+            let sliding = || (0..track.fans.len()).filter(|&k| track.fans[k].is_some());
+            let is_sound = |params: &[f64], k: usize| {
                 let Window { low, at, high } = track.window(params, k);
-                positions[fan.own() as usize] = (track.curve.at(at).point - center) * scale;
                 low < at && at < high && track.curve.is_near([low, at, high])
-            })
+            };
+            for _ in 0..GIVE_WAY {
+                let bad: Vec<usize> = sliding().filter(|&k| !is_sound(params, k)).collect();
+                if bad.is_empty() {
+                    break;
+                }
+                bad.into_iter().for_each(|k| params[k] = safe[k]);
+            }
+            for (k, fan) in track.fans.iter().enumerate() {
+                if let Some(fan) = fan {
+                    let point = track.curve.at(params[k]).point;
+                    positions[fan.own() as usize] = (point - center) * scale;
+                }
+            }
+            sliding().all(|k| is_sound(params, k))
         })
     }
 

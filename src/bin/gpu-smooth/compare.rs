@@ -34,15 +34,15 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
-    if !args.sliding.slide && !held.is_empty() {
-        problems.push("--slide allows those that slid along their lines".to_owned());
-    }
     let mut list = String::new();
     for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
         list += &format!("\n  {place}: vertex {}", place.label);
     }
     for place in after.triangle_places(bad.iter().map(|bad| bad.triangle).take(LISTED)).values() {
         list += &format!("\n  {place}: triangle {}", place.label);
+    }
+    if !args.sliding.slide && !held.is_empty() {
+        list += "\n  --slide allows those that slid along their lines";
     }
     if !problems.is_empty() {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
