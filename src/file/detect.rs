@@ -3,7 +3,8 @@
 use crate::error::ReadError;
 use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, Reader, STL, TRIANGLE};
 use crate::file::source::{Source, file_name};
-use crate::file::text::{Cursor, integer};
+use crate::file::text::Cursor;
+use crate::file::token::integer;
 use crate::file::triangle::{Names, appended};
 use std::path::{Path, PathBuf};
 

@@ -11,6 +11,8 @@ macro_rules! put {
 mod collector;
 mod content;
 mod conversion;
+#[cfg(test)]
+mod documented;
 mod gmsh;
 mod grids;
 mod holds;
@@ -20,7 +22,7 @@ mod ply;
 mod su2;
 mod surface;
 #[cfg(test)]
-pub(crate) mod tables;
+mod tables;
 mod tags;
 mod targets;
 mod triangle;

@@ -17,7 +17,8 @@ use crate::file::heights::Heights;
 use crate::file::numbers::{Form, Numbers};
 use crate::file::sink::{Layout, Sink, Walk, each_row};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use data::Regions;
 

@@ -2,7 +2,8 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::file::text::{CORRECT, CUT_OFF};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -54,17 +55,18 @@ impl Section {
 
 /// The items of a file, in its order, but for those that refer to others.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
-    let mut reader = Reader::from_reader(source.bytes.as_slice());
+    let begin = source.begin();
+    let mut reader = Reader::from_reader(&source.bytes[begin..]);
     reader.config_mut().check_end_names = false;
     let mut open: Vec<Section> = Vec::new();
     let mut items = Vec::new();
     let mut seen = false;
     loop {
-        let at = reader.buffer_position() as usize;
+        let at = begin + reader.buffer_position() as usize;
         let event = reader
             .read_event()
             .map_err(|error| error_at(source, at, &format!("it is no XML: {error}"), CORRECT))?;
-        let after = reader.buffer_position() as usize;
+        let after = begin + reader.buffer_position() as usize;
         match event {
             Event::Eof => break,
             Event::End(_) => _ = open.pop(),
