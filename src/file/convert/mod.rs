@@ -28,6 +28,7 @@ mod targets;
 mod triangle;
 mod triangle_source;
 mod vtk;
+mod xdmf;
 
 pub(crate) use collector::content;
 pub(crate) use content::Content;

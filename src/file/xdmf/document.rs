@@ -6,6 +6,7 @@ use crate::file::text::{CORRECT, CUT_OFF};
 use crate::file::token::quoted;
 use crate::mesh::Precision;
 use quick_xml::Reader;
+use quick_xml::escape::unescape;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;
 
@@ -101,7 +102,9 @@ fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, 
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute
             .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
-        attributes.push((text(attribute.key.as_ref()), text(&attribute.value)));
+        let value = text(&attribute.value);
+        let value = unescape(&value).map(|value| value.into_owned()).unwrap_or(value);
+        attributes.push((text(attribute.key.as_ref()), value));
     }
     Ok(Section { name: text(tag.name().as_ref()), attributes })
 }
