@@ -8,8 +8,6 @@ mod compare;
 mod convert;
 mod detect;
 mod disk;
-#[cfg(test)]
-mod documented;
 mod exodus;
 mod families;
 #[cfg(test)]
@@ -51,6 +49,7 @@ mod stl;
 mod su2;
 mod tags;
 mod text;
+mod token;
 mod triangle;
 mod triangle_data;
 mod triangle_groups;

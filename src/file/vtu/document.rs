@@ -4,7 +4,8 @@ use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::numbers::Offset;
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::file::text::{CORRECT, CUT_OFF};
+use crate::file::token::quoted;
 use crate::file::vtu::blocks::Compressor;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -73,7 +74,8 @@ pub(super) struct Appended {
 
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
-        let mut reader = Reader::from_reader(source.bytes.as_slice());
+        let begin = source.begin();
+        let mut reader = Reader::from_reader(&source.bytes[begin..]);
         reader.config_mut().check_end_names = false;
         let mut document = Document {
             order: Order::Little,
@@ -87,12 +89,12 @@ impl Document {
         let mut open: Vec<String> = Vec::new();
         let mut seen = false;
         loop {
-            let at = reader.buffer_position() as usize;
+            let at = begin + reader.buffer_position() as usize;
             let event = reader.read_event().map_err(|error| {
                 let place = Location::Line(source.line_of(at.min(source.bytes.len())));
                 source.error_at(place, format!("it is no XML: {error}"), CORRECT)
             })?;
-            let after = reader.buffer_position() as usize;
+            let after = begin + reader.buffer_position() as usize;
             match event {
                 Event::Eof => break,
                 Event::End(_) => {
