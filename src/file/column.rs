@@ -1,7 +1,7 @@
 //! Numbers of a file that may be replaced, and by what.
 
 use crate::file::numbers::{Form, Numbers, Places};
-use crate::file::text::skip_to_token;
+use crate::file::token::skip_to_token;
 use crate::mesh::Precision;
 use std::io::Write;
 use std::ops::Range;

@@ -5,7 +5,7 @@ use crate::file::field::PointField;
 use crate::file::mesh_file::{MeshFile, Place};
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::sink::{Home, Stored};
-use crate::file::text::{quoted, skip_to_token, token_end};
+use crate::file::token::{quoted, skip_to_token, token_end};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.

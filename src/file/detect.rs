@@ -4,7 +4,8 @@ use crate::error::ReadError;
 use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
 use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
-use crate::file::text::{Cursor, integer};
+use crate::file::text::Cursor;
+use crate::file::token::integer;
 use crate::file::triangle::{Names, appended};
 use std::path::{Path, PathBuf};
 

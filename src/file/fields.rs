@@ -6,7 +6,7 @@ use crate::file::field::PointField;
 use crate::file::group::distance;
 use crate::file::mesh_file::MeshFile;
 use crate::file::point_data::{self, PointData, Wanted};
-use crate::file::text::quoted;
+use crate::file::token::quoted;
 use crate::file::triangle_data;
 
 impl MeshFile {
@@ -21,6 +21,8 @@ impl MeshFile {
     /// | VTK | `z`, and point data of the types float and double |
     /// | PLY | properties of vertices of the types float and double but x and y |
     /// | SELAFIN | variables, in all time steps |
+    /// | Exodus II | `z`, and variables of nodes, in all time steps |
+    /// | XDMF | `z`, and attributes of nodes of the type Float |
     /// | Triangle | `attribute` of vertices, `attribute1` and so on if there are several |
     ///
     /// A field for each array: of one name there may be several, such as the time steps of a result.

@@ -14,7 +14,8 @@ use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
 use crate::file::source::Source;
-use crate::file::text::{CUT_OFF, Cursor, quoted};
+use crate::file::text::{CUT_OFF, Cursor};
+use crate::file::token::quoted;
 
 pub(crate) struct Medit;
 

@@ -51,8 +51,9 @@ impl fmt::Display for Place {
 /// | SMS 2dm | material |
 /// | OBJ | material, group and object |
 /// | SU2 | zone |
-/// | VTK | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
+/// | VTK, XDMF | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
 /// | STL | solid |
+/// | Exodus II | block |
 /// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in

@@ -9,8 +9,6 @@ mod convert;
 mod curves;
 mod detect;
 mod disk;
-#[cfg(test)]
-mod documented;
 mod exodus;
 mod families;
 #[cfg(test)]
@@ -52,6 +50,7 @@ mod stl;
 mod su2;
 mod tags;
 mod text;
+mod token;
 mod triangle;
 mod triangle_data;
 mod triangle_groups;

@@ -12,7 +12,8 @@ use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, Cursor, integer, quoted};
+use crate::file::text::{CORRECT, Cursor};
+use crate::file::token::{integer, quoted};
 
 pub(crate) struct Obj;
 

@@ -8,7 +8,8 @@ use crate::file::heights::Heights;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
-use crate::file::text::{CUT_OFF, Cursor, quoted};
+use crate::file::text::{CUT_OFF, Cursor};
+use crate::file::token::quoted;
 
 pub(crate) struct Off;
 

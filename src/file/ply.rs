@@ -11,7 +11,8 @@ use crate::file::heights::Heights;
 use crate::file::numbers::{Form, Numbers, Places};
 use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 
 pub(crate) struct Ply;

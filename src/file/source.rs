@@ -63,6 +63,11 @@ impl Source {
         ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
     }
 
+    /// Where the content starts: after a byte order mark, if there is one.
+    pub(crate) fn begin(&self) -> usize {
+        if self.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 }
+    }
+
     /// One-based line of a byte.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()

@@ -12,7 +12,8 @@ use crate::file::sink::{
     Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
 };
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use rayon::slice::ParallelSliceMut;
 

@@ -12,7 +12,8 @@ use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, Cursor, integer, quoted};
+use crate::file::text::{CORRECT, Cursor};
+use crate::file::token::{integer, quoted};
 use std::ops::Range;
 
 pub(crate) struct Su2;

@@ -11,7 +11,8 @@ use crate::file::parallel_rows::take_rows;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, Cursor, float, integer};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::{float, integer};
 use crate::mesh::Mesh;
 use std::path::{Path, PathBuf};
 

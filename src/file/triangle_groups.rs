@@ -6,7 +6,8 @@ use crate::file::group_table::GroupTable;
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 use crate::file::source::Source;
-use crate::file::text::{Cursor, float};
+use crate::file::text::Cursor;
+use crate::file::token::float;
 use crate::file::triangle::{Numbers, Segments, header, vertex_header, vertex_number};
 
 /// The groups of a mesh whose files were read before.

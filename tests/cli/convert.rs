@@ -64,7 +64,7 @@ fn what_cannot_be_converted_is_refused() {
     folder.line("convert in.2dm - --to triangle --lossy --quiet").refused(&["name OUT"]);
     let run = folder.line("convert in.2dm out.msh --to word");
     assert_eq!(run.code, Some(2));
-    assert_holds(&run.err, &["it is one of gmsh41, gmsh22, vtu, vtk"]);
+    assert_holds(&run.err, &["possible values: gmsh41, gmsh22, vtu, xdmf, vtk"]);
     fs::write(folder.path("out.poly"), "0").unwrap();
     let no_lines = SMS.replace("NS 1 2 -3 \"shore\"\n", "").replace("MAT 2 \"mud\"\n", "");
     fs::write(folder.path("plain.2dm"), no_lines).unwrap();

@@ -16,6 +16,7 @@ fn ending(format: Format) -> &'static str {
         Format::Gmsh22 | Format::Gmsh41 | Format::FreeFem => "msh",
         Format::Vtk => "vtk",
         Format::Vtu => "vtu",
+        Format::Xdmf => "xdmf",
         Format::Su2 => "su2",
         Format::Medit => "mesh",
         Format::Obj => "obj",

@@ -5,6 +5,7 @@ mod convert;
 mod damage;
 mod data;
 mod errors;
+mod exodus;
 mod groups;
 mod long;
 mod made;

@@ -337,6 +337,19 @@ fn only_coordinates_change_in_every_encoding() {
     }
 }
 
+/// Numbers in a file that a byte order mark stands before were read three bytes too early.
+#[test]
+fn a_byte_order_mark_moves_all_places() {
+    for style in styles().into_iter().step_by(11) {
+        let bytes = [b"\xEF\xBB\xBF", &write(&base(), style)[..]].concat();
+        let folder = folder(&bytes);
+        let file = folder.read("in.vtu");
+        assert_eq!(file.mesh().triangles, base().triangles, "{style:?}");
+        file.write(&folder.path("out.vtu"), &file.mesh().points).unwrap();
+        assert!(fs::read(folder.path("out.vtu")).unwrap() == bytes, "{style:?}");
+    }
+}
+
 #[test]
 fn cut_off_and_damaged_files_never_panic() {
     let mesh = base();

@@ -12,10 +12,10 @@ use gpu_smooth::{Conversion, Format};
 use crate::bench::BenchArgs;
 use crate::moving::MoveArgs;
 use crate::quality::QualityArgs;
+use crate::read_args::ReadArgs;
 use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
 use crate::slide_args::SlideArgs;
-use crate::streams::ReadArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -26,7 +26,7 @@ use crate::streams::ReadArgs;
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
                   Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
-                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
+                  fort.14, SCHISM .gr3, SMS .2dm, FreeFem .msh, SELAFIN, Exodus II, XDMF, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh --picture better.png\n  \

@@ -20,6 +20,7 @@ mod picture;
 mod progress;
 mod proof;
 mod quality;
+mod read_args;
 mod report;
 mod riding;
 mod run_args;

@@ -11,9 +11,9 @@ use gpu_smooth::{
 use crate::moving::MoveArgs;
 use crate::numbers::number;
 use crate::picture::PictureArgs;
+use crate::read_args::ReadArgs;
 use crate::riding::RidingArgs;
 use crate::slide_args::SlideArgs;
-use crate::streams::ReadArgs;
 use crate::target_args::TargetArgs;
 
 #[derive(Args)]

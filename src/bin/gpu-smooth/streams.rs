@@ -3,18 +3,10 @@
 use std::io::Read;
 use std::path::Path;
 
-use clap::Args;
 use gpu_smooth::{MeshFile, PointField};
 
+use crate::read_args::ReadArgs;
 use crate::tell;
-
-/// How meshes are read, whatever the command.
-#[derive(Args, Clone, Copy)]
-pub(crate) struct ReadArgs {
-    /// Join corners of triangles at the same place, without which an STL has no vertices. Of no effect on other formats
-    #[arg(long)]
-    pub(crate) weld: bool,
-}
 
 /// Reads a mesh, from the standard input if its name is `-`.
 pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {

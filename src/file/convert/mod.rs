@@ -11,6 +11,8 @@ macro_rules! put {
 mod collector;
 mod content;
 mod conversion;
+#[cfg(test)]
+mod documented;
 mod gmsh;
 mod grids;
 mod holds;
@@ -20,11 +22,12 @@ mod ply;
 mod su2;
 mod surface;
 #[cfg(test)]
-pub(crate) mod tables;
+mod tables;
 mod tags;
 mod targets;
 mod triangle;
 mod triangle_source;
 mod vtk;
+mod xdmf;
 
 pub use conversion::Conversion;

@@ -2,7 +2,7 @@
 
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
-use super::{gmsh, grids, medit, ply, su2, surface, triangle, vtk};
+use super::{gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
 
 /// A format that meshes of others are written in: a row of [`TARGETS`].
@@ -49,7 +49,7 @@ const VTK: Holds = Holds {
 };
 
 /// Each format, of those that files end the same way for the usual one first.
-pub(crate) static TARGETS: [Target; 13] = [
+pub(crate) static TARGETS: [Target; 14] = [
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
@@ -63,6 +63,7 @@ pub(crate) static TARGETS: [Target; 13] = [
         write: Write::One(gmsh::write_22),
     },
     Target { format: Format::Vtu, name: "vtu", holds: VTK, write: Write::One(vtk::write_xml) },
+    Target { format: Format::Xdmf, name: "xdmf", holds: VTK, write: Write::One(xdmf::write_xdmf) },
     Target { format: Format::Vtk, name: "vtk", holds: VTK, write: Write::One(vtk::write_legacy) },
     Target {
         format: Format::Su2,

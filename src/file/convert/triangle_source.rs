@@ -7,7 +7,8 @@ use crate::file::heights::TextNumbers;
 use crate::file::label::Label;
 use crate::file::sink::{Column, Element, Kind, Sink};
 use crate::file::source::Source;
-use crate::file::text::{Cursor, float};
+use crate::file::text::Cursor;
+use crate::file::token::float;
 use crate::file::triangle::{
     Numbers, Segments, attribute_names, header, vertex_header, vertex_number,
 };

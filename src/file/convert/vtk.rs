@@ -33,13 +33,13 @@ fn array_name(what: &str) -> &str {
 }
 
 /// An array that is written: real numbers or whole ones.
-struct Array {
-    name: String,
-    components: usize,
-    numbers: Numbers,
+pub(super) struct Array {
+    pub(super) name: String,
+    pub(super) components: usize,
+    pub(super) numbers: Numbers,
 }
 
-enum Numbers {
+pub(super) enum Numbers {
     Real(Vec<f64>),
     Whole(Vec<i64>),
 }
@@ -68,7 +68,7 @@ impl Array {
 }
 
 /// The arrays of the vertices.
-fn of_points(job: &Job<'_>) -> Vec<Array> {
+pub(super) fn of_points(job: &Job<'_>) -> Vec<Array> {
     let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
     if !job.content.vertex_groups.is_empty() {
         let what = &job.content.vertex_groups[0].0.what;
@@ -78,7 +78,7 @@ fn of_points(job: &Job<'_>) -> Vec<Array> {
 }
 
 /// The arrays of the cells: one for each kind of groups, and data.
-fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
+pub(super) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
     let mut whats: Vec<&str> = Vec::new();
     for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
         if !whats.contains(&what) {

@@ -5,7 +5,8 @@ use super::netcdf::{Number, Variable};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::sink::{Element, Kind, Sink, volume};
-use crate::file::text::{CORRECT, Cursor, quoted};
+use crate::file::text::{CORRECT, Cursor};
+use crate::file::token::quoted;
 
 /// Elements of one type.
 pub(super) struct Block {

@@ -95,7 +95,8 @@ impl Header {
             Some(5) => (reader.count, reader.offset) = (8, 8),
             _ => {
                 let problem = "netCDF of an unknown version";
-                return Err(reader.cursor.error(problem, "Versions 1, 2 and 5 are read"));
+                let start = Cursor::at_byte_of(source, 0);
+                return Err(start.error(problem, "Versions 1, 2 and 5 are read"));
             }
         }
         reader.take(4)?;

@@ -24,7 +24,8 @@ use crate::file::numbers::{Form, Numbers};
 use crate::file::parallel_rows::take_rows;
 use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
-use crate::file::text::{CUT_OFF, Cursor, quoted};
+use crate::file::text::{CUT_OFF, Cursor};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use model::Model;
 

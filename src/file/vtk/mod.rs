@@ -15,9 +15,11 @@ use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::heights::Heights;
 use crate::file::numbers::{Form, Numbers};
+use crate::file::parallel_rows::take_rows;
 use crate::file::sink::{Layout, Sink, Walk, each_row};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, Cursor, quoted};
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use data::Regions;
 
@@ -272,7 +274,10 @@ fn integers(
         }
         None => {
             let mut numbers = Vec::with_capacity(cursor.capacity(count, "0 ".len()));
-            for done in 0..count {
+            if cursor.is_at_end() && cursor.is_long() {
+                whole_rows(cursor, count, &mut numbers);
+            }
+            for done in numbers.len() as u64..count {
                 if !cursor.next_word() {
                     let problem = format!("the file ends after {done} of {count} numbers");
                     return Err(cursor.error(problem, CUT_OFF));
@@ -281,6 +286,34 @@ fn integers(
             }
             Ok(numbers)
         }
+    }
+}
+
+/// Reads the numbers of the rows that follow on all threads, as long as they are plain and no more than are wanted.
+fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Vec<u64>) {
+    /// Rows of more numbers are left to be read one by one.
+    const MOST: usize = 10;
+    let read = |cursor: &mut Cursor<'_>| -> Result<([u64; MOST], usize), ReadError> {
+        let mut row = ([0; MOST], 0);
+        while !cursor.is_at_end() {
+            if row.1 == MOST {
+                return Err(cursor.error("a long row", CORRECT));
+            }
+            row.0[row.1] = cursor.integer("a number")?;
+            row.1 += 1;
+        }
+        Ok(row)
+    };
+    let done = take_rows(cursor, u64::MAX, read, |(row, length)| {
+        let fits = numbers.len() as u64 + length as u64 <= count;
+        if fits {
+            numbers.extend_from_slice(&row[..length]);
+        }
+        fits
+    });
+    if done > 0 {
+        // It stands on the last row, before its words, which were read.
+        cursor.rest();
     }
 }
 

@@ -4,7 +4,8 @@ use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::numbers::Offset;
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, on_one_line, quoted};
+use crate::file::text::{CORRECT, CUT_OFF};
+use crate::file::token::{on_one_line, quoted};
 use crate::file::vtu::blocks::Compressor;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -76,7 +77,8 @@ const DEEPEST: usize = 100;
 
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
-        let mut reader = Reader::from_reader(source.bytes.as_slice());
+        let begin = source.begin();
+        let mut reader = Reader::from_reader(&source.bytes[begin..]);
         reader.config_mut().check_end_names = false;
         let mut document = Document {
             order: Order::Little,
@@ -90,14 +92,14 @@ impl Document {
         let mut open: Vec<String> = Vec::new();
         let mut seen = false;
         loop {
-            let at = reader.buffer_position() as usize;
+            let at = begin + reader.buffer_position() as usize;
             let event = reader.read_event().map_err(|error| {
                 let place = Location::Line(source.line_of(at.min(source.bytes.len())));
                 // It may quote a tag, which may be of any length.
                 let error = on_one_line(error.to_string().as_bytes(), 120);
                 source.error_at(place, format!("it is no XML: {error}"), CORRECT)
             })?;
-            let after = reader.buffer_position() as usize;
+            let after = begin + reader.buffer_position() as usize;
             match event {
                 Event::Eof => break,
                 Event::End(_) => {

@@ -2,9 +2,11 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
-use crate::file::text::{CORRECT, CUT_OFF, quoted};
+use crate::file::text::{CORRECT, CUT_OFF};
+use crate::file::token::quoted;
 use crate::mesh::Precision;
 use quick_xml::Reader;
+use quick_xml::escape::unescape;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;
 
@@ -54,17 +56,18 @@ impl Section {
 
 /// The items of a file, in its order, but for those that refer to others.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
-    let mut reader = Reader::from_reader(source.bytes.as_slice());
+    let begin = source.begin();
+    let mut reader = Reader::from_reader(&source.bytes[begin..]);
     reader.config_mut().check_end_names = false;
     let mut open: Vec<Section> = Vec::new();
     let mut items = Vec::new();
     let mut seen = false;
     loop {
-        let at = reader.buffer_position() as usize;
+        let at = begin + reader.buffer_position() as usize;
         let event = reader
             .read_event()
             .map_err(|error| error_at(source, at, &format!("it is no XML: {error}"), CORRECT))?;
-        let after = reader.buffer_position() as usize;
+        let after = begin + reader.buffer_position() as usize;
         match event {
             Event::Eof => break,
             Event::End(_) => _ = open.pop(),
@@ -99,7 +102,9 @@ fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, 
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute
             .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
-        attributes.push((text(attribute.key.as_ref()), text(&attribute.value)));
+        let value = text(&attribute.value);
+        let value = unescape(&value).map(|value| value.into_owned()).unwrap_or(value);
+        attributes.push((text(attribute.key.as_ref()), value));
     }
     Ok(Section { name: text(tag.name().as_ref()), attributes })
 }

@@ -6,8 +6,8 @@ use clap::Args;
 use gpu_smooth::Scheme;
 
 use crate::numbers::number;
+use crate::read_args::ReadArgs;
 use crate::run_args::EngineChoice;
-use crate::streams::ReadArgs;
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {

@@ -7,7 +7,7 @@ use clap::Args;
 use gpu_smooth::{Better, Measure};
 
 use crate::picture::PictureArgs;
-use crate::streams::ReadArgs;
+use crate::read_args::ReadArgs;
 
 #[derive(Args)]
 pub(crate) struct QualityArgs {

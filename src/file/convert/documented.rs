@@ -2,7 +2,7 @@
 //!
 //! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
 
-use crate::file::convert::tables;
+use super::tables;
 use crate::file::families::{FAMILIES, Family};
 use crate::file::format::Format;
 use crate::file::packed::Packing;
