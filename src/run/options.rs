@@ -32,8 +32,8 @@ pub enum Guard {
     #[default]
     ByMetric,
     /// By no metric worse than the worst triangle with a free vertex before the run, by the inverse mean ratio as targets show the
-    /// triangles. So the worst element of a run never gets worse. Only for whole runs: it has no effect on
-    /// [`Sweeps`](crate::Sweeps), which an application encodes itself.
+    /// triangles. So the worst element of a run never gets worse. Only for whole runs:
+    /// [`Sweeps`](crate::Sweeps), which an application encodes itself, refuse it.
     Worst,
 }
 
@@ -146,6 +146,19 @@ impl Options {
             });
         }
         Ok(())
+    }
+
+    /// Checks that an application can encode sweeps by these options.
+    pub(crate) fn check_encoded(&self) -> Result<(), SmoothError> {
+        let refuse = |option, value| {
+            let remedy = "sweeps that are encoded have none: only whole runs do";
+            Err(SmoothError::Option { option, value, remedy })
+        };
+        match (self.guard, self.max_move) {
+            (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
+            (_, Some(most)) => refuse("max move", most.to_string()),
+            _ => Ok(()),
+        }
     }
 
     /// Checks every field against its range.

@@ -2,7 +2,8 @@
 //! application's error handler; [`App`] looks at that when it is dropped.
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer, wgpu,
+    DeviceMesh, Gpu, GpuError, Guard, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer,
+    wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -235,6 +236,14 @@ fn options_out_of_range_are_refused() {
         ),
         (Options { inner: 0, ..ok() }, "inner is 0: a visit takes from 1 to 1000 Newton steps"),
         (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
+        (
+            Options { max_move: Some(0.5), ..ok() },
+            "max move is 0.5: sweeps that are encoded have none: only whole runs do",
+        ),
+        (
+            Options { guard: Guard::Worst, ..ok() },
+            "guard is worst: sweeps that are encoded have none: only whole runs do",
+        ),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();
         assert!(matches!(error, SmoothError::Option { .. }), "{error:?}");

@@ -68,6 +68,7 @@ impl Sweeps {
 
     fn by(mesh: &DeviceMesh, options: &Options, ending: Ending) -> Result<Self, SmoothError> {
         options.check_for(&mesh.problem)?;
+        options.check_encoded()?;
         let plan = options.plan();
         let endless = plan.clone().endless();
         let steps = plan.steps();
