@@ -118,7 +118,7 @@ const FAULTS: [(&str, &str); 17] = [
 /// few calls of each, or all of them if the environment variable ALL_FAULTS is set.
 #[test]
 fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
-    let line = "in out --engine gpu --max-sweeps 6";
+    let line = "in out -q --engine gpu --max-sweeps 6";
     let (mut smoothed, mut refused) = (0, 0);
     for (function, result) in FAULTS {
         let folder = small();

@@ -57,7 +57,9 @@ impl Gpu {
         };
         let none = |message| GpuError::NoDevice { adapter: summary.name.clone(), message };
         let requested = caught(|| adapter.request_device(&descriptor)).map_err(none)?;
-        let (device, queue) = requested.await.map_err(|error| none(error.to_string()))?;
+        // What wgpu says ends with a stop; the message goes on.
+        let said = |error: wgpu::RequestDeviceError| error.to_string().trim_end_matches('.').into();
+        let (device, queue) = requested.await.map_err(|error| none(said(error)))?;
         let lost = Arc::new(Mutex::new(None));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
