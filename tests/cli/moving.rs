@@ -87,7 +87,7 @@ fn groups_stay_that_are_named() {
     let movers = &inside - &mud;
     let free = inside.len() - 7;
     let note = format!(
-        "--fix mud (material surface mud): 54 vertices stay fixed; {} of them could move otherwise",
+        "--fix mud (material surface mud): 54 vertices stay fixed; {} of them would be free",
         free - movers.len()
     );
     assert_moves(&folder, "in.2dm", "--fix mud", &movers, &note);
@@ -161,7 +161,7 @@ fn listed_vertices_stay() {
     // Numbers of the file start at one. The second is on the boundary.
     fs::write(folder.path("list.txt"), "37 # in the middle\n\n1\t49\n").unwrap();
     let movers = &interior(&mesh) - &Set::from([36, 48]);
-    let note = "--fix-vertices list.txt: 3 vertices stay fixed; 2 of them could move otherwise";
+    let note = "--fix-vertices list.txt: 3 vertices stay fixed; 2 of them would be free";
     let options = "--free-interfaces --fix-vertices list.txt";
     assert_moves(&folder, "in.2dm", options, &movers, note);
     fs::write(folder.path("list.txt"), "37\n100\n").unwrap();
@@ -182,7 +182,7 @@ fn vertices_in_a_box_stay() {
     let of_box = (0..mesh.points.len()).filter(|&v| within(mesh.points[v])).count();
     for corners in ["-1,2,4.5,3.25", "4.5,2,-1,3.25"] {
         let note = format!(
-            "--fix-box {corners}: {of_box} vertices stay fixed; {} of them could move otherwise",
+            "--fix-box {corners}: {of_box} vertices stay fixed; {} of them would be free",
             held.len()
         );
         let options = format!("--free-interfaces --fix-box {corners}");
@@ -209,7 +209,7 @@ fn vertices_stay_that_an_array_marks() {
     let inside = interior(&mesh);
     let movers: Set = inside.iter().copied().filter(|&v| !is_held(v)).collect();
     let note = format!(
-        "--fix-array fixed: 20 vertices stay fixed; {} of them could move otherwise",
+        "--fix-array fixed: 20 vertices stay fixed; {} of them would be free",
         inside.len() - movers.len()
     );
     assert_moves(&folder, "in.vtk", "--fix-array fixed", &movers, &note);

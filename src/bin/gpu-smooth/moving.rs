@@ -266,10 +266,10 @@ fn counted(count: usize, what: &str) -> String {
 fn held(count: usize, free: usize) -> String {
     match (count, free) {
         (0, _) => "it names no vertex".into(),
-        (1, 0) => "1 vertex stays fixed; it could not move anyway".into(),
-        (1, _) => "1 vertex stays fixed; it could move otherwise".into(),
-        (_, 0) => format!("{count} vertices stay fixed; none of them could move anyway"),
-        _ => format!("{count} vertices stay fixed; {free} of them could move otherwise"),
+        (1, 0) => "1 vertex stays fixed; it was not free before".into(),
+        (1, _) => "1 vertex stays fixed; it would be free".into(),
+        (_, 0) => format!("{count} vertices stay fixed; none of them was free before"),
+        _ => format!("{count} vertices stay fixed; {free} of them would be free"),
     }
 }
 
