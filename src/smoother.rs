@@ -22,7 +22,7 @@ use crate::resume;
 use crate::rounds::Rounds;
 use crate::run::{
     Checkpoint, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives, Observer,
-    Options, Phase, Sharpness, Stop,
+    Options, Phase, ROUNDING, Sharpness, Stop,
 };
 use crate::slide::{Slide, Sliding};
 use crate::targets::Targets;
@@ -294,7 +294,7 @@ impl<'a> Smoother<'a> {
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
         let swept = f(&end.history[best_sweep]);
         let written = self.objective(base, &self.problem.normalized(&points, end.positions));
-        let gains = initial - written > NOISE * initial;
+        let gains = initial - written > NOISE * initial + ROUNDING;
         // Of a smaller gain, the errors of f on a device would be a share to speak of.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),

@@ -35,7 +35,7 @@ pub use plan::Plan;
 pub(crate) use saved::{CPU, EngineState, Saved};
 pub(crate) use shape_guard::set_guards;
 pub use step::{Derivatives, Sharpness, Step};
-pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE};
+pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE, ROUNDING};
 pub use stop::{Stop, StopRule};
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;

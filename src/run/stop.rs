@@ -66,6 +66,9 @@ pub(crate) const JITTER: f64 = 1e-6;
 /// Shares of f are taken of this where f is smaller, as by AREA, whose f may go to 0. Where it ends is then settled
 /// by rounding alone.
 pub(crate) const LEAST_SCALE: f64 = 1e-6;
+/// What rounding makes of an f that would be 0, as by AREA: the mean square of relative errors of some 1e-16. A lower f below
+/// this is no gain.
+pub(crate) const ROUNDING: f64 = 1e-28;
 
 impl StopRule {
     /// The longer of the two windows from which the remaining distance is estimated, in sweeps. Both windows are

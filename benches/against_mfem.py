@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Minimizes the same objective on the same mesh by gpu-smooth and by MFEM's TMOP, and compares the minima and the times.
+
+    pip install mfem numpy                      # tried with 4.10: its wheel has the library in C++, which does the work
+    python3 benches/against_mfem.py target/release/gpu-smooth [CELLS]
+
+The mesh is a square of CELLS x CELLS cells, halved along random diagonals, its vertices moved by up to 0.3 cells along each axis. The
+target is the equilateral triangle of the mean area (IDEAL_SHAPE_EQUAL_SIZE), the boundary is fixed. A linear
+triangle has one T, so a quadrature of one point is exact. MFEM takes Newton steps with MINRES, as its mesh-optimizer does, on one
+thread; so does gpu-smooth here, on the CPU.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+import mfem.ser as mfem
+from mfem._ser import tmop, tmop_tools
+
+
+def made(cells, seed=1):
+    rng = np.random.default_rng(seed)
+    side = cells + 1
+    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    inner = ((points > 0) & (points < cells)).all(axis=1)
+    points[inner] += rng.uniform(-0.3, 0.3, (inner.sum(), 2))
+    triangles = []
+    for j in range(cells):
+        for i in range(cells):
+            a, b = j * side + i, j * side + i + 1
+            d, c = a + side, b + side
+            if rng.integers(2):
+                triangles += [(a, b, c), (a, c, d)]
+            else:
+                triangles += [(a, b, d), (b, c, d)]
+    return points / cells, np.array(triangles)
+
+
+def write(folder, points, triangles, cells):
+    side = cells + 1
+    rows = [f"{x!r} {y!r}" for x, y in points.tolist()]
+    with open(f"{folder}/in.mesh", "w") as out:
+        print(f"MeshVersionFormatted 2\nDimension 2\nVertices\n{len(rows)}", file=out)
+        print(*(row + " 0" for row in rows), sep="\n", file=out)
+        print(f"Triangles\n{len(triangles)}", file=out)
+        print(*(f"{a + 1} {b + 1} {c + 1} 1" for a, b, c in triangles), sep="\n", file=out)
+        print("End", file=out)
+    line = np.arange(cells)
+    edges = [(line, line + 1), (line + cells * side, line + 1 + cells * side)]
+    edges += [(line * side, (line + 1) * side), (line * side + cells, (line + 1) * side + cells)]
+    with open(f"{folder}/mfem.mesh", "w") as out:
+        print("MFEM mesh v1.0\n\ndimension\n2\n\nelements", len(triangles), sep="\n", file=out)
+        print(*(f"1 2 {a} {b} {c}" for a, b, c in triangles), sep="\n", file=out)
+        print("\nboundary", 4 * cells, sep="\n", file=out)
+        for a, b in edges:
+            print(*(f"1 1 {p} {q}" for p, q in zip(a, b)), sep="\n", file=out)
+        print("\nvertices", len(rows), 2, sep="\n", file=out)
+        print(*rows, sep="\n", file=out)
+
+
+def by_mfem(folder, metric, count, tolerance):
+    mesh = mfem.Mesh(f"{folder}/mfem.mesh", 1, 1)
+    space = mfem.FiniteElementSpace(mesh, mfem.H1_FECollection(1, 2), 2)
+    mesh.SetNodalFESpace(space)
+    x = mfem.GridFunction(space)
+    mesh.SetNodalGridFunction(x)
+    area = 1.0 / count
+    target = tmop.TargetConstructor(tmop.TargetConstructor.IDEAL_SHAPE_EQUAL_SIZE)
+    target.SetNodes(x)
+    # MFEM takes the mean area for the determinant of W, which is twice the area of a triangle.
+    target.SetVolumeScale(2.0)
+    integrator = tmop.TMOP_Integrator(metric, target)
+    rules = mfem.IntegrationRules(0, mfem.Quadrature1D.GaussLobatto)
+    integrator.SetIntegrationRules(rules, 1)
+    form = mfem.NonlinearForm(space)
+    form.AddDomainIntegrator(integrator)
+    boundary = mfem.intArray([1] * mesh.bdr_attributes.Max())
+    form.SetEssentialBC(boundary)
+    energy = lambda: form.GetGridFunctionEnergy(x) / area / count
+    start = energy()
+    linear = mfem.MINRESSolver()
+    linear.SetMaxIter(100)
+    linear.SetRelTol(1e-12)
+    linear.SetAbsTol(0.0)
+    solver = tmop_tools.TMOPNewtonSolver(rules.Get(mfem.Geometry.TRIANGLE, 1))
+    solver.SetIntegrationRules(rules, 1)
+    solver.SetOperator(form)
+    solver.SetPreconditioner(linear)
+    solver.SetMaxIter(200)
+    solver.SetRelTol(tolerance)
+    solver.SetAbsTol(0.0)
+    solver.SetPrintLevel(-1)
+    x.SetTrueVector()
+    began = time.perf_counter()
+    solver.Mult(mfem.Vector(), x.GetTrueVector())
+    took = time.perf_counter() - began
+    x.SetFromTrueVector()
+    return start, energy(), solver.GetNumIterations(), took
+
+
+def by_gpu_smooth(program, folder, name):
+    command = [program, f"{folder}/in.mesh", f"{folder}/out.mesh", "--engine", "cpu", "--scheme", name]
+    command += ["--tolerance", "1e-9", "--report", f"{folder}/report.json", "-q"]
+    subprocess.run(command, check=True, env={**os.environ, "RAYON_NUM_THREADS": "1"})
+    return json.load(open(f"{folder}/report.json"))
+
+
+def main():
+    program, cells = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 100
+    points, triangles = made(cells)
+    metrics = [("shape-size", tmop.TMOP_Metric_007()), ("tmop-94", tmop.TMOP_Metric_094()), ("tmop-80", tmop.TMOP_Metric_080(0.5))]
+    with tempfile.TemporaryDirectory() as folder:
+        write(folder, points, triangles, cells)
+        print(f"{len(points)} vertices, {len(triangles)} triangles")
+        for name, metric in metrics:
+            report = by_gpu_smooth(program, folder, name)
+            took = report["seconds"]["prepare"] + report["seconds"]["smooth"]
+            start, end = report["before"]["f"][name], report["after"]["f"][name]
+            print(f"{name}: f {start:.10f} at the start")
+            print(f"  gpu-smooth: {end:.10f}, {report['sweeps']} sweeps, {took:.3f} s")
+            for tolerance in (1e-3, 1e-8):
+                other, lower, steps, seconds = by_mfem(folder, metric, len(triangles), tolerance)
+                assert abs(other / start - 1) < 1e-9, f"f is {other} there"
+                print(f"  MFEM to {tolerance:g} of the gradient: {lower:.10f}, {steps} steps, {seconds:.2f} s; ", end="")
+                print(f"f of gpu-smooth {end / lower - 1:+.1e} against it, time {seconds / took:.0f} : 1")
+
+
+main()
