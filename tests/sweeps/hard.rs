@@ -213,18 +213,3 @@ fn what_rounding_loses_is_told() {
         assert!(lost < 1e-5, "{lost} on the {}", name(backend));
     }
 }
-
-#[test]
-fn triangles_of_equal_areas_are_left_as_they_are() {
-    // Of size 0.1, so that areas are equal but for rounding: f is 1e-32 or so, and sweeps may make it larger or smaller.
-    let mut mesh = support::lattice(12, 9);
-    mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= 0.1);
-    let smoother = Smoother::new(&mesh).unwrap();
-    let start = smoother.quality(&mesh.points).unwrap().f(Metric::Area);
-    assert!(start > 0.0 && start < 1e-28, "{start}");
-    let options = Options { scheme: Metric::Area.into(), ..Options::default() };
-    for backend in backends() {
-        let outcome = run(&smoother, &options, backend);
-        assert!(outcome.points == mesh.points, "moved by the {}", name(backend));
-    }
-}
