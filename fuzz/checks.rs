@@ -127,7 +127,7 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
         ..Options::default()
     };
     if flags & 192 == 64 {
-        options.sharpness = Sharpness::CONTINUED;
+        options.sharpness = Some(Sharpness::CONTINUED);
     }
     if flags & 192 == 128 {
         options.derivatives = Derivatives::FiniteDifference;

@@ -380,7 +380,7 @@ impl<'a> Smoother<'a> {
             scheme: Scheme::from(metric),
             tolerance: 1e-8,
             max_sweeps: 5000,
-            sharpness: Sharpness::CONTINUED,
+            sharpness: Some(Sharpness::CONTINUED),
             guard: options.guard,
             ..Options::default()
         };

@@ -29,7 +29,9 @@ struct LevelOp {
     a: f32,
     b: f32,
     // The inverse mean ratio up to which a correction may flatten a triangle, NO_GUARD for any.
-    @size(8) shape_guard: f32,
+    shape_guard: f32,
+    // log2 of the exponent of EDGE's p-norm.
+    sharpness: u32,
 }
 
 @group(0) @binding(1) var<uniform> op: LevelOp;

@@ -10,6 +10,7 @@ fn find_gradient(
         return;
     }
     let vertex = op.first + index;
+    sharpness = op.sharpness;
     let p = patch_of(vertex);
     var sum = derivatives_around(p).gradient;
     if MAPPED {

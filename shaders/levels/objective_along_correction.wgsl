@@ -1,31 +1,6 @@
-// The objective here and with the vertices moved a times along the correction, the number of triangles that are broken
+// The objective, of which EDGE is replaced by its p-norm, here and with the vertices moved a times along the correction, the number of triangles that are broken
 // there, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
 // which sum_along_correction.wgsl adds up. Further parts of the triangles continue the sums of the parts before.
-
-// How far a vertex moves.
-fn displacement(v: u32) -> vec2<f32> {
-    if v >= op.free {
-        return vec2(0.0);
-    }
-    return move_of(v);
-}
-
-// An edge after its vertices have moved. A correction may carry both much farther than the edge is long.
-fn moved_edge(e: vec2<f32>, tail_displacement: vec2<f32>, head_displacement: vec2<f32>) -> vec2<f32> {
-    return e + opaque2(head_displacement - tail_displacement);
-}
-
-// Whether a triangle is inverted or flat, has an area that is not a number, or breaks the shape guard and is worse
-// than it was.
-fn is_broken(here: Corner, there: Corner) -> bool {
-    if !is_positive(doubled_area(there)) {
-        return true;
-    }
-    if op.shape_guard >= NO_GUARD {
-        return false;
-    }
-    return inverse_mean_ratio(there) > max(op.shape_guard, inverse_mean_ratio(here));
-}
 
 @compute @workgroup_size(WORKGROUP)
 fn objective_along_correction(
@@ -33,6 +8,7 @@ fn objective_along_correction(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let stride = groups.x * WORKGROUP;
+    sharpness = op.sharpness;
     var sums: array<vec2<f32>, 4>;
     if op.first != 0u {
         for (var i = 0u; i < 4u; i++) {
@@ -57,11 +33,11 @@ fn objective_along_correction(
             params.mean_area,
         );
         let there = shown(moved, map);
-        sums[0] = pair_accumulate(sums[0], metric_excess(here));
+        sums[0] = pair_accumulate(sums[0], metric_model(here));
         if is_broken(here, there) {
             sums[2].x += 1.0;
         } else {
-            sums[1] = pair_accumulate(sums[1], metric_excess(there));
+            sums[1] = pair_accumulate(sums[1], metric_model(there));
         }
     }
     for (var i = 0u; i < 4u; i++) {

@@ -11,6 +11,7 @@ fn find_stiffness(
         return;
     }
     let vertex = op.first + index;
+    sharpness = op.sharpness;
     let p = patch_of(vertex);
     let sum = pulled_back(derivatives_around(p), inverse_of(shape_of(vertex))).hessian;
     let mean = 0.5 * (sum.x + sum.z);

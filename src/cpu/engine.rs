@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, Vec2};
 
-use crate::cpu::objective::{Along, mean_excess, mean_excess_along};
+use crate::cpu::objective::{Along, broken, mean_excess, mean_excess_along, mean_model};
 use crate::cpu::secants::{Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
@@ -14,7 +14,7 @@ use crate::layout::Problem;
 use crate::metric::{Metric, TargetMap};
 use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
-use crate::run::{CPU, Engine, EngineState, History, Objectives, Plan, Proposal, Step};
+use crate::run::{CPU, Engine, EngineState, History, LEFT_OUT, Objectives, Plan, Proposal, Step};
 
 /// Number of vertices of one task.
 const CHUNK: usize = 1 << 12;
@@ -24,11 +24,12 @@ pub(crate) struct CpuEngine<'a> {
     problem: &'a Problem,
     base: Metric,
     tracked: Vec<Metric>,
-    /// The base metric's step. Corrections use its shape guard and its exponent.
+    /// The base metric's step. Corrections use its shape guard and its exponent, which is that of the last correction.
     step: Step,
     positions: Vec<DVec2>,
-    /// The positions of the best state; `None` if every sweep improves the mesh, so that the last state is the best.
-    best: Option<Vec<DVec2>>,
+    /// The positions of the best state, and the objective there; `None` if every sweep improves the mesh, so that the last state is
+    /// the best.
+    best: Option<(Vec<DVec2>, f64)>,
     /// Scratch memory for sweeps.
     moved: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
@@ -41,7 +42,7 @@ pub(crate) struct CpuEngine<'a> {
 impl<'a> CpuEngine<'a> {
     /// Starts at `positions`, which are normalized and in the problem's order.
     pub(crate) fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
-        let best = (!plan.is_monotone()).then(|| positions.clone());
+        let best = (!plan.is_monotone()).then(|| (positions.clone(), f64::INFINITY));
         Self {
             problem,
             base: plan.scheme.base(),
@@ -61,21 +62,42 @@ impl<'a> CpuEngine<'a> {
         sweep::sweep(self.problem, &mut self.positions, &mut self.moved, step);
     }
 
-    fn objectives_now(&self) -> Objectives {
+    /// Evaluates the objectives, and keeps the positions if they are the best so far.
+    fn objectives_now(&mut self) -> Objectives {
         let mut values = Objectives::untracked();
         for &metric in &self.tracked {
             let excess = mean_excess(metric, self.problem, &self.positions);
             values.set(metric, metric.ideal_squared() + excess);
         }
+        if let Some((best, least)) = &mut self.best
+            && let Some(f) = values.of(self.base)
+            && f < *least
+        {
+            best.copy_from_slice(&self.positions);
+            *least = f;
+        }
         values
     }
 
-    /// Records the objectives, and keeps the positions if they are the best so far.
-    fn record(&mut self, history: &mut History) {
-        if history.record(self.objectives_now())
-            && let Some(best) = &mut self.best
-        {
-            best.copy_from_slice(&self.positions);
+    /// Tries the correction at a length.
+    fn proposal(&self, length: f64) -> Proposal {
+        let Self { base, step, problem, positions, gradient, direction, .. } = self;
+        let slope = dot(gradient, direction) / problem.triangles().len() as f64;
+        let here = mean_model(*base, step.sharpness, problem, positions);
+        let there = if slope < 0.0 { self.try_length(length) } else { None };
+        Proposal { here, slope, there }
+    }
+
+    /// Makes the correction and the gradient zero at the vertices of triangles that the correction would invert or bring to
+    /// break the shape guard.
+    fn leave_out_broken(&mut self, length: f64) {
+        let Self { problem, positions, gradient, direction, .. } = self;
+        let along = Along { positions, direction, length };
+        let broken = broken(problem, &along, self.step.shape_guard);
+        for ((direction, gradient), broken) in direction.iter_mut().zip(gradient).zip(broken) {
+            if broken {
+                (*direction, *gradient) = (Vec2::ZERO, Vec2::ZERO);
+            }
         }
     }
 
@@ -83,7 +105,19 @@ impl<'a> CpuEngine<'a> {
     fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
-        mean_excess_along(self.base, self.problem, &along, self.step.shape_guard)
+        mean_excess_along(&self.step, self.problem, &along)
+    }
+}
+
+/// The correction from the levels, given the gradient at the free vertices.
+fn correction(hierarchy: Option<&Hierarchy>, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
+    match hierarchy {
+        Some(hierarchy) if problem.is_stretched() => {
+            let shown = vcycle::correction(hierarchy, problem, &as_shown(problem, gradient));
+            as_shown(problem, &shown)
+        }
+        Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
+        None => vec![Vec2::ZERO; gradient.len()],
     }
 }
 
@@ -110,14 +144,14 @@ impl Engine for CpuEngine<'_> {
 
     async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
         if history.is_empty() {
-            self.record(history);
+            history.record(self.objectives_now());
         }
         for step in steps {
             if history.stop().is_some() {
                 break;
             }
             self.sweep_now(step);
-            self.record(history);
+            history.record(self.objectives_now());
         }
         Ok(())
     }
@@ -127,7 +161,7 @@ impl Engine for CpuEngine<'_> {
     }
 
     async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        Ok(self.best.as_ref().unwrap_or(&self.positions).clone())
+        Ok(self.best.as_ref().map_or(&self.positions, |(best, _)| best).clone())
     }
 
     fn take_hierarchy(&mut self) -> Option<Hierarchy> {
@@ -139,9 +173,8 @@ impl Engine for CpuEngine<'_> {
         Ok(())
     }
 
-    async fn stiffness_roots(&mut self) -> Result<Vec<f32>, GpuError> {
-        let Self { base, problem, positions, step, .. } = self;
-        Ok(sweep::stiffness_roots(*base, problem, positions, step.sharpness))
+    async fn stiffness_roots(&mut self, sharpness: u32) -> Result<Vec<f32>, GpuError> {
+        Ok(sweep::stiffness_roots(self.base, self.problem, &self.positions, sharpness))
     }
 
     async fn propose(
@@ -151,28 +184,30 @@ impl Engine for CpuEngine<'_> {
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
         self.sweep_now(step);
+        self.step.sharpness = step.sharpness;
         let Self { base, problem, positions, gradient, secants, .. } = self;
-        sweep::gradient(*base, problem, positions, self.step.sharpness, gradient);
+        sweep::gradient(*base, problem, positions, step.sharpness, gradient);
         // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
-        let levels = |vector: &[Vec2]| match &self.hierarchy {
-            Some(hierarchy) if problem.is_stretched() => {
-                let correction = vcycle::correction(hierarchy, problem, &as_shown(problem, vector));
-                as_shown(problem, &correction)
-            }
-            Some(hierarchy) => vcycle::correction(hierarchy, problem, vector),
-            None => vec![Vec2::ZERO; vector.len()],
-        };
+        let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, vector);
         self.direction = if accelerated {
             secants.get_or_insert_default().direction(positions, gradient, levels)
         } else {
             *secants = None;
             levels(gradient)
         };
-        let slope = dot(gradient, &self.direction) / problem.triangles().len() as f64;
-        let here = mean_excess(self.base, self.problem, &self.positions);
-        let there = if slope < 0.0 { self.try_length(length) } else { None };
-        Ok(Proposal { here, slope, there })
+        Ok(self.proposal(length))
+    }
+
+    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+        if anew {
+            self.leave_out_broken(length);
+            self.direction = correction(self.hierarchy.as_ref(), self.problem, &self.gradient);
+        }
+        for _ in 0..LEFT_OUT {
+            self.leave_out_broken(length);
+        }
+        Ok(self.proposal(length))
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
@@ -194,7 +229,7 @@ impl Engine for CpuEngine<'_> {
         let mut state = EngineState {
             engine: CPU.to_owned(),
             positions: self.positions.clone(),
-            best: self.best.clone(),
+            best: self.best.as_ref().map(|(best, _)| best.clone()),
             ..EngineState::default()
         };
         if whole {
@@ -215,8 +250,9 @@ impl Engine for CpuEngine<'_> {
             return Ok(false);
         }
         self.positions.clone_from(&state.positions);
-        if let Some(kept) = &mut self.best {
+        if let Some((kept, least)) = &mut self.best {
             kept.clone_from(best);
+            *least = self.base.ideal_squared() + mean_excess(self.base, self.problem, kept);
         }
         self.hierarchy = Hierarchy::of_recipe(self.problem, &state.roots);
         self.secants = Secants::saved_in(state, self.problem.free_count());

@@ -7,7 +7,8 @@ use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
 use crate::cpu::patch::{of_corners, points};
 use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, TargetMap};
-use crate::parallel::map_parts;
+use crate::parallel::{collect, map_parts};
+use crate::run::Step;
 
 /// Number of triangles of one task.
 const CHUNK: usize = 1024;
@@ -15,9 +16,24 @@ const CHUNK: usize = 1024;
 /// The mean of q² - ideal² over all triangles, summed in an order that does not depend on the
 /// number of threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
+    mean(metric, None, problem, positions)
+}
+
+/// The mean over all triangles of what a step of this sharpness minimizes: q² - ideal², or its smooth model.
+pub(crate) fn mean_model(
+    metric: Metric,
+    sharpness: u32,
+    problem: &Problem,
+    positions: &[DVec2],
+) -> f64 {
+    mean(metric, Some(sharpness).filter(|_| !metric.is_smooth()), problem, positions)
+}
+
+/// The mean of q² - ideal², or of the smooth model of this sharpness.
+fn mean(metric: Metric, sharpness: Option<u32>, problem: &Problem, positions: &[DVec2]) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem, metric, simd, formulas, MAPPED => {
-            excess::<_, MAPPED>(simd, formulas, problem, positions, chunk)
+            excess::<_, MAPPED>(simd, formulas, sharpness, problem, positions, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -32,22 +48,31 @@ pub(crate) struct Along<'a> {
     pub(crate) length: f64,
 }
 
-/// The mean of q² - ideal² at moved positions. `None` if the move inverts or flattens a triangle, or makes an inverse
-/// mean ratio worse that is then above `guard`.
-pub(crate) fn mean_excess_along(
-    metric: Metric,
-    problem: &Problem,
-    along: &Along<'_>,
-    guard: f64,
-) -> Option<f64> {
+/// The mean at moved positions of what `step` minimizes: q² - ideal², or its smooth model. `None` if the move inverts or flattens
+/// a triangle, or makes an inverse mean ratio worse that is then above the step's shape guard.
+pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_>) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem, metric, simd, formulas, MAPPED => {
-            excess_along::<_, MAPPED>(simd, formulas, problem, along, guard, chunk)
+        with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
+            excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
     let sum: Option<f64> = sums.into_iter().sum();
     sum.map(|sum| sum / problem.triangles().len() as f64)
+}
+
+/// Of each free vertex, whether a triangle around it is inverted or flattened by the move, or gets a worse inverse mean ratio that is
+/// then above `guard`.
+pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
+    collect(along.direction.len(), |v| {
+        let ring = problem.ring_of(v as u32);
+        let mut before = ring[ring.len() - 1];
+        ring.iter().any(|&neighbor| {
+            let triangle = [v as u32, before, neighbor];
+            before = neighbor;
+            along.breaks(problem, &triangle, guard)
+        })
+    })
 }
 
 /// The sum of q² - ideal² over some triangles at moved positions. `None` as in [`mean_excess_along`].
@@ -57,9 +82,10 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
     problem: &Problem,
     along: &Along<'_>,
-    guard: f64,
+    step: &Step,
     triangles: &[[u32; 3]],
 ) -> Option<f64> {
+    let guard = step.shape_guard;
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     let mut borne = Mask::splat(simd, true);
@@ -81,17 +107,14 @@ fn excess_along<S: Simd, const MAPPED: bool>(
             }
             borne &= kept;
         }
-        sum += formulas.excess(&now);
+        sum += formulas.model(&now, step.sharpness);
     }
     let mut last = 0.0;
     for t in rest {
         let position = |v: u32| along.positions[v as usize];
-        let before = problem.corner(t, position);
+        borne &= Mask::splat(simd, !along.breaks(problem, t, guard));
         let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
-        let shape = now.inverse_mean_ratio();
-        let kept = shape <= guard || shape <= before.inverse_mean_ratio();
-        borne &= Mask::splat(simd, now.doubled_area() > 0.0 && kept);
-        last += formulas.excess(&now);
+        last += formulas.model(&now, step.sharpness);
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
@@ -137,6 +160,16 @@ impl Along<'_> {
         ([x, y], [x + dx * self.length, y + dy * self.length])
     }
 
+    /// Whether the move inverts or flattens a triangle, or makes its inverse mean ratio worse and above `guard`.
+    fn breaks(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
+        let position = |v: u32| self.positions[v as usize];
+        let now = problem.corner(triangle, |v| position(v) + self.step(v) * self.length);
+        let shape = now.inverse_mean_ratio();
+        let is_kept =
+            shape <= guard || shape <= problem.corner(triangle, position).inverse_mean_ratio();
+        !(now.doubled_area() > 0.0 && is_kept)
+    }
+
     /// The direction of a vertex; zero if it is fixed.
     #[inline(always)]
     fn step(&self, vertex: u32) -> DVec2 {
@@ -144,15 +177,18 @@ impl Along<'_> {
     }
 }
 
-/// The sum of q² - ideal² over some triangles.
+/// The sum over some triangles of q² - ideal², or of the smooth model of this sharpness.
 #[inline(always)]
 fn excess<S: Simd, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
+    sharpness: Option<u32>,
     problem: &Problem,
     positions: &[DVec2],
     triangles: &[[u32; 3]],
 ) -> f64 {
+    // Known as this is compiled for a smooth metric, which is its own model.
+    let sharpness = sharpness.filter(|_| !formulas.metric().is_smooth());
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     for four in fours {
@@ -161,11 +197,19 @@ fn excess<S: Simd, const MAPPED: bool>(
         let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        sum += formulas.excess(&corner([p, q, r], problem, &map));
+        let corner = corner([p, q, r], problem, &map);
+        sum += match sharpness {
+            Some(sharpness) => formulas.model(&corner, sharpness),
+            None => formulas.excess(&corner),
+        };
     }
     let mut last = 0.0;
     for t in rest {
-        last += formulas.excess(&problem.corner(t, |v| positions[v as usize]));
+        let corner = problem.corner(t, |v| positions[v as usize]);
+        last += match sharpness {
+            Some(sharpness) => formulas.model(&corner, sharpness),
+            None => formulas.excess(&corner),
+        };
     }
     (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
 }
@@ -175,6 +219,7 @@ mod tests {
     use super::*;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
+    use crate::run::Options;
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
@@ -185,14 +230,16 @@ mod tests {
         let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
         let (_, problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
         let positions = problem.positions();
-        for metric in [Metric::Imr, Metric::Rms] {
+        for metric in [Metric::Imr, Metric::Rms, Metric::Edge] {
+            let plan = Options { scheme: metric.into(), ..Options::default() }.plan();
+            let step = Step { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
             let along = |direction: Vec2, length: f64| {
                 let direction = &[direction];
-                mean_excess_along(metric, &problem, &Along { positions, direction, length }, 30.0)
+                mean_excess_along(&step, &problem, &Along { positions, direction, length })
             };
             let mut moved = positions.to_vec();
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
-            let there = mean_excess(metric, &problem, &moved);
+            let there = mean_model(metric, 6, &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
             // Out of the hexagon through each of its sides, then along a direction that is NaN.
             for k in 0..6 {

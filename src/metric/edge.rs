@@ -17,7 +17,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     eigenvalue_floor: 0.1,
     shape_guard: 30.0,
     omega: 1.5,
-    is_corrected: false,
+    is_corrected: true,
     wgsl: include_str!("edge.wgsl"),
 };
 

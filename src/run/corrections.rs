@@ -1,5 +1,7 @@
 //! Runs with corrections from coarser levels: when corrections begin, pause and end.
 
+use std::ops::RangeInclusive;
+
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Metric;
@@ -8,7 +10,7 @@ use crate::run::history::History;
 use crate::run::multilevel::{Hierarchy, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
-use crate::run::step::Step;
+use crate::run::step::{Sharpness, Step};
 use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
 use crate::run::yielding::yield_now;
 
@@ -25,8 +27,13 @@ const RESIZE_AFTER: u32 = 2;
 /// Sizes of elements are taken to have changed if the excess of f has dropped by more than this share since corrections
 /// began.
 const RESIZE_IF: f64 = 0.15;
-/// A correction that is shorter than this counts as refused, though it is taken: it hardly helps.
+/// A correction that is shorter than this counts as refused, though it is taken: it hardly helps. One for EDGE, of which lengths
+/// are a tenth of what they are otherwise, as its p-norm is stiffer across its kinks than the levels know.
 const SHORT: f64 = 0.05;
+const SHORT_FOR_EDGE: f64 = 0.005;
+/// The first length tried of a correction is at least this, as a single nearly flat triangle may have shortened the last one.
+const LEAST_FIRST: f64 = 0.6;
+const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
 /// After this many refused corrections in a row, the run goes back to sweeps alone.
 const MOST_REFUSED: u32 = 2;
 /// The least number of sweeps alone before corrections begin again.
@@ -43,6 +50,10 @@ const NO_ESTIMATE: usize = 1 << 30;
 /// Corrections are accelerated once the slope along one is more than this share of that along the one before: on most
 /// meshes it falls to a sixth or less each time, and there is nothing to gain.
 const ACCELERATED_FROM: f64 = 0.3;
+/// The exponent of EDGE's p-norm doubles once a sweep with its correction lowers the objective by less than this share. A tenth of it ends
+/// as low, after a few sweeps more; ten times as much ends up to 2e-4 higher.
+const RAISED_BELOW: f64 = 1e-3;
+
 /// A run with accelerated corrections is over when as many estimates in a row say so, as its gains are irregular. One is
 /// enough if the last gains were each less than [`STEADY`] of the one before.
 const ESTIMATES: usize = 3;
@@ -61,6 +72,11 @@ pub(crate) struct Corrections<'a> {
     settled: bool,
     /// The slope along the last correction of the present stage.
     slope: Option<f64>,
+    /// log2 of the present exponent of EDGE's p-norm.
+    sharpness: u32,
+    /// The objective that corrections lower, f or EDGE's p-norm, before the present stage and after each of its sweeps. What
+    /// the p-norm is before the stage is not known.
+    lowered: Vec<f64>,
     /// Whether corrections are accelerated by secant pairs.
     accelerated: bool,
     /// The latest estimates of the share of f that is left to gain, infinite where there is none.
@@ -94,6 +110,8 @@ impl<'a> Corrections<'a> {
             taken: 0,
             settled: false,
             slope: None,
+            sharpness: *exponents(plan).start(),
+            lowered: Vec::new(),
             accelerated: false,
             estimates: [f64::INFINITY; ESTIMATES],
             left_out: None,
@@ -104,7 +122,10 @@ impl<'a> Corrections<'a> {
     /// All distinct steps that a run can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
         let own = plan.scheme.base().properties().omega;
-        [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, own].map(|omega| plan.base_step(omega)).to_vec()
+        let omegas = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, own];
+        let of_exponent =
+            |sharpness| omegas.map(|omega| Step { sharpness, ..plan.base_step(omega) });
+        exponents(plan).flat_map(of_exponent).collect()
     }
 
     /// Does up to `sweeps` further sweeps; fewer if the run ends.
@@ -165,6 +186,8 @@ impl<'a> Corrections<'a> {
         let mut words = vec![stage, at as u64, length.to_bits()];
         words.extend(counts.into_iter().chain(flags).chain(slope));
         words.extend(self.estimates.map(f64::to_bits));
+        words.push(self.sharpness.into());
+        words.extend(self.lowered.iter().map(|f| f.to_bits()));
         words
     }
 
@@ -176,11 +199,23 @@ impl<'a> Corrections<'a> {
         else {
             return false;
         };
-        let Ok([settled, accelerated, left_out, has_slope, slope, estimates @ ..]) =
-            <[u64; 5 + ESTIMATES]>::try_from(rest)
+        let Some((
+            &[settled, accelerated, left_out, has_slope, slope, ref estimates @ .., sharpness],
+            lowered,
+        )) = rest.split_first_chunk::<{ 6 + ESTIMATES }>()
         else {
             return false;
         };
+        let sharpness = u32::try_from(sharpness).ok();
+        let Some(sharpness) = sharpness.filter(|k| exponents(self.plan).contains(k)) else {
+            return false;
+        };
+        let estimates: [u64; ESTIMATES] = *estimates;
+        self.sharpness = sharpness;
+        self.lowered = lowered.iter().map(|&f| f64::from_bits(f)).collect();
+        if self.lowered.len() > evaluations || !self.lowered.iter().all(|f| f.is_finite()) {
+            return false;
+        }
         // Nothing can have happened more often than there were sweeps.
         let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
         let (Some(attempts), Some(taken), Some(proposed), Some(refused), Some(at)) = (
@@ -214,6 +249,24 @@ impl<'a> Corrections<'a> {
         self.plan.scheme.base()
     }
 
+    /// A step of the base metric, with the present exponent.
+    fn step(&self, omega: f64) -> Step {
+        Step { sharpness: self.sharpness, ..self.plan.base_step(omega) }
+    }
+
+    /// Whether the exponent is not going to double any more.
+    fn is_sharpest(&self) -> bool {
+        self.sharpness == *exponents(self.plan).end()
+    }
+
+    /// Begins a stage of corrections after `done` evaluations, with this length. What came before says nothing about it.
+    fn begin_correcting(&mut self, done: usize, length: f64) {
+        (self.slope, self.accelerated) = (None, false);
+        self.estimates = [f64::INFINITY; ESTIMATES];
+        self.lowered.clear();
+        self.stage = Stage::Correcting { since: done, length, proposed: 0, refused: 0 };
+    }
+
     /// One sweep before corrections. Decides whether they begin with the next.
     async fn sweep_before(
         &mut self,
@@ -223,15 +276,16 @@ impl<'a> Corrections<'a> {
     ) -> Result<Objectives, GpuError> {
         let done = history.f().len();
         let omega = if done == 1 { 1.0 } else { OMEGA_BEFORE };
-        engine.sweep(&self.plan.base_step(omega)).await?;
+        engine.sweep(&self.step(omega)).await?;
         let objectives = engine.objectives().await?;
         let last = self.excess(history, done - 1);
-        let now = objectives.of(self.metric()).unwrap_or(f64::NAN) - self.metric().ideal_squared();
-        if done >= until && last - now < SWEEPS_PAY * last {
+        let f = objectives.of(self.metric()).unwrap_or(f64::NAN);
+        if done >= until && last - (f - self.metric().ideal_squared()) < SWEEPS_PAY * last {
             self.attempts += 1;
-            (self.slope, self.accelerated) = (None, false);
-            self.estimates = [f64::INFINITY; ESTIMATES];
-            self.stage = Stage::Correcting { since: done, length: 1.0, proposed: 0, refused: 0 };
+            self.begin_correcting(done, 1.0);
+            self.lowered.extend(self.metric().is_smooth().then_some(f));
+            // These levels are not fitted to where the mesh is now: the vertices have gone far.
+            drop(engine.take_hierarchy());
         }
         Ok(objectives)
     }
@@ -239,22 +293,16 @@ impl<'a> Corrections<'a> {
     /// One sweep when corrections are over.
     async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
         let own = self.metric().properties().omega;
-        engine.sweep(&self.plan.base_step(own)).await?;
+        engine.sweep(&self.step(own)).await?;
         engine.objectives().await
     }
 
-    /// Builds the levels, or fits them to the present stiffness if `proposed` is not 0, and hands them to the engine. Returns
+    /// Builds the levels, or fits those that the engine has to the present stiffness, and hands them to the engine. Returns
     /// whether it has room for them.
-    async fn build_levels(
-        &mut self,
-        engine: &mut impl Engine,
-        proposed: u32,
-    ) -> Result<bool, GpuError> {
+    async fn build_levels(&mut self, engine: &mut impl Engine) -> Result<bool, GpuError> {
         yield_now().await;
-        // Levels that are not used again are freed before new ones are built.
-        let before = engine.take_hierarchy().filter(|_| proposed > 0);
-        let roots = engine.stiffness_roots().await?;
-        let hierarchy = match before {
+        let roots = engine.stiffness_roots(self.sharpness).await?;
+        let hierarchy = match engine.take_hierarchy() {
             Some(before) => before.fitted_to(self.problem, roots),
             None => Hierarchy::new(self.problem, roots),
         };
@@ -279,19 +327,27 @@ impl<'a> Corrections<'a> {
         let built = self.excess(history, since);
         let lost = built - self.excess(history, done - 1);
         if (proposed == 0 || proposed == RESIZE_AFTER && lost > RESIZE_IF * built)
-            && !self.build_levels(engine, proposed).await?
+            && !self.build_levels(engine).await?
         {
             self.stage = Stage::Without { since: done };
             return self.sweep_without(engine).await;
         }
-        let mut length = Search::first_length(last_length);
-        let step = self.plan.base_step(OMEGA_BETWEEN);
-        let Proposal { here, slope, there } =
-            engine.propose(&step, length, self.accelerated).await?;
+        let (short, least_first) = match self.metric().is_smooth() {
+            true => (SHORT, LEAST_FIRST),
+            false => (SHORT_FOR_EDGE, LEAST_FIRST_FOR_EDGE),
+        };
+        let mut length = Search::first_length(last_length, least_first);
+        let step = self.step(OMEGA_BETWEEN);
+        let mut proposal = engine.propose(&step, length, self.accelerated).await?;
+        if proposal.slope < 0.0 && proposal.there.is_none() && step.shape_guard.is_finite() {
+            proposal = engine.leave_out(length, !self.accelerated).await?;
+        }
+        let Proposal { here, slope, there } = proposal;
         // The slope is the squared norm of the gradient, as the levels weigh it: about twice what is left to gain in what
         // is smooth. The rest is left to sweeps, which take most of it each.
-        let scale = (here + self.metric().ideal_squared()).max(LEAST_SCALE);
-        let swept = self.excess(history, done - 1) - here;
+        let ideal = self.metric().ideal_squared();
+        let scale = (here + ideal).max(LEAST_SCALE);
+        let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
         self.settled = slope.abs() <= NOISE * scale
             && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
         let mut search = Search::new(here, slope);
@@ -306,7 +362,7 @@ impl<'a> Corrections<'a> {
             Some((length, there)) => {
                 engine.move_along(length).await?;
                 self.taken += 1;
-                (there, length, if length < SHORT { refused + 1 } else { 0 })
+                (there, length, if length < short { refused + 1 } else { 0 })
             }
             None => (here, last_length, refused + 1),
         };
@@ -319,11 +375,12 @@ impl<'a> Corrections<'a> {
             MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
             _ => Stage::Correcting { since, length, proposed: proposed + 1, refused },
         };
-        if self.plan.track_all {
+        self.lowered.push(ideal + excess);
+        if self.plan.track_all || !self.metric().is_smooth() {
             return engine.objectives().await;
         }
         let mut objectives = Objectives::untracked();
-        objectives.set(self.metric(), self.metric().ideal_squared() + excess);
+        objectives.set(self.metric(), ideal + excess);
         Ok(objectives)
     }
 
@@ -335,19 +392,23 @@ impl<'a> Corrections<'a> {
     /// Records objectives and applies the stop rule to the present stage.
     fn record(&mut self, objectives: Objectives, history: &mut History) {
         history.add(objectives);
-        // The decay is extrapolated from the present stage alone. A window of one sweep is enough with corrections,
-        // as they leave no slow modes.
-        let (since, window) = match self.stage {
-            Stage::Before { .. } => (0, NO_ESTIMATE),
+        // The decay is extrapolated from the present stage alone, with the last exponent alone. A window of one sweep is
+        // enough with corrections, as they leave no slow modes.
+        let (of_stage, window) = match self.stage {
+            Stage::Before { .. } => (history.f(), NO_ESTIMATE),
             // A refused correction gains little whatever is left to gain.
-            Stage::Correcting { since, refused: 1.., .. } => (since, NO_ESTIMATE),
-            Stage::Correcting { since, .. } => (since, 1),
-            Stage::Without { since } => (since, StopRule::window(&self.metric().into()) as usize),
+            Stage::Correcting { refused: 1.., .. } => (&self.lowered[..], NO_ESTIMATE),
+            Stage::Correcting { .. } => (&self.lowered[..], 1),
+            Stage::Without { since } => {
+                (&history.f()[since..], StopRule::window(&self.metric().into()) as usize)
+            }
         };
-        let of_stage = &history.f()[since..];
+        let window = if self.is_sharpest() { window } else { NO_ESTIMATE };
+        // What corrections lower need not be f, which the goal and the number of sweeps do not go by.
         let rule = history.rule();
-        let rule = StopRule { max_sweeps: rule.max_sweeps.saturating_sub(since as u32), ..rule };
-        let best = history.best().saturating_sub(since);
+        let of_f = StopRule { tolerance: 0.0, ..rule }.judge(history.f(), 0, NO_ESTIMATE);
+        let target = rule.target.map(|_| f64::NEG_INFINITY);
+        let rule = StopRule { target, max_sweeps: u32::MAX, ..rule };
         let mut remaining = rule.remaining(of_stage, window);
         let mut judged = window;
         if self.accelerated {
@@ -358,19 +419,62 @@ impl<'a> Corrections<'a> {
             remaining = Some(most).filter(|most| most.is_finite());
             judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
         }
-        let mut stop = rule.judge(of_stage, best, judged);
-        if self.settled {
+        let mut of_decay = rule.judge(of_stage, least(of_stage), judged);
+        if self.settled && self.is_sharpest() {
             remaining = Some(NOISE);
-            if stop.is_none() || stop == Some(Stop::MaxSweeps) {
-                stop = match (rule.target, rule.tolerance > 0.0) {
-                    (Some(_), _) => Some(Stop::Stalled),
-                    (None, true) => Some(Stop::Converged),
-                    (None, false) => stop,
-                };
-            }
+            of_decay = of_decay.or(match (rule.target, rule.tolerance > 0.0) {
+                (Some(_), _) => Some(Stop::Stalled),
+                (None, true) => Some(Stop::Converged),
+                (None, false) => None,
+            });
+        }
+        let stop = match of_f {
+            Some(Stop::Reached) => of_f,
+            _ => of_decay.or(of_f),
+        };
+        if stop.is_none() && !self.is_sharpest() && self.gains_little(history) {
+            self.raise_exponent(history.f().len() - 1);
         }
         history.end(stop, remaining);
     }
+
+    /// Whether the last sweep, with its correction if it has one, has lowered the objective by little.
+    fn gains_little(&self, history: &History) -> bool {
+        let of_stage = match self.stage {
+            Stage::Before { .. } => return false,
+            Stage::Correcting { .. } => &self.lowered[..],
+            Stage::Without { since } => &history.f()[since..],
+        };
+        let gained_little = match of_stage {
+            [.., before, f] => before - f < RAISED_BELOW * f,
+            _ => false,
+        };
+        gained_little || self.settled
+    }
+
+    /// Doubles the exponent of EDGE's p-norm after the evaluation `last`.
+    fn raise_exponent(&mut self, last: usize) {
+        self.sharpness += 1;
+        self.settled = false;
+        match self.stage {
+            Stage::Before { .. } => {}
+            Stage::Correcting { length, .. } => self.begin_correcting(last, length),
+            Stage::Without { .. } => self.stage = Stage::Without { since: last },
+        }
+    }
+}
+
+/// The values of log2 k that a run by `plan` takes one after the other, k the exponent of EDGE's p-norm.
+fn exponents(plan: &Plan) -> RangeInclusive<u32> {
+    let Sharpness { first, .. } = plan.sharpness;
+    let last = plan.sharpness.largest();
+    if plan.scheme.base().is_smooth() { last..=last } else { first.min(last)..=last }
+}
+
+/// The index of the least value, the first of several.
+fn least(values: &[f64]) -> usize {
+    let indices = 0..values.len();
+    indices.min_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
 }
 
 /// Whether the last two gains of f were each less than [`STEADY`] of the one before.

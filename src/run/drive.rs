@@ -108,14 +108,6 @@ impl<'a> Strategy<'a> {
             false => Err(DriveError::Foreign),
         }
     }
-
-    /// The positions of the best state: with corrections the last one, as no correction raises the objective.
-    async fn best_positions(&self, engine: &mut impl Engine) -> Result<Vec<DVec2>, GpuError> {
-        match self {
-            Strategy::Sweeps => engine.best_positions().await,
-            Strategy::Corrected(_) => Ok(engine.positions().await?.into_owned()),
-        }
-    }
 }
 
 /// The result of [`drive`].
@@ -177,7 +169,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
             break Stop::Cancelled;
         }
     };
-    let positions = strategy.best_positions(&mut engine).await?;
+    let positions = engine.best_positions().await?;
     let (corrections, levels_left_out) = match &strategy {
         Strategy::Sweeps => (0, false),
         Strategy::Corrected(corrections) => (corrections.taken(), corrections.is_left_out()),

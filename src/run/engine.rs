@@ -35,7 +35,8 @@ pub(crate) trait Engine: Send {
     /// The current positions of all vertices.
     fn positions(&mut self) -> impl Future<Output = Result<Cow<'_, [DVec2]>, GpuError>> + Send;
 
-    /// The positions of all vertices in the best state seen by [`sweeps`](Self::sweeps).
+    /// The positions of all vertices in the best state of which the objectives were evaluated; the last state if every sweep by the
+    /// plan lowers f.
     fn best_positions(&mut self) -> impl Future<Output = Result<Vec<DVec2>, GpuError>> + Send;
 
     /// Gives back the coarser levels, if the engine has any.
@@ -45,8 +46,12 @@ pub(crate) trait Engine: Send {
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
     /// The square root of the base metric's stiffness at each free vertex: of the mean absolute eigenvalue of the Hessian
-    /// of Σ q² with respect to the vertex, over the number of its neighbors.
-    fn stiffness_roots(&mut self) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
+    /// of Σ q² with respect to the vertex, over the number of its neighbors. EDGE is replaced by its p-norm with this
+    /// `sharpness`.
+    fn stiffness_roots(
+        &mut self,
+        sharpness: u32,
+    ) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
 
     /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`. If `accelerated`,
     /// the correction also takes account of what the gradient did since the last ones that were; see
@@ -58,7 +63,16 @@ pub(crate) trait Engine: Send {
         accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
-    /// The mean excess of the base metric if all free vertices were moved by `length` times the correction;
+    /// Leaves vertices out of the last correction, and tries what remains of it at `length`: those of triangles that the correction
+    /// would invert or bring to break the shape guard at this length, [`LEFT_OUT`] times, as triangles between them and others
+    /// may give way only then. If `anew`, the correction is first computed again without their gradients.
+    fn leave_out(
+        &mut self,
+        length: f64,
+        anew: bool,
+    ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
+
+    /// The mean excess, as in a [`Proposal`], if all free vertices were moved by `length` times the correction;
     /// `None` if that inverts a triangle or breaks the shape guard.
     fn excess_along(
         &mut self,
@@ -76,7 +90,12 @@ pub(crate) trait Engine: Send {
     fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
 }
 
-/// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric.
+/// How many times vertices are left out of a correction. After once there were triangles that gave way on meshes of 2,000
+/// vertices, after twice none.
+pub(crate) const LEFT_OUT: usize = 2;
+
+/// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric, of which EDGE is
+/// replaced by its p-norm with the sharpness of the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// The objective without the correction.

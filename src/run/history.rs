@@ -103,11 +103,6 @@ impl History {
         self.f.get(self.best).copied().unwrap_or(f64::NAN)
     }
 
-    /// The index of the least base objective.
-    pub(crate) fn best(&self) -> usize {
-        self.best
-    }
-
     /// All objectives, before the first sweep and after each.
     pub(crate) fn log(&self) -> &[Objectives] {
         &self.log

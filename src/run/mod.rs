@@ -25,7 +25,7 @@ pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
 pub(crate) use drive::{Course, DriveError, End, Strategy, drive};
 pub use drive::{Observer, Phase, Progress};
-pub(crate) use engine::{Engine, Proposal};
+pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
 pub(crate) use history::History;
 pub use keeper::Keeper;
 pub(crate) use keeper::{Keeping, NoKeeper};

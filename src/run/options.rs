@@ -17,7 +17,7 @@ pub enum Method {
     Auto,
     /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels.
     /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Requires a
-    /// scheme of one metric that [is corrected](crate::Properties::is_corrected) (imr, ar, rms, shape-size), analytic
+    /// scheme of one metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
@@ -75,8 +75,9 @@ pub struct Options {
     pub max_move: Option<f64>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
-    /// The exponent of the p-norm that replaces EDGE in Newton's method.
-    pub sharpness: Sharpness,
+    /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`Sharpness::CONTINUED`] in runs with
+    /// corrections and [`Sharpness::FIXED`] in runs of sweeps alone.
+    pub sharpness: Option<Sharpness>,
     /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
 }
@@ -96,7 +97,7 @@ impl Default for Options {
             guard: Guard::ByMetric,
             max_move: None,
             derivatives: Derivatives::Analytic,
-            sharpness: Sharpness::FIXED,
+            sharpness: None,
             track_all: false,
         }
     }
@@ -122,7 +123,7 @@ impl Options {
         if self.scheme.period() > 1 {
             Some("metrics that alternate have no correction: give one metric")
         } else if !metric.properties().is_corrected {
-            Some("this metric has no correction: take imr, ar, rms or shape-size")
+            Some("this metric has no correction: take another, imr, say")
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")
         } else if self.derivatives != Derivatives::Analytic {
@@ -178,17 +179,15 @@ impl Options {
         if !(1..=Self::MOST_INNER).contains(&self.inner) {
             return refuse("inner", self.inner.into(), "a visit takes from 1 to 1000 Newton steps");
         }
-        if self.sharpness.first.max(self.sharpness.last) > Sharpness::MOST {
-            let most = f64::from(self.sharpness.first.max(self.sharpness.last));
-            return refuse("sharpness", most, "log2 k can be 10 at most");
-        }
-        if self.sharpness.first > self.sharpness.last {
-            let first = f64::from(self.sharpness.first);
-            return refuse(
-                "sharpness",
-                first,
-                "the exponent grows: the first may not be above the last",
-            );
+        if let Some(Sharpness { first, last, .. }) = self.sharpness {
+            let (first, most) = (f64::from(first), f64::from(first.max(last)));
+            if most > f64::from(Sharpness::MOST) {
+                return refuse("sharpness", most, "log2 k can be 10 at most");
+            }
+            if first > f64::from(last) {
+                let remedy = "the exponent grows: the first may not be above the last";
+                return refuse("sharpness", first, remedy);
+            }
         }
         if self.scheme.period() > Scheme::LONGEST {
             let period = f64::from(self.scheme.period());
@@ -212,11 +211,19 @@ impl Options {
     /// The plan of sweeps by these options, for code that drives sweeps itself. Leaves out [`goal`](Self::goal) and
     /// [`method`](Self::method).
     pub fn plan(&self) -> Plan {
-        self.plan_to(None)
+        self.plan_with(None, self.sharpness.unwrap_or(Sharpness::FIXED))
     }
 
     /// The plan of a run by these options, which ends when the base objective is below `target`, if there is one.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
+        let usual = match self.is_multilevel() {
+            true => Sharpness::CONTINUED,
+            false => Sharpness::FIXED,
+        };
+        self.plan_with(target, self.sharpness.unwrap_or(usual))
+    }
+
+    fn plan_with(&self, target: Option<f64>, sharpness: Sharpness) -> Plan {
         let alternates = self.scheme.metrics().iter().any(|&m| m != self.scheme.base());
         let own = |metric: Metric| if alternates { 1.0 } else { metric.properties().omega };
         let mut by_metric = [1.0; Metric::ALL.len()];
@@ -229,7 +236,7 @@ impl Options {
             plain_sweeps: self.plain_sweeps,
             inner: self.inner.max(1),
             derivatives: [self.derivatives; Metric::ALL.len()],
-            sharpness: self.sharpness,
+            sharpness,
             stop: StopRule {
                 target,
                 tolerance: if target.is_some() { 0.0 } else { self.tolerance },

@@ -60,7 +60,7 @@ impl Plan {
 
     /// A step of the base metric with over-relaxation `omega`, for runs with corrections.
     pub(crate) fn base_step(&self, omega: f64) -> Step {
-        self.step_with(self.scheme.base(), omega, self.sharpness.last)
+        self.step_with(self.scheme.base(), omega, self.sharpness.largest())
     }
 
     fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {

@@ -63,7 +63,7 @@ fn encoded_sweeps_are_those_of_a_run() {
             8,
         ),
         ("two steps a visit", Options { inner: 2, ..options("imr") }, 6),
-        ("sharpened", Options { sharpness: Sharpness::CONTINUED, ..options("edge") }, 12),
+        ("sharpened", Options { sharpness: Some(Sharpness::CONTINUED), ..options("edge") }, 12),
         (
             "by differences",
             // Not over-relaxed: from there on differences need not lower f, and the best is returned.

@@ -30,13 +30,18 @@ struct Found {
 }
 
 fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
+    let name = metric.name().replace('-', "_");
+    let excess = match metric.is_smooth() {
+        true => format!("{name}_value(invariants(t))"),
+        false => format!("{name}_excess(t)"),
+    };
     let body = format!(
         "    sharpness = {SHARPNESS}u;
     let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), vec2(x[4], 0.0));
     let d = metric_derivatives(t, x[5]);
     let down = descent(d.gradient, d.hessian);
     y = array<f32, 12>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z,
-        metric_model(t), metric_excess(t), down.x, down.y, down.z, inverse_mean_ratio(t));"
+        metric_model(t), {excess}, down.x, down.y, down.z, inverse_mean_ratio(t));"
     );
     Kernel::Sweep(metric, derivatives).wgsl() + &probe(6, 12, &body)
 }

@@ -10,7 +10,7 @@ fn desired(metric: Metric) -> f64 {
     let found = FOUND.get_or_init(|| {
         let smoother = Smoother::new(perturbed()).unwrap();
         let find = |metric: Metric| {
-            let sharpness = Sharpness::CONTINUED;
+            let sharpness = Some(Sharpness::CONTINUED);
             let options =
                 Options { scheme: metric.into(), sharpness, max_sweeps: 500, ..Options::default() };
             let f = history(&run(&smoother, &options, &backends()[0]), metric);

@@ -191,7 +191,7 @@ fn random_options(rng: &mut SplitMix64) -> Options {
         0 => options.method = Method::Sweeps,
         1 => options.omega = Some(rng.range(0.1, 1.99)),
         2 => options.inner = 1 + rng.below(4) as u32,
-        3 => options.sharpness = Sharpness::CONTINUED,
+        3 => options.sharpness = Some(Sharpness::CONTINUED),
         4 => options.derivatives = Derivatives::FiniteDifference,
         5 => options.stored = Precision::Single,
         6 => {

@@ -69,7 +69,7 @@ fn options_out_of_range_are_named() {
     let smoother = Smoother::new(&mesh).unwrap();
     let default = Options::default;
     let goal = |fraction, desired| Some(Goal { fraction, desired: Desired::Value(desired) });
-    let sharpness = |first, last| Sharpness { first, every: 1, last };
+    let sharpness = |first, last| Some(Sharpness { first, every: 1, last });
     let long = Scheme::new(vec![Metric::Imr; 61]).unwrap();
     let wrong = [
         ("tolerance", Options { tolerance: -1e-9, ..default() }),
@@ -86,7 +86,7 @@ fn options_out_of_range_are_named() {
         // On a device no sweep of such a run was encoded, and it was "converged".
         (
             "sharpness",
-            Options { sharpness: Sharpness { first: 5, every: 0, last: 2 }, ..default() },
+            Options { sharpness: Some(Sharpness { first: 5, every: 0, last: 2 }), ..default() },
         ),
         ("scheme length", Options { scheme: long, ..default() }),
         ("fraction", Options { goal: goal(0.0, 1.0), ..default() }),

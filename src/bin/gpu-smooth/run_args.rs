@@ -89,7 +89,7 @@ pub(crate) struct SmoothArgs {
     )]
     pub(crate) continued: Option<PathBuf>,
 
-    /// Sweeps corrected from coarser levels of the mesh (all but edge, area), over-relaxed sweeps, or the
+    /// Sweeps corrected from coarser levels of the mesh (all but area), over-relaxed sweeps, or the
     /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
     #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
     pub(crate) method: MethodChoice,
@@ -103,10 +103,10 @@ pub(crate) struct SmoothArgs {
     /// How metrics are differentiated; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
     pub(crate) derivatives: DerivativesChoice,
-    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 to 512,
-    /// which ends lower after more sweeps
-    #[arg(long, value_enum, default_value = "fixed", help_heading = "Method")]
-    pub(crate) edge_norm: EdgeNorm,
+    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 to 512, which
+    /// ends lower [default: continued with corrections from coarser levels, fixed without]
+    #[arg(long, value_enum, help_heading = "Method")]
+    pub(crate) edge_norm: Option<EdgeNorm>,
 
     /// How bad a step may make a triangle: as bad as lowers f where the metric has a barrier (by-metric), or never worse than the worst
     /// that can be smoothed was (worst)
@@ -290,10 +290,10 @@ impl SmoothArgs {
                 DerivativesChoice::Analytic => Derivatives::Analytic,
                 DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
             },
-            sharpness: match self.edge_norm {
+            sharpness: self.edge_norm.map(|norm| match norm {
                 EdgeNorm::Fixed => Sharpness::FIXED,
                 EdgeNorm::Continued => Sharpness::CONTINUED,
-            },
+            }),
             track_all: self.history == History::All,
             ..Options::default()
         }

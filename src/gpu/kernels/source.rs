@@ -61,6 +61,9 @@ const SUM_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/sum_along_correction.wgsl");
 const MOVE_ALONG_CORRECTION: &str =
     include_str!("../../../shaders/levels/move_along_correction.wgsl");
+const MOVED: &str = include_str!("../../../shaders/levels/moved.wgsl");
+const FIND_BROKEN: &str = include_str!("../../../shaders/levels/find_broken.wgsl");
+const LEAVE_OUT_BROKEN: &str = include_str!("../../../shaders/levels/leave_out_broken.wgsl");
 const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
 const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
 const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
@@ -149,7 +152,9 @@ impl Kernel {
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, Derivatives::Analytic));
                 let parts: &[&str] = match self {
-                    Kernel::ObjectiveAlongCorrection(_) => &[ALONG, OBJECTIVE_ALONG_CORRECTION],
+                    Kernel::ObjectiveAlongCorrection(_) => {
+                        &[ALONG, MOVED, OBJECTIVE_ALONG_CORRECTION]
+                    }
                     Kernel::Stiffness(_) => &[AROUND, STIFFNESS],
                     _ => &[AROUND, GRADIENT],
                 };
@@ -172,6 +177,10 @@ impl Kernel {
             Kernel::MoveAlongCorrection => {
                 [ALONG, MOVE_ALONG_CORRECTION].iter().for_each(|part| source.push_str(part))
             }
+            Kernel::FindBroken => {
+                [ONE_RING, ALONG, MOVED, FIND_BROKEN].iter().for_each(|part| source.push_str(part))
+            }
+            Kernel::LeaveOutBroken => source.push_str(LEAVE_OUT_BROKEN),
             Kernel::CheckArithmetic => source.push_str(CHECK_ARITHMETIC),
         }
         source
@@ -223,16 +232,12 @@ fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
     let properties = metric.properties();
     let name = wgsl_name(metric);
     let mut text = INVARIANTS.to_owned() + properties.wgsl;
-    let (excess, model, derivatives_of) = match metric.is_smooth() {
-        true => {
-            let value = format!("{name}_value(invariants(t))");
-            (value.clone(), value, format!("expansion(t, {name}_slopes(invariants(t)))"))
-        }
-        false => (
-            format!("{name}_excess(t)"),
-            format!("{name}_model(t)"),
-            format!("{name}_derivatives(t)"),
+    let (model, derivatives_of) = match metric.is_smooth() {
+        true => (
+            format!("{name}_value(invariants(t))"),
+            format!("expansion(t, {name}_slopes(invariants(t)))"),
         ),
+        false => (format!("{name}_model(t)"), format!("{name}_derivatives(t)")),
     };
     let _ = write!(
         text,
@@ -243,7 +248,6 @@ const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
 const SETTLED: f32 = {settled:?}f;
 fn metric_model(t: Corner) -> f32 {{ return {model}; }}
-fn metric_excess(t: Corner) -> f32 {{ return {excess}; }}
 ",
         index = metric as u32,
         floor = properties.eigenvalue_floor,

@@ -52,6 +52,10 @@ pub enum Kernel {
     SumAlongCorrection,
     /// Moves the free vertices along the correction.
     MoveAlongCorrection,
+    /// Finds the vertices of triangles that the correction would invert or bring to break the shape guard.
+    FindBroken,
+    /// Leaves what [`FindBroken`](Self::FindBroken) has found out of the correction.
+    LeaveOutBroken,
     /// The root of the stiffness at the free vertices, from which the coarser levels are built.
     Stiffness(Metric),
     /// Closes the open secant pair, with partial sums of its products.
@@ -185,6 +189,7 @@ impl Kernel {
                 | Kernel::Stiffness(_)
                 | Kernel::ObjectiveAlongCorrection(_)
                 | Kernel::MoveAlongCorrection
+                | Kernel::FindBroken
                 | Kernel::CloseSecant
         )
     }
@@ -217,6 +222,8 @@ impl Kernel {
             Kernel::CoarsestSolve,
             Kernel::SumAlongCorrection,
             Kernel::MoveAlongCorrection,
+            Kernel::FindBroken,
+            Kernel::LeaveOutBroken,
             Kernel::CloseSecant,
             Kernel::SumSecants,
             Kernel::BendGradient,
@@ -252,6 +259,8 @@ impl Kernel {
             Kernel::ObjectiveAlongCorrection(_) => "objective_along_correction",
             Kernel::SumAlongCorrection => "sum_along_correction",
             Kernel::MoveAlongCorrection => "move_along_correction",
+            Kernel::FindBroken => "find_broken",
+            Kernel::LeaveOutBroken => "leave_out_broken",
             Kernel::Stiffness(_) => "find_stiffness",
             Kernel::CloseSecant => "close_secant",
             Kernel::SumSecants => "sum_secants",
@@ -283,7 +292,9 @@ impl Kernel {
             Kernel::Gradient(_)
             | Kernel::Stiffness(_)
             | Kernel::ObjectiveAlongCorrection(_)
-            | Kernel::MoveAlongCorrection => Interface::Fine,
+            | Kernel::MoveAlongCorrection
+            | Kernel::FindBroken
+            | Kernel::LeaveOutBroken => Interface::Fine,
             Kernel::SmoothGradient | Kernel::Restrict | Kernel::Prolong => Interface::Transfer,
             Kernel::MatrixVector
             | Kernel::Chebyshev

@@ -77,7 +77,7 @@ pub(crate) struct LevelOp {
     pub(crate) a: f32,
     pub(crate) b: f32,
     pub(crate) shape_guard: f32,
-    pub(crate) padding: u32,
+    pub(crate) sharpness: u32,
 }
 
 /// `SecantOp` in shaders/secants/common.wgsl.
@@ -273,7 +273,8 @@ mod tests {
                 out,
                 a,
                 b,
-                shape_guard
+                shape_guard,
+                sharpness
             }
         );
         let secants = &Kernel::OpenSecant;

@@ -10,7 +10,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::write_by_pieces;
 use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::{Passes, sealed::Target};
-use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
+use crate::gpu::kernels::uniforms::{Control, HISTORY, LevelOp, SLOTS, join, split, unpair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::Levels;
@@ -228,9 +228,10 @@ impl Engine for GpuEngine<'_> {
         Ok(())
     }
 
-    async fn stiffness_roots(&mut self) -> Result<Vec<f32>, GpuError> {
-        let free = self.problem.free_count() as u32;
-        stiffness::roots(self.gpu, &self.mesh, &self.dispatches, free, self.waiting).await
+    async fn stiffness_roots(&mut self, sharpness: u32) -> Result<Vec<f32>, GpuError> {
+        let op =
+            LevelOp { free: self.problem.free_count() as u32, sharpness, ..LevelOp::default() };
+        stiffness::roots(self.gpu, &self.mesh, &self.dispatches, op, self.waiting).await
     }
 
     async fn propose(
@@ -239,10 +240,12 @@ impl Engine for GpuEngine<'_> {
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
+        if let Some(levels) = &mut self.levels {
+            levels.set_step(self.gpu, length as f32, step.sharpness)?;
+        }
         let Some(levels) = &self.levels else {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
         };
-        levels.set_length(self.gpu, length as f32)?;
         let mut secants = self.secants.take().filter(|_| accelerated);
         if accelerated && secants.is_none() {
             let (params, free) = (&self.dispatches.params, self.problem.free_count() as u32);
@@ -263,6 +266,19 @@ impl Engine for GpuEngine<'_> {
         let proposal = self.proposal(totals).await;
         self.secants = secants;
         proposal
+    }
+
+    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+        let Some(levels) = &self.levels else {
+            return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
+        };
+        levels.set_length(self.gpu, length as f32)?;
+        let rest = |passes: &mut Passes<'_>| {
+            levels.encode_left_out(passes, anew);
+            levels.encode_objective(passes);
+        };
+        let totals = self.submit_and_copy(rest, &levels.vectors, TOTALS)?;
+        self.proposal(totals).await
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {

@@ -17,6 +17,7 @@ use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
+use crate::run::LEFT_OUT;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
 /// A hierarchy bound to a mesh on the device: encodes, submits nothing.
@@ -25,10 +26,14 @@ pub(crate) struct Levels {
     ops: wgpu::Buffer,
     /// Bytes from one uniform to the next.
     stride: u32,
+    /// log2 of the exponent of EDGE's p-norm in the uniforms.
+    sharpness: u32,
     /// What computes the gradient from the positions.
     find_gradient: Vec<Dispatch>,
     /// What computes the correction from the gradient.
     correction: Vec<Dispatch>,
+    /// What leaves vertices out of the correction once, where there is a shape guard.
+    left_out: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
     movement: Dispatch,
@@ -285,6 +290,17 @@ impl Levels {
         let op = LevelOp { starts: of, x: solution, ..fine };
         by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
 
+        let mut left_out = Vec::new();
+        if guard < NO_GUARD as f32 {
+            let kept = listing.vector(free as usize);
+            let find = LevelOp { out: kept, shape_guard: guard, ..fine };
+            let leave = LevelOp { x: kept, ..fine };
+            let bound = Bound::Fine { part: 0 };
+            by_rings(&mut listing, &mut left_out, Kernel::FindBroken, find)?;
+            let kernel = Kernel::LeaveOutBroken;
+            left_out.push(listing.step(kernel, bound, Groups::ForRows, leave)?);
+        }
+
         let mut objective = Vec::new();
         for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
             let (rows, first) = (triangles.end - triangles.start, triangles.start);
@@ -316,7 +332,7 @@ impl Levels {
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
         let mut ops = vec![0u8; (stride * listing.listed) as usize];
-        let listed = find_gradient.iter().chain(&correction).chain(&objective);
+        let listed = find_gradient.iter().chain(&correction).chain(&left_out).chain(&objective);
         for step in listed.chain([&sum, &movement]) {
             let at = (step.number * stride) as usize;
             ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
@@ -327,8 +343,10 @@ impl Levels {
             bind_groups,
             ops,
             stride,
+            sharpness: 0,
             find_gradient,
             correction,
+            left_out,
             objective,
             sum,
             movement,
@@ -348,6 +366,19 @@ impl Levels {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
+    /// Encodes that vertices of triangles which would give way are left out of the correction. If `anew`, it is first computed
+    /// again without their gradients.
+    pub(crate) fn encode_left_out(&self, passes: &mut Passes<'_>, anew: bool) {
+        let leave_out = |passes: &mut Passes<'_>| {
+            self.left_out.iter().for_each(|step| self.encode(passes, step));
+        };
+        if anew {
+            leave_out(passes);
+            self.encode_cycle(passes);
+        }
+        (0..LEFT_OUT).for_each(|_| leave_out(passes));
+    }
+
     /// Encodes the objective along the correction. The totals are then at the start of `vectors`.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
@@ -359,15 +390,34 @@ impl Levels {
         self.encode(passes, &self.movement);
     }
 
-    /// Sets how far the next submission goes along the correction, as a multiple of it.
+    /// Sets the exponent of EDGE's p-norm in what is submitted next, and how far that goes along the correction, as a multiple of it.
+    pub(crate) fn set_step(
+        &mut self,
+        gpu: &Gpu,
+        length: f32,
+        sharpness: u32,
+    ) -> Result<(), GpuError> {
+        if self.sharpness != sharpness {
+            self.sharpness = sharpness;
+            scoped(&gpu.device, || {
+                self.find_gradient.iter().for_each(|step| self.write(gpu, step, length));
+            })?;
+        }
+        self.set_length(gpu, length)
+    }
+
+    /// Sets how far what is submitted next goes along the correction.
     pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) -> Result<(), GpuError> {
         scoped(&gpu.device, || {
-            for step in self.objective.iter().chain([&self.movement]) {
-                let op = LevelOp { a: length, ..step.op };
-                let at = u64::from(step.number * self.stride);
-                gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
-            }
+            let of_length = self.left_out.iter().chain(&self.objective).chain([&self.movement]);
+            of_length.for_each(|step| self.write(gpu, step, length));
         })
+    }
+
+    fn write(&self, gpu: &Gpu, step: &Dispatch, length: f32) {
+        let op = LevelOp { a: length, sharpness: self.sharpness, ..step.op };
+        let at = u64::from(step.number * self.stride);
+        gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
     }
 
     fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {

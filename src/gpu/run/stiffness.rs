@@ -14,13 +14,13 @@ use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::scope::scoped;
 
-/// The root of the stiffness at each of the first `free` vertices; see
+/// The root of the stiffness at each free vertex, of which `op` has the number and the sharpness; see
 /// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots).
 pub(crate) async fn roots(
     gpu: &Gpu,
     mesh: &MeshBuffers,
     dispatches: &Dispatches,
-    free: u32,
+    op: LevelOp,
     waiting: Waiting,
 ) -> Result<Vec<f32>, GpuError> {
     let form = mesh.parts.form();
@@ -34,12 +34,12 @@ pub(crate) async fn roots(
     {
         let rows = vertices.end - vertices.start;
         let (first, ring_base) = (vertices.start, entries.start);
-        let op = LevelOp { rows, first, free, ring_base, ..LevelOp::default() };
+        let op = LevelOp { rows, first, ring_base, ..op };
         to[..size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&op));
     }
     let found = scoped(&gpu.device, || {
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
-        let size = u64::from(free) * size_of::<[f32; 2]>() as u64;
+        let size = u64::from(op.free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
         // The kernel has no use for these two bindings of its interface.
         let [direction, vectors] = ["no correction", "no vectors"]
@@ -71,6 +71,6 @@ pub(crate) async fn roots(
         gpu.queue.submit([encoder.finish()]);
         found
     })?;
-    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, free as usize, waiting).await?;
+    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, op.free as usize, waiting).await?;
     Ok(roots.into_iter().map(|[root, _]| root).collect())
 }

@@ -17,10 +17,9 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// The first length to try, given the last one taken. At least 0.6, as a single nearly flat triangle may have
-    /// shortened the last one.
-    pub(crate) fn first_length(last_taken: f64) -> f64 {
-        last_taken.clamp(0.6, 3.0)
+    /// The first length to try, given the last one taken and the least that is tried first.
+    pub(crate) fn first_length(last_taken: f64, least: f64) -> f64 {
+        last_taken.clamp(least, 3.0)
     }
 
     /// Starts a search from the objective `here` with the derivative `slope`, which is negative.

@@ -1,0 +1,32 @@
+// The correction, without the free vertices of triangles that it would break. It goes to `out`, as neighbors still read what it was;
+// leave_out_broken.wgsl puts it in place.
+
+@compute @workgroup_size(WORKGROUP)
+fn find_broken(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let index = invocation(id, groups);
+    if index >= op.rows {
+        return;
+    }
+    let vertex = op.first + index;
+    let p = patch_of(vertex);
+    let d = displacement(vertex);
+    let last = ring[p.end - 1u];
+    var a = edge(p.at, position(last));
+    var moved_a = moved_edge(a, d, displacement(last));
+    var kept = true;
+    for (var i = p.start; i < p.end; i++) {
+        let neighbor = ring[i];
+        let b = edge(p.at, position(neighbor));
+        let moved_b = moved_edge(b, d, displacement(neighbor));
+        let map = map_around(p, i);
+        let here = shown(Corner(a, b, params.mean_area), map);
+        let there = shown(Corner(moved_a, moved_b, params.mean_area), map);
+        kept = kept && !is_broken(here, there);
+        a = b;
+        moved_a = moved_b;
+    }
+    vectors[op.out + vertex] = select(vec2(0.0), direction[vertex], kept);
+}
