@@ -155,6 +155,38 @@ pub(crate) struct Movement {
     pub(crate) center: [f32; 4],
 }
 
+/// `UntanglePart` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct UntanglePart {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) ring_base: u32,
+    pub(crate) free: u32,
+    pub(crate) begins: u32,
+    pub(crate) padding: [u32; 3],
+}
+
+/// `Tangle` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Tangle {
+    pub(crate) valid: u32,
+    pub(crate) inverted: u32,
+    pub(crate) depth: u32,
+    pub(crate) epsilon: f32,
+    pub(crate) sweep: u32,
+    pub(crate) since: u32,
+}
+
+/// `TangledVertex` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct TangledVertex {
+    pub(crate) area: f32,
+    pub(crate) reached: u32,
+}
+
 /// `Publish` in shaders/publish.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -300,6 +332,10 @@ mod tests {
             check,
             ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
         );
+        let untangle = &Kernel::Untangle;
+        mirrors!(untangle, UntanglePart { first, count, ring_base, free, begins });
+        mirrors!(untangle, Tangle { valid, inverted, depth, epsilon, sweep, since });
+        mirrors!(untangle, TangledVertex { area, reached });
         mirrors!(&Kernel::Publish, Publish { offset, triangles, judged, ideal_squared });
     }
 
