@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, NO_GUARD, SLOTS, WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SLOTS, WORKGROUP, WORST,
 };
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
@@ -206,6 +206,7 @@ fn constants() -> String {
         ("SLOT_VECTORS", SLOTS.div_ceil(4) as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),
+        ("LEAST_NORMAL", LEAST_NORMAL),
         ("HELD", HELD),
         ("NONE", NONE),
         ("HISTORY_LENGTH", HISTORY * SLOTS as u32),

@@ -20,6 +20,8 @@ pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 /// The slot of the worst imr² - 1.
 pub(crate) const WORST: u32 = INVERTED + 1;
+/// The bits of the least float that is neither zero nor denormal.
+pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
 /// Set in the ring start of a free vertex that the application holds in place. Ring starts themselves are less.
 pub(crate) const HELD: u32 = 1 << 31;
 /// The guard of steps that have none. Larger than any inverse mean ratio, and a number in single precision.
