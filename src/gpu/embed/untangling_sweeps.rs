@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
 
-use crate::error::{GpuError, SmoothError};
+use crate::error::GpuError;
 use crate::gpu::device::buffers::{filled, uniform};
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::{Encoder, Passes};
@@ -28,7 +28,7 @@ const EACH: u32 = 8;
 /// # use gpu_smooth::*;
 /// # fn f(
 /// #     mesh: &DeviceMesh, vertices: &BoundVertices, sweeps: &mut Sweeps, encoder: &mut wgpu::CommandEncoder,
-/// # ) -> Result<(), SmoothError> {
+/// # ) -> Result<(), GpuError> {
 /// // Once.
 /// let untangling = UntanglingSweeps::new(mesh)?;
 /// // In each frame.
@@ -105,11 +105,7 @@ impl UntanglingSweeps {
     ///
     /// # Errors
     /// What the device refuses.
-    pub fn new(mesh: &DeviceMesh) -> Result<Self, SmoothError> {
-        Ok(Self::bound(mesh)?)
-    }
-
-    fn bound(mesh: &DeviceMesh) -> Result<Self, GpuError> {
+    pub fn new(mesh: &DeviceMesh) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
         let form = buffers.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
