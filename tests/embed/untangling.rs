@@ -5,7 +5,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
-use crate::support::orientations;
+use crate::support::{SplitMix64, orientations};
 
 /// Number of triangles that are inverted or flat, by exact predicates.
 fn bad(mesh: &Mesh, points: &[[f64; 2]]) -> usize {
@@ -172,6 +172,20 @@ fn vertices_thrown_anywhere_come_back() {
     let taken = frames.frames_until_valid();
     assert!(taken <= 4, "{taken} frames");
     assert!(frames.points().as_flattened().iter().all(|x| x.is_finite()));
+}
+
+#[test]
+fn vertices_at_random_places_are_put_in_order() {
+    let mut frames = Frames::new(plate(600));
+    let mut rng = SplitMix64::new(5);
+    for v in interior(&frames.mesh) {
+        frames.put(v, [rng.range(0.0, 3.0), rng.range(0.0, 2.0)]);
+    }
+    assert!(frames.frame(0, 0).inverted > 400);
+    let taken = frames.frames_until_valid();
+    assert!(taken <= 30, "{taken} frames");
+    assert_eq!(bad(&frames.mesh, &frames.points()), 0);
+    assert!(frames.frame(5, 100).worst_imr < 1.5);
 }
 
 #[test]
