@@ -14,6 +14,6 @@ struct Control {
     padding: u32,
     // Sums by evaluation (modulo HISTORY) and slot, each a pair of floats. A slot is a metric, or
     // INVERTED, the number of triangles that are inverted or flat in single precision, or
-    // WORST, the largest imr² - 1, which is not a sum.
+    // WORST, the largest imr² - 1, which is not a sum, and behind it the triangle: LEAST_NORMAL more than its number.
     history: array<vec2<f32>, HISTORY_LENGTH>,
 }

@@ -48,10 +48,12 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
-// Joins the values of two parts of the triangles: their sum, or in the last slot, that of the worst, the larger.
+// Joins the values of two parts of the triangles: their sum, or in the last slot, that of the worst, the larger; of equal
+// ones, that of the first triangle.
 fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     if tracked == TRACKED {
-        return max(a, b);
+        let is_first = bitcast<u32>(a.y) < bitcast<u32>(b.y);
+        return select(b, a, a.x > b.x || (a.x == b.x && is_first));
     }
     return pair_add(a, b);
 }
@@ -63,7 +65,8 @@ fn finish(@builtin(local_invocation_index) local: u32) {
     let evaluation = control.evaluated;
     let partials = params.partials;
     for (var i = 0u; i <= TRACKED; i++) {
-        var sum = vec2(0.0);
+        // No triangle is better than a part without any.
+        var sum = select(vec2(0.0), vec2(-1.0, 0.0), i == TRACKED);
         for (var k = local; k < partials; k += FINISH_WORKGROUP) {
             sum = joined(i, sum, partial_sums[i * partials + k]);
         }

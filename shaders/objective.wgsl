@@ -1,10 +1,15 @@
 // Partial sums over the triangles: of q² - ideal² for each tracked metric, and the number of inverted triangles. After
-// them comes the worst imr² - 1. Each invocation strides over the triangles and leaves a pair of floats for each of
+// them comes the worst imr² - 1, with the triangle that has it. Each invocation strides over the triangles and leaves a pair of floats for each of
 // these; finish.wgsl joins them. Further parts of the triangles continue the sums of the parts before. There is no
 // barrier, as barriers are slow on software adapters.
 
 // The value of a triangle whose edges are no finite numbers. A metric may pass over them, as maxima and minima do.
 const NOT_FINITE: f32 = 3.0e38;
+
+// The number of a triangle as a float that is neither zero nor denormal, infinite or NaN: those may change on their way.
+fn as_float(triangle: u32) -> f32 {
+    return bitcast<f32>(triangle + LEAST_NORMAL);
+}
 
 fn edge_is_finite(edge: vec2<f32>) -> bool {
     return is_finite(edge.x) && is_finite(edge.y);
@@ -20,12 +25,13 @@ fn objective(
     }
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, TRACKED>;
-    var worst = 0.0;
+    // Less than that of any triangle.
+    var worst = vec2(-1.0, 0.0);
     if part.first != 0u {
         for (var i = 0u; i < TRACKED; i++) {
             sums[i] = partial_sums[i * stride + id.x];
         }
-        worst = partial_sums[TRACKED * stride + id.x].x;
+        worst = partial_sums[TRACKED * stride + id.x];
     }
     for (var t = id.x; t < part.count; t += stride) {
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
@@ -38,10 +44,15 @@ fn objective(
         for (var i = 0u; i < TRACKED; i++) {
             sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], seen));
         }
-        worst = max(worst, shape_excess(corner));
+        // No triangle is worse than an inverted one.
+        let sound = seen && values[TRACKED - 1u] == 0.0;
+        let excess = select(NOT_FINITE, shape_excess(corner), sound);
+        if excess > worst.x {
+            worst = vec2(excess, as_float(part.first + t));
+        }
     }
     for (var i = 0u; i < TRACKED; i++) {
         partial_sums[i * stride + id.x] = sums[i];
     }
-    partial_sums[TRACKED * stride + id.x] = vec2(worst, 0.0);
+    partial_sums[TRACKED * stride + id.x] = worst;
 }

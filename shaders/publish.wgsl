@@ -44,5 +44,7 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
         destination[publish_to.offset + SLOTS] = select(0u, sweeps.done, holds);
         let done = max(sweeps.evaluated, 1u) - 1u;
         destination[publish_to.offset + SLOTS + 1u] = select(0u, done, holds);
+        let worst = bitcast<u32>(control.history[last + WORST].y);
+        destination[publish_to.offset + SLOTS + 2u] = worst - LEAST_NORMAL;
     }
 }

@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::cpu::CpuEngine;
 use crate::gpu::{GpuEngine, Waiting};
 use crate::run::StepwiseRun;
+use crate::untangle::energy::Corner;
 
 pub use crate::gpu::{Interface, Kernel};
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
@@ -30,4 +31,13 @@ pub fn run_on_gpu<'a>(
     let steps = plan.steps();
     let engine = GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block)?;
     Ok(StepwiseRun::new(engine, plan))
+}
+
+/// The energy that untangling lowers, of a triangle that `edges` span from a corner and that should have the area `target`:
+/// its value, gradient and Hessian (xx, xy, yy) by the position of the corner.
+pub fn untangling_energy(edges: [[f64; 2]; 2], target: f64, epsilon: f64) -> [f64; 6] {
+    let corner = Corner { edges: edges.map(DVec2::from), target };
+    let found = corner.expansion(epsilon);
+    let [xx, xy, yy] = found.hessian;
+    [found.value, found.gradient.x, found.gradient.y, xx, xy, yy]
 }

@@ -69,6 +69,7 @@
 //!
 //! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
 //!   [`Topology::move_clamped`] does so with positions on the host.
+//! - [`UntanglingSweeps`] turn back triangles that the application has inverted.
 //! - [`Sweeps::until_converged`] ends sweeps by themselves, on the device; a [`Budget`] chooses how many a frame has time for.
 //! - A [`Readback`] reads objectives or vertices in each frame and never waits.
 //! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
@@ -142,7 +143,7 @@ pub use file::{
 };
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
-    MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, VertexBuffer,
+    MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{

@@ -58,19 +58,24 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
 }
 
 #[test]
-fn an_application_outside_drags_pins_meshes_anew_and_survives_a_lost_device() {
+fn an_application_outside_drags_pins_recovers_meshes_anew_and_survives_a_lost_device() {
     let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 1.2 1 0.5 24\n";
     let plate = support::triangulate(&support::Outline::parse(text).unwrap(), 400).unwrap();
     let mesh = support::perturb_random(&plate, 0.6, 3);
     let acts = outside::acts(&mesh).unwrap();
     let names: Vec<_> = acts.iter().map(|(name, _)| *name).collect();
-    assert_eq!(names.len(), 8, "{names:?}");
+    assert_eq!(names.len(), 10, "{names:?}");
     for (name, told) in acts {
         assert!(told.frames > 0 && told.sweeps >= told.frames, "{name}: {told:?}");
-        assert_eq!(told.inverted, 0, "{name}: {told:?}");
+        let is_torn = name.contains("torn inside out");
+        assert_eq!(told.inverted > 0, is_torn, "{name}: {told:?}");
         let (settles, drags) = (name.contains("settle"), name.contains("drag"));
         assert!(told.has_converged || !settles, "{name}: {told:?}");
-        assert!(told.worst_imr < if settles { 3.0 } else { 8.1 }, "{name}: {told:?}");
+        let bound = if settles { 3.0 } else { 8.1 };
+        assert!(
+            told.worst_imr < bound || is_torn && told.worst_imr.is_finite(),
+            "{name}: {told:?}"
+        );
         assert!(told.least_share == 1.0 || drags, "{name}: {told:?}");
     }
 }

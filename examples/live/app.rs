@@ -16,7 +16,8 @@ use super::view::View;
 
 /// How near the pointer has to be to a vertex to take hold of it, in pixels.
 const RADIUS: f64 = 40.0;
-const MOST_SWEEPS: u32 = 64;
+/// The times that sweeps may take in a frame, in microseconds.
+const BUDGETS: [u64; 6] = [250, 500, 1000, 2000, 4000, 8000];
 
 /// Opens a device that can smooth the mesh, and draw to the surface if there is one.
 pub(crate) fn open(
@@ -35,7 +36,8 @@ pub(crate) fn open(
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
     let available = adapter.limits();
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_features: Gpu::required_features(),
+        // A clock, where there is one, for the budget of time.
+        required_features: adapter.features() & Gpu::optional_features(),
         // What the smoother needs, and textures as large as a window may become.
         required_limits: Gpu::required_limits(
             wgpu::Limits::downlevel_defaults().using_resolution(available.clone()),
@@ -59,7 +61,12 @@ pub(crate) struct App {
     metric: Metric,
     alternates: bool,
     paused: bool,
-    sweeps_per_frame: u32,
+    /// Whether what is held goes where the pointer is, whatever becomes of the triangles.
+    free_hand: bool,
+    /// One of [`BUDGETS`].
+    budget: usize,
+    /// The sweeps of the last frame.
+    sweeps: u32,
     meter: Meter,
 }
 
@@ -87,7 +94,9 @@ impl App {
             metric: Metric::Imr,
             alternates: false,
             paused: false,
-            sweeps_per_frame: 4,
+            free_hand: false,
+            budget: 3,
+            sweeps: 0,
             meter: Meter::new(),
             smoothing,
         })
@@ -107,7 +116,6 @@ impl App {
 
     /// Takes hold of what is nearest to the pointer, given in pixels.
     pub(crate) fn press(&mut self, pointer: [f64; 2]) -> Result<()> {
-        // What is held has to be where the pointer sees it.
         self.smoothing.receive()?;
         let Smoothing { topology, points, .. } = &self.smoothing;
         let [at, aside] =
@@ -130,7 +138,7 @@ impl App {
     fn hold(&mut self) -> Result<()> {
         let held = self.drag.as_ref().map_or(&[][..], Drag::vertices);
         self.renderer.mark(held);
-        self.smoothing.hold(held)
+        self.smoothing.hold(held, !self.free_hand)
     }
 
     pub(crate) fn key(&mut self, key: char) -> Result<()> {
@@ -138,11 +146,14 @@ impl App {
             digit @ '1'..='5' => self.metric = Metric::ALL[digit as usize - '1' as usize],
             'a' => self.alternates = !self.alternates,
             ' ' => self.paused = !self.paused,
-            '+' | '=' => self.sweeps_per_frame = (self.sweeps_per_frame + 1).min(MOST_SWEEPS),
-            '-' => self.sweeps_per_frame = self.sweeps_per_frame.saturating_sub(1).max(1),
+            '+' | '=' => self.set_budget((self.budget + 1).min(BUDGETS.len() - 1))?,
+            '-' => self.set_budget(self.budget.saturating_sub(1))?,
+            'f' => {
+                self.release()?;
+                self.free_hand = !self.free_hand;
+            }
             'r' => {
                 self.release()?;
-                self.smoothing.receive()?;
                 self.smoothing.reset();
             }
             _ => {}
@@ -155,29 +166,31 @@ impl App {
         Ok(())
     }
 
+    fn set_budget(&mut self, budget: usize) -> Result<()> {
+        self.budget = budget;
+        self.smoothing.set_budget(BUDGETS[budget])
+    }
+
     /// Computes and draws a frame: one command buffer.
     pub(crate) fn frame(&mut self, target: &wgpu::TextureView) -> Result<()> {
         self.smoothing.receive()?;
         self.update_panel();
-        if let Some(drag) = &self.drag
-            && let Some(points) = drag.step(&self.smoothing.topology, &self.smoothing.points)?
-        {
-            self.smoothing.set_points(points);
+        if let Some(drag) = &self.drag {
+            let goals = drag.goals(&self.smoothing.points, self.free_hand);
+            self.smoothing.aim(drag.vertices(), &goals);
         }
-        let sweeps = if self.paused { 0 } else { self.sweeps_per_frame };
         let device = self.smoothing.gpu.device();
         let mut encoder = device.create_command_encoder(&Default::default());
-        self.smoothing.encode(&mut encoder, sweeps);
+        self.sweeps = self.smoothing.encode(&mut encoder, self.paused);
         self.renderer.draw(&mut encoder, target);
         self.smoothing.gpu.queue().submit([encoder.finish()]);
-        self.smoothing.request();
-        self.meter.count(sweeps);
+        self.meter.count(self.sweeps);
         Ok(())
     }
 
     /// Writes what the last frame showed, its own numbers in the panel.
     pub(crate) fn capture(&mut self, path: &Path) -> Result<()> {
-        self.smoothing.receive()?;
+        self.smoothing.wait()?;
         self.update_panel();
         let gpu = &self.smoothing.gpu;
         let draw = |encoder: &mut _, target: &_| self.renderer.draw(encoder, target);
@@ -188,8 +201,14 @@ impl App {
     fn update_panel(&mut self) {
         let Smoothing { mesh, objectives, .. } = &self.smoothing;
         let base = self.smoothing.scheme().base();
-        let (each, [sweeps, frames]) = (self.sweeps_per_frame, self.meter.rates);
-        let state = if self.paused { "paused".into() } else { format!("{each} sweeps a frame") };
+        let (each, [sweeps, frames]) = (self.sweeps, self.meter.rates);
+        let state = match (self.paused, objectives.stop()) {
+            (true, _) => "paused".to_owned(),
+            (false, Some(stop)) => format!("{} after {} sweeps", stop.name(), objectives.sweeps),
+            (false, None) if each == 1 => "1 sweep a frame".to_owned(),
+            (false, None) => format!("{each} sweeps a frame"),
+        };
+        let hand = if self.free_hand { "free" } else { "stops before a triangle inverts" };
         let line = |label, text: &str| -> Line { (label, text.to_owned()) };
         let status = vec![
             ("mesh", format!("{} vertices, {} triangles", mesh.points.len(), mesh.triangles.len())),
@@ -203,7 +222,8 @@ impl App {
             line("drag", "a vertex, or the edge of a hole"),
             line("1 2 3 4 5", "edge, area, rms, imr, ar"),
             line("A", "alternate with imr"),
-            line("+ -", "sweeps a frame"),
+            ("F", format!("hand: {hand}")),
+            ("+ -", format!("sweeps for {} ms in a frame", BUDGETS[self.budget] as f64 / 1e3)),
             line("space", "pause     R  start again     Esc  quit"),
         ];
         if self.panel.show([status, help]) {

@@ -1,11 +1,7 @@
-//! What the user can take hold of, and how far it may move in one frame.
+//! What the user can take hold of, and where it is to go.
 
-use gpu_smooth::{MeshError, Topology, signed_area};
+use gpu_smooth::{Topology, signed_area};
 
-use super::smoothing::rounded;
-
-/// A triangle that the user touches may get this bad (inverse mean ratio), or stay as bad as it is.
-const WORST: f64 = 8.0;
 /// A frame moves by at most this part of the edges around, so that the sweeps keep up.
 const REACH: f64 = 0.3;
 
@@ -35,11 +31,14 @@ impl Holes {
 /// Something held by the pointer: an interior vertex, or all of a hole's boundary.
 pub(crate) struct Drag {
     vertices: Vec<u32>,
-    /// The triangles that move with them or change.
-    triangles: Vec<u32>,
-    /// The vertex under the pointer, and where it is to go.
+    /// Where they were when they were taken hold of.
+    start: Vec<[f64; 2]>,
+    /// The vertex under the pointer, where it was, and where it is to go: it stays until the pointer moves.
     grip: u32,
+    from: [f64; 2],
     goal: [f64; 2],
+    /// The mean length of the edges around them.
+    edge: f64,
 }
 
 impl Drag {
@@ -64,11 +63,10 @@ impl Drag {
             // The outer boundary stays.
             Some(None) => return None,
         };
-        let mut triangles: Vec<_> =
-            vertices.iter().flat_map(|&v| topology.star(v)).copied().collect();
-        triangles.sort_unstable();
-        triangles.dedup();
-        Some(Self { vertices, triangles, grip, goal: at })
+        let start = vertices.iter().map(|&v| points[v as usize]).collect();
+        let edge = edge_length(topology, points, &vertices);
+        let from = points[grip as usize];
+        Some(Self { vertices, start, grip, from, goal: from, edge })
     }
 
     pub(crate) fn vertices(&self) -> &[u32] {
@@ -79,38 +77,26 @@ impl Drag {
         self.goal = at;
     }
 
-    /// The points after one frame's move toward the goal, as far as the triangles allow; `None` if nothing
-    /// moves.
-    pub(crate) fn step(
-        &self,
-        topology: &Topology<'_>,
-        points: &[[f64; 2]],
-    ) -> Result<Option<Vec<[f64; 2]>>, MeshError> {
-        let from = points[self.grip as usize];
-        let way = distance(from, self.goal);
-        let reach = (REACH * self.edge_length(topology, points) / way).min(1.0);
-        let delta = [0, 1].map(|i| reach * (self.goal[i] - from[i]));
-        let there = |&v: &u32| {
-            let [x, y] = points[v as usize];
-            (v, [x + delta[0], y + delta[1]])
-        };
-        let moves: Vec<_> = self.vertices.iter().map(there).collect();
-        let mut moved = points.to_vec();
-        topology.move_clamped(&mut moved, &moves, WORST)?;
-        for &v in &self.vertices {
-            moved[v as usize] = rounded(moved[v as usize]);
-        }
-        Ok((moved[self.grip as usize] != from).then_some(moved))
+    /// Where the vertices are to go in the next frame: to the goal at once, or only a little nearer to it than they are, so that
+    /// the sweeps keep up.
+    pub(crate) fn goals(&self, points: &[[f64; 2]], at_once: bool) -> Vec<[f64; 2]> {
+        let now = points[self.grip as usize];
+        let way = distance(now, self.goal);
+        let part = if at_once || way == 0.0 { 1.0 } else { (REACH * self.edge / way).min(1.0) };
+        // All go as far as the vertex under the pointer, from where they were: what is held keeps its shape.
+        let delta = [0, 1].map(|i| now[i] + part * (self.goal[i] - now[i]) - self.from[i]);
+        self.start.iter().map(|p| [p[0] + delta[0], p[1] + delta[1]]).collect()
     }
+}
 
-    /// The mean length of the edges around what is held.
-    fn edge_length(&self, topology: &Topology<'_>, points: &[[f64; 2]]) -> f64 {
-        let perimeter = |&t: &u32| {
-            let [p, q, r] = topology.triangles()[t as usize].map(|v| points[v as usize]);
-            distance(p, q) + distance(q, r) + distance(r, p)
-        };
-        self.triangles.iter().map(perimeter).sum::<f64>() / (3 * self.triangles.len()) as f64
-    }
+/// The mean length of the edges of the triangles around some vertices.
+fn edge_length(topology: &Topology<'_>, points: &[[f64; 2]], vertices: &[u32]) -> f64 {
+    let around = || vertices.iter().flat_map(|&v| topology.star(v));
+    let perimeter = |&t: &u32| {
+        let [p, q, r] = topology.triangles()[t as usize].map(|v| points[v as usize]);
+        distance(p, q) + distance(q, r) + distance(r, p)
+    };
+    around().map(perimeter).sum::<f64>() / (3 * around().count()) as f64
 }
 
 pub(crate) fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {

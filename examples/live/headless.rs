@@ -23,6 +23,7 @@ pub(crate) fn run(request: Request) -> Result<()> {
     let Some(mut script) = script else { return Ok(()) };
     while script.advance(&mut app)? {
         app.frame(&target)?;
+        app.smoothing.wait()?;
     }
     Ok(())
 }

@@ -25,7 +25,7 @@ const COLUMN: u32 = 440;
 /// Width of a column's labels.
 const LABELS: u32 = 100;
 /// Lines in a column.
-const LINES: u32 = 6;
+const LINES: u32 = 7;
 const PAPER: [u8; 4] = [24, 28, 36, 255];
 const TEXT: Rgb888 = Rgb888::new(235, 238, 242);
 const LABEL: Rgb888 = Rgb888::new(150, 190, 235);

@@ -2,89 +2,102 @@
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage, util::DeviceExt};
 use gpu_smooth::{
-    BoundObjective, BoundVertices, DeviceMesh, Gpu, Mesh, Metric, ObjectiveValues, Options, Scheme,
-    Sweeps, Topology, VertexBuffer, validity,
+    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Mesh, Metric,
+    ObjectiveValues, Options, Readback, Scheme, Sweeps, Topology, UntanglingSweeps, VertexBuffer,
+    validity,
 };
-use std::sync::mpsc::{Receiver, channel};
 
 use super::Result;
 
 /// Bytes of a vertex: x and y, both f32.
 const STRIDE: u64 = 8;
+/// Where the share of a move stands in the buffer of numbers, after the objectives.
+const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
+/// A triangle that the user touches may get this bad (inverse mean ratio), or stay as bad as it is.
+const WORST: f64 = 8.0;
+/// Sweeps of untangling in each frame. Where nothing is inverted they do nothing.
+const UNTANGLING: u32 = 5;
+/// The most sweeps in a frame, and their number on a device without a clock.
+const MOST: u32 = 16;
+const WITHOUT_CLOCK: u32 = 4;
 
-/// A mesh that is smoothed where it is drawn from, and the host's copy of it.
+/// A mesh that is smoothed where it is drawn from. The host sees what has arrived of the frames before, and never waits.
 pub(crate) struct Smoothing {
     pub(crate) gpu: Gpu,
     pub(crate) mesh: Mesh,
     pub(crate) topology: Topology<'static>,
     /// The vertices that are drawn.
     pub(crate) vertices: wgpu::Buffer,
-    /// The positions on the host, as the last frame left them.
+    /// The positions of the latest frame that has arrived.
     pub(crate) points: Vec<[f64; 2]>,
-    /// How good the mesh is, as the last frame left it.
+    /// How good the mesh was then.
     pub(crate) objectives: ObjectiveValues,
     device_mesh: DeviceMesh,
     bound: BoundVertices,
     sweeps: Sweeps,
+    untangling: UntanglingSweeps,
     objective: BoundObjective,
     scheme: Scheme,
-    /// Whether the host has moved vertices since the last frame.
+    budget: Budget,
+    has_clock: bool,
+    /// What the user holds, if it is to stop before a triangle inverts.
+    held: Option<BoundMove>,
+    targets: wgpu::Buffer,
+    numbers: wgpu::Buffer,
+    /// Whether the host has written vertices since the last frame.
     moved: bool,
-    objective_buffer: wgpu::Buffer,
-    /// What the host reads after each frame: the vertices, then the objectives.
-    staging: wgpu::Buffer,
-    mapped: Option<Receiver<std::result::Result<(), wgpu::BufferAsyncError>>>,
+    seen_points: Readback<[f32; 2]>,
+    seen_objectives: Readback<ObjectiveValues>,
 }
 
 impl Smoothing {
     pub(crate) fn new(gpu: Gpu, mesh: Mesh, scheme: Scheme) -> Result<Self> {
         let topology = Topology::new(&mesh)?.into_owned();
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
-        let sweeps = Sweeps::new(&device_mesh, &options(&scheme))?;
+        let sweeps = Sweeps::until_converged(&device_mesh, &options(&scheme))?;
+        let untangling = UntanglingSweeps::new(&device_mesh)?;
         // Every scheme that a key may choose, so that no frame waits for a compiler.
         Metric::ALL.iter().try_for_each(|&metric| gpu.prepare(&options(&metric.into())))?;
         let device = gpu.device();
-        let points: Vec<_> = mesh.points.iter().map(|&p| rounded(p)).collect();
         let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("vertices"),
-            contents: bytemuck::cast_slice(&floats(&points)),
+            contents: bytemuck::cast_slice(&floats(&mesh.points)),
             // STORAGE for the smoother, VERTEX and STORAGE for drawing.
             usage: Usage::VERTEX | Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
         });
         let buffer = |label, size, usage| {
-            let label = Some(label);
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label,
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
+            let (label, mapped_at_creation) = (Some(label), false);
+            device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation })
         };
-        let objective_bytes = size_of::<ObjectiveValues>() as u64;
-        let objective_buffer =
-            buffer("objectives", objective_bytes, Usage::STORAGE | Usage::COPY_SRC);
-        let staging_bytes = vertices.size() + objective_bytes;
-        let staging = buffer("staging", staging_bytes, Usage::MAP_READ | Usage::COPY_DST);
-        let place = VertexBuffer::new(&vertices, STRIDE);
-        let bound = device_mesh.bind_vertices(&place)?;
-        let objective = sweeps.bind_objective(&objective_buffer, 0)?;
-        Ok(Self {
+        let numbers = buffer("numbers", SHARE + 4, Usage::STORAGE | Usage::COPY_SRC);
+        let targets = buffer("targets", vertices.size(), Usage::STORAGE | Usage::COPY_DST);
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, STRIDE))?;
+        let objective = sweeps.bind_objective(&numbers, 0)?;
+        let has_clock = device.features().contains(Gpu::optional_features());
+        let mut smoothing = Self {
+            seen_points: Readback::new(&gpu, &vertices, 0, mesh.points.len())?,
+            seen_objectives: Readback::new(&gpu, &numbers, 0, 1)?,
+            points: mesh.points.clone(),
+            objectives: ObjectiveValues::default(),
             gpu,
             mesh,
             topology,
             vertices,
-            points,
-            objectives: ObjectiveValues::default(),
             device_mesh,
             bound,
             sweeps,
+            untangling,
             objective,
             scheme,
+            budget: Budget::micros(0),
+            has_clock,
+            held: None,
+            targets,
+            numbers,
             moved: false,
-            objective_buffer,
-            staging,
-            mapped: None,
-        })
+        };
+        smoothing.set_budget(2000)?;
+        Ok(smoothing)
     }
 
     pub(crate) fn scheme(&self) -> &Scheme {
@@ -93,74 +106,96 @@ impl Smoothing {
 
     /// Goes on with another scheme, from the vertices as they are.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
-        self.sweeps = Sweeps::new(&self.device_mesh, &options(&scheme))?;
-        self.objective = self.sweeps.bind_objective(&self.objective_buffer, 0)?;
+        self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme))?;
+        self.objective = self.sweeps.bind_objective(&self.numbers, 0)?;
         self.scheme = scheme;
         Ok(())
     }
 
-    /// Lets the sweeps move all vertices but these and those that the mesh itself fixes.
-    pub(crate) fn hold(&mut self, held: &[u32]) -> Result<()> {
-        self.device_mesh.set_pinned(held)?;
-        self.sweeps.restart();
+    /// Gives the sweeps this much time in each frame. A device without a clock does the same number in all.
+    pub(crate) fn set_budget(&mut self, micros: u64) -> Result<()> {
+        let budget = Budget::micros(micros).at_most(MOST);
+        self.budget = if self.has_clock { budget.timed_by(&self.gpu)? } else { budget };
         Ok(())
     }
 
-    /// Moves vertices on behalf of the user. Call it between [`receive`](Self::receive) and
-    /// [`encode`](Self::encode), when the host's copy is what the device has.
-    pub(crate) fn set_points(&mut self, points: Vec<[f64; 2]>) {
-        self.points = points;
+    /// Pins what the user takes hold of, and lets go of the rest. With `clamp` it is moved on the device, as far as the triangles
+    /// allow.
+    pub(crate) fn hold(&mut self, held: &[u32], clamp: bool) -> Result<()> {
+        self.device_mesh.set_pinned(held)?;
+        let targets = VertexBuffer::new(&self.targets, STRIDE);
+        let bind = || self.device_mesh.bind_move(held, &targets, WORST, (&self.numbers, SHARE));
+        self.held = (clamp && !held.is_empty()).then(bind).transpose()?;
+        Ok(())
+    }
+
+    /// Says where what is held is to go in the next frame.
+    pub(crate) fn aim(&mut self, held: &[u32], goals: &[[f64; 2]]) {
+        let (queue, goals) = (self.gpu.queue(), floats(goals));
+        if self.held.is_some() {
+            queue.write_buffer(&self.targets, 0, bytemuck::cast_slice(&goals));
+            return;
+        }
+        // Right into the vertex buffer: all others have the floats of the last export there, and the import leaves them alone.
+        for (&v, goal) in held.iter().zip(&goals) {
+            queue.write_buffer(&self.vertices, u64::from(v) * STRIDE, bytemuck::bytes_of(goal));
+        }
         self.moved = true;
-        // All vertices are written: those that were not moved have the floats of the last export, and the import leaves
-        // them alone.
-        let bytes = floats(&self.points);
-        self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&bytes));
     }
 
     /// Moves all vertices back to where the mesh has them.
     pub(crate) fn reset(&mut self) {
-        self.set_points(self.mesh.points.iter().map(|&p| rounded(p)).collect());
+        let floats = floats(&self.mesh.points);
+        self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&floats));
+        self.moved = true;
         self.sweeps.restart();
     }
 
-    /// Encodes what a frame does before it draws: takes the user's moves, sweeps, and leaves the vertices
-    /// where they are drawn from and where the host reads them.
-    pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, sweeps: u32) {
+    /// Encodes what a frame does before it draws: moves what the user holds, turns inverted triangles back, sweeps as long as there is
+    /// time, and leaves the vertices where they are drawn from. Returns the number of sweeps.
+    pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, paused: bool) -> u32 {
         if std::mem::take(&mut self.moved) {
             self.bound.encode_import(encoder);
         }
-        self.sweeps.encode_sweeps(encoder, sweeps);
+        if let Some(held) = &self.held {
+            held.encode_move(encoder);
+        }
+        let sweeps = match (paused, self.has_clock) {
+            (true, _) => 0,
+            (false, true) => {
+                self.untangling.encode_untangle(encoder, UNTANGLING);
+                self.sweeps.encode_within(encoder, &mut self.budget)
+            }
+            (false, false) => {
+                self.untangling.encode_untangle(encoder, UNTANGLING);
+                self.sweeps.encode_sweeps(encoder, WITHOUT_CLOCK);
+                WITHOUT_CLOCK
+            }
+        };
         self.objective.encode_objective(encoder);
         self.bound.encode_export(encoder);
-        let end = self.vertices.size();
-        encoder.copy_buffer_to_buffer(&self.vertices, 0, &self.staging, 0, end);
-        encoder.copy_buffer_to_buffer(&self.objective_buffer, 0, &self.staging, end, None);
+        self.seen_points.encode_readback(encoder);
+        self.seen_objectives.encode_readback(encoder);
+        sweeps
     }
 
-    /// To be called when what was encoded has been submitted.
-    pub(crate) fn request(&mut self) {
-        let (sender, receiver) = channel();
-        // If the receiver is gone, nobody waits for the answer.
-        let answer = move |result| drop(sender.send(result));
-        self.staging.slice(..).map_async(wgpu::MapMode::Read, answer);
-        self.mapped = Some(receiver);
-    }
-
-    /// Waits for the last frame and takes its vertices and objectives to the host: it must not move a
-    /// vertex without knowing where its neighbors are.
+    /// Takes what has arrived of the frames before.
     pub(crate) fn receive(&mut self) -> Result<()> {
-        let Some(mapped) = self.mapped.take() else { return Ok(()) };
-        self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
-        mapped.recv()??;
-        {
-            let bytes = self.staging.slice(..).get_mapped_range()?;
-            let (points, objectives) = bytes.split_at(self.vertices.size() as usize);
-            let points: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(points);
-            self.points = points.iter().map(|p| p.map(f64::from)).collect();
-            self.objectives = bytemuck::pod_read_unaligned(objectives);
+        self.gpu.device().poll(wgpu::PollType::Poll)?;
+        if let Some(points) = self.seen_points.latest()? {
+            self.points.clear();
+            self.points.extend(points.iter().map(|p| p.map(f64::from)));
         }
-        self.staging.unmap();
+        if let Some(&[objectives]) = self.seen_objectives.latest()? {
+            self.objectives = objectives;
+        }
         Ok(())
+    }
+
+    /// Waits for the last frame, for those who have no window to wait for.
+    pub(crate) fn wait(&mut self) -> Result<()> {
+        self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
+        self.receive()
     }
 
     /// Counts the triangles that are inverted or flat, by exact arithmetic on the device's positions.
@@ -171,12 +206,7 @@ impl Smoothing {
 }
 
 fn options(scheme: &Scheme) -> Options {
-    Options { scheme: scheme.clone(), ..Options::default() }
-}
-
-/// A point as the vertex buffer has it.
-pub(crate) fn rounded(point: [f64; 2]) -> [f64; 2] {
-    point.map(|x| f64::from(x as f32))
+    Options { scheme: scheme.clone(), tolerance: 1e-4, ..Options::default() }
 }
 
 fn floats(points: &[[f64; 2]]) -> Vec<[f32; 2]> {

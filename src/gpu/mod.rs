@@ -18,7 +18,7 @@ pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, LastValid,
-    ObjectiveValues, Readback, Sweeps, VertexBuffer,
+    ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};

@@ -4,7 +4,9 @@ mod coloring;
 mod curve;
 mod prepare;
 mod problem;
+mod sizes;
 
 pub use coloring::{Coloring, UNCOLORED};
 pub use prepare::prepare;
 pub use problem::Problem;
+pub(crate) use sizes::target_areas;

@@ -13,6 +13,7 @@ mod objectives;
 pub(crate) mod opening;
 mod options;
 mod plan;
+pub(crate) mod regularization;
 mod saved;
 pub(crate) mod secant;
 mod shape_guard;

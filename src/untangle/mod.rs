@@ -4,15 +4,15 @@
 //! triangles move, then more, then all, and then each sweep is followed by a step from coarser levels. If that
 //! does not do it, the free vertices are put at the means of their neighbors once.
 
-mod energy;
-mod sizes;
+pub(crate) mod energy;
 mod state;
 
 use std::ops::ControlFlow;
 
 use crate::error::{BadTriangle, MeshError};
-use crate::layout::{Coloring, Problem};
+use crate::layout::{Coloring, Problem, target_areas};
 use crate::mesh::{Mesh, Precision};
+use crate::run::regularization::epsilon;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
 use crate::topology::predicates::{bad_triangles, not_positive};
@@ -113,12 +113,6 @@ pub fn untangle(
     Ok(result)
 }
 
-/// ε for the next sweep, given the least area in units of its target: the robust one of the paper's rules.
-fn epsilon(least: f64) -> f64 {
-    let least = least.min(0.0);
-    (1e-12 + 0.04 * least * least).sqrt()
-}
-
 struct Work<'m> {
     mesh: &'m Mesh,
     topology: &'m Topology<'m>,
@@ -132,7 +126,7 @@ impl Work<'_> {
         result: &mut Untangled,
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
     ) {
-        let targets = sizes::target_areas(self.problem, self.problem.positions());
+        let targets = target_areas(self.problem, self.problem.positions());
         let mut state = State::new(self.problem, targets);
         let mut hierarchy = None;
         for stage in &STAGES {

@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use gpu_smooth::{
     BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize,
-    ObjectiveValues, SmoothError, Sweeps, Timestamps, VertexBuffer, wgpu,
+    ObjectiveValues, SmoothError, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer, wgpu,
 };
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;
@@ -236,4 +236,5 @@ const _: () = {
     moves_between_threads::<BoundObjective>();
     moves_between_threads::<BoundMove>();
     moves_between_threads::<Timestamps>();
+    moves_between_threads::<UntanglingSweeps>();
 };

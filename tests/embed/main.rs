@@ -27,3 +27,4 @@ mod refusals;
 mod sweeps;
 mod targets;
 mod timestamps;
+mod untangling;

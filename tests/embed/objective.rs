@@ -137,3 +137,107 @@ fn triangles_the_application_inverts_are_counted() {
     }
     assert!(counts.is_sorted() && counts[0] >= 1 && *counts.last().unwrap() > 20, "{counts:?}");
 }
+
+/// The inverse mean ratio of a triangle, negative if it is inverted.
+fn imr(points: &[[f64; 2]], corners: [u32; 3]) -> f64 {
+    let [p, q, r] = corners.map(|v| points[v as usize]);
+    let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
+    let squares: f64 = [a, b, c].as_flattened().iter().map(|x| x * x).sum();
+    squares / (2.0 * 3f64.sqrt() * (a[0] * b[1] - a[1] * b[0]))
+}
+
+#[test]
+fn the_worst_triangle_is_named() {
+    let mesh = bad_plate(900);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut named = std::collections::HashSet::new();
+    for _ in 0..8 {
+        let found = app.objective(&sweeps);
+        let corners = device_mesh.corners(found.worst_triangle).unwrap();
+        let ratio = imr(&app.points(&device_mesh), corners);
+        assert!((f64::from(found.worst_imr) / ratio - 1.0).abs() < 1e-4, "{ratio} in {found:?}");
+        named.insert(corners);
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 1));
+    }
+    assert!(named.len() > 2);
+
+    // An inverted one is worse than any other.
+    let vertices = Vertices::usual(&app, &mesh);
+    vertices.put(&app, interior(&mesh)[70], [-0.4, 2.5]);
+    app.submit(|encoder| vertices.bind(&device_mesh).encode_import(encoder));
+    let found = app.objective(&sweeps);
+    let corners = device_mesh.corners(found.worst_triangle).unwrap();
+    assert!(found.inverted > 0 && imr(&app.points(&device_mesh), corners) < 0.0);
+    assert_eq!(device_mesh.corners(mesh.triangles.len() as u32), None);
+}
+
+#[test]
+fn equilateral_triangles_are_named_too() {
+    let height = 0.75f64.sqrt();
+    let around = [[1.0, 0.0], [0.5, height], [-0.5, height], [-1.0, 0.0], [-0.5, -height]];
+    let points = around.into_iter().chain([[0.5, -height], [0.0, 0.0]]).collect();
+    let triangles = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
+    let app = App::new();
+    let device_mesh = app.mesh(&Mesh { points, triangles, fixed: vec![] });
+    let found = app.objective(&Sweeps::new(&device_mesh, &Options::default()).unwrap());
+    assert!((found.worst_imr - 1.0).abs() < 1e-6);
+    assert!(device_mesh.corners(found.worst_triangle).unwrap().contains(&6));
+}
+
+#[test]
+fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
+    // At this place, single precision has a hundredth of an edge.
+    let mesh = transformed(&bad_plate(600), 0.02, [400.0, -300.0]);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
+    for (origin, scale) in [([0.0; 2], 1.0), ([399.0, 0.0], 16.0)] {
+        let vertices = Vertices::usual(&app, &mesh);
+        let place = vertices.place().origin(origin).scale(scale);
+        let bound = device_mesh.bind_vertices(&place).unwrap();
+        let published = readable(&app, WORDS);
+        let drawn = device_mesh.bind_drawn_objective(&place, &all_tracked(), (&published, 0));
+        let drawn = drawn.unwrap();
+        let evaluated = || -> ObjectiveValues {
+            app.submit(|encoder| drawn.encode_objective(encoder));
+            bytemuck::pod_read_unaligned(bytemuck::cast_slice(&app.read(&published)))
+        };
+        let mut points = Vec::new();
+        for _ in 0..3 {
+            app.submit(|encoder| {
+                sweeps.encode_sweeps(encoder, 1);
+                bound.encode_export(encoder);
+            });
+            let found = evaluated();
+            let words = app.read(&vertices.buffer);
+            let float = |v: u32, i| f64::from(f32::from_bits(words[vertices.word(v) + i]));
+            let all = 0..mesh.points.len() as u32;
+            points = all.map(|v| [0, 1].map(|i| float(v, i) / scale + origin[i])).collect();
+            let exact = quality(&mesh, &points);
+            for &metric in Metric::ALL {
+                let (found, f) = (f64::from(found.of(metric)), exact.f(metric));
+                // The others go by the mean area of the mesh as it was uploaded.
+                let is_of_shape = matches!(metric, Metric::Edge | Metric::Imr | Metric::Ar);
+                let bound = if is_of_shape { 1e-5 } else { 1e-2 };
+                assert!((found / f - 1.0).abs() < bound, "{metric}: {found} for {f}");
+            }
+            assert!((f64::from(found.worst_imr) / exact.worst_imr - 1.0).abs() < 1e-3);
+            // What is on the device has more digits.
+            let own = app.objective(&sweeps);
+            let off = |metric| (found.of(metric) / own.of(metric) - 1.0).abs();
+            assert!(off(Metric::Edge) > 3e-5, "{found:?} {own:?}");
+        }
+        // Only what is drawn is inverted, and then no more.
+        let v = interior(&mesh)[50];
+        let [x, y] = [0, 1].map(|i| (points[v as usize][i] - origin[i]) * scale);
+        vertices.put(&app, v, [x + 2.0 * scale, y]);
+        assert!(evaluated().inverted > 0);
+        assert_eq!(app.objective(&sweeps).inverted, 0);
+        vertices.put(&app, v, [x, y]);
+        assert_eq!(evaluated().inverted, 0);
+        assert_eq!((evaluated().stop(), evaluated().sweeps), (None, 0));
+    }
+}

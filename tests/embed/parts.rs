@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use gpu_smooth::{
     Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother,
-    Stop, Sweeps, VertexBuffer, wgpu,
+    Stop, Sweeps, UntanglingSweeps, VertexBuffer, wgpu,
 };
 use wgpu::Limits;
 
@@ -120,6 +120,16 @@ fn an_application_sees_no_parts() {
             bound.encode_export(encoder);
         });
         assert!(app.points(&device_mesh) == before);
+        // Again, and untangled instead; a hole that is beyond mending, too.
+        let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
+        vertices.put(&app, 300, [9.0, 9.0]);
+        vertices.put(&app, 0, [2.0, 1.5]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            untangling.encode_untangle(encoder, 12);
+            bound.encode_export(encoder);
+        });
+        assert!(app.points(&device_mesh) != before);
         let f = app.objective(&sweeps);
         let share = f32::from_bits(app.read(&share)[0]);
         assert!(share > 0.0 && share < 1.0, "{share}");

@@ -1,6 +1,6 @@
 //! Encoding into a compute pass that the application has begun.
 
-use gpu_smooth::{ObjectiveValues, Options, Sweeps, VertexBuffer, wgpu};
+use gpu_smooth::{ObjectiveValues, Options, Sweeps, UntanglingSweeps, VertexBuffer, wgpu};
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior};
@@ -52,6 +52,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 60)).unwrap();
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
         // The application's own kernel before and after: the targets are doubled, and the vertices exported.
         let before = doubling(&app, &targets);
         let after = doubling(&app, &vertices.buffer);
@@ -68,6 +69,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
                 bound.encode_import(&mut pass);
                 mask.encode_mask(&mut pass);
                 drag.encode_move(&mut pass);
+                untangling.encode_untangle(&mut pass, 2);
                 sweeps.encode_sweeps(&mut pass, 3);
                 objective.encode_objective(&mut pass);
                 bound.encode_export(&mut pass);
@@ -77,6 +79,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
                 bound.encode_import(encoder);
                 mask.encode_mask(encoder);
                 drag.encode_move(encoder);
+                untangling.encode_untangle(encoder, 2);
                 sweeps.encode_sweeps(encoder, 3);
                 objective.encode_objective(encoder);
                 bound.encode_export(encoder);

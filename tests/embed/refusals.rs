@@ -116,8 +116,8 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
 fn a_place_for_objectives_is_held_to_the_same() {
     let storage = Usage::STORAGE;
     assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
-    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 52 from byte 0 are needed");
-    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 52 from byte 40 are needed");
+    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 56 from byte 0 are needed");
+    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 56 from byte 40 are needed");
     assert_objective_refused(64, storage, 2, "the offset is 2 bytes, not a multiple of 4");
 }
 

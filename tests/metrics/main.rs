@@ -10,3 +10,4 @@ mod pairs;
 mod properties;
 mod shader;
 mod triangles;
+mod untangling;

@@ -1,5 +1,5 @@
 //! An application that knows of gpu-smooth what docs/embedding.md says, and lives with a mesh for many frames: it drags a
-//! hole, pins vertices, meshes anew on another thread, and goes on after its device was lost.
+//! hole, pins vertices, tears the mesh inside out and has it recover, meshes anew on another thread, and goes on after its device was lost.
 //!
 //! ```text
 //! cargo run --release --example outside -- [MESH]
@@ -57,6 +57,13 @@ pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     scene.device_mesh.unpin(&pinned)?;
     acts.push(("settle with them unpinned", settle(&mut scene)?));
 
+    // Kernels of the application may throw vertices anywhere; so does this.
+    let free = Topology::new(mesh)?.free().to_vec();
+    let torn: Vec<u32> =
+        (0..).zip(free).filter(|&(v, free)| free && v % 10 == 0).map(|(v, _)| v).collect();
+    acts.push(("recover from being torn inside out", tear(&mut scene, &torn)?));
+    acts.push(("settle what was torn", settle(&mut scene)?));
+
     // A finer mesh is made ready on another thread while frames go on.
     let (worker_gpu, finer) = (gpu.clone(), refined(mesh));
     let worker = std::thread::spawn(move || Scene::new(&worker_gpu, &finer));
@@ -101,6 +108,17 @@ impl Told {
 fn settle(scene: &mut Scene) -> Result<Told> {
     let mut told = Told { least_share: 1.0, ..Told::default() };
     while told.frames < 5000 && !told.has_converged {
+        told.add(scene.frame(None)?);
+    }
+    Ok(told)
+}
+
+/// Throws vertices far to one side, as a kernel of the application might. Frames until no triangle is inverted.
+fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
+    let to: Vec<[f32; 2]> = scene.places(vertices)?.iter().map(|&[x, y]| [x + 0.5, y]).collect();
+    scene.write(vertices, &to);
+    let mut told = Told { least_share: 1.0, ..Told::default() };
+    while told.frames < 500 && (told.frames == 0 || told.worst_imr.is_infinite()) {
         told.add(scene.frame(None)?);
     }
     Ok(told)

@@ -3,7 +3,7 @@
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
     BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, GpuError, Mesh,
-    ObjectiveValues, Options, Readback, Sweeps, VertexBuffer,
+    ObjectiveValues, Options, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 
 use super::Result;
@@ -23,8 +23,10 @@ pub(crate) struct Scene {
     pub(crate) device_mesh: DeviceMesh,
     bound: BoundVertices,
     sweeps: Sweeps,
+    untangling: UntanglingSweeps,
     budget: Budget,
     objective: BoundObjective,
+    vertices: wgpu::Buffer,
     numbers: wgpu::Buffer,
     targets: wgpu::Buffer,
     values: Readback<ObjectiveValues>,
@@ -68,6 +70,7 @@ impl Scene {
 
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, STRIDE))?;
         let sweeps = Sweeps::until_converged(&device_mesh, &options())?;
+        let untangling = UntanglingSweeps::new(&device_mesh)?;
         let objective = sweeps.bind_objective(&numbers, 0)?;
         let budget = Budget::micros(2000).at_most(20);
         let budget = match gpu.device().features().contains(Gpu::optional_features()) {
@@ -79,25 +82,29 @@ impl Scene {
             mesh: mesh.clone(),
             bound,
             sweeps,
+            untangling,
             budget,
             objective,
             values: Readback::new(gpu, &numbers, 0, 1)?,
             share: Readback::new(gpu, &numbers, SHARE, 1)?,
             positions: Readback::new(gpu, &vertices, 0, count)?,
+            vertices,
             numbers,
             targets,
             device_mesh,
         })
     }
 
-    /// One frame: moves what the user drags, sweeps as long as there is time, and leaves the vertices where they are drawn.
+    /// One frame: takes vertices that were written, moves what the user drags, turns triangles back that are inverted, sweeps as long as there is time, and leaves the vertices where they are drawn.
     pub(crate) fn frame(&mut self, drag: Option<(&BoundMove, &[[f32; 2]])>) -> Result<Seen> {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
+        self.bound.encode_import(&mut encoder);
         if let Some((drag, targets)) = drag {
             queue.write_buffer(&self.targets, 0, bytemuck::cast_slice(targets));
             drag.encode_move(&mut encoder);
         }
+        self.untangling.encode_untangle(&mut encoder, 3);
         let sweeps = self.sweeps.encode_within(&mut encoder, &mut self.budget);
         {
             // A pass of the application: it may have kernels of its own before and after.
@@ -118,6 +125,14 @@ impl Scene {
         let values = self.values.latest()?.map_or_else(Default::default, |values| values[0]);
         let share = self.share.latest()?.map_or(1.0, |share| share[0]);
         Ok(Seen { sweeps, values, share: if drag.is_some() { share } else { 1.0 } })
+    }
+
+    /// Writes vertices of the application: they go there whatever becomes of the triangles.
+    pub(crate) fn write(&self, vertices: &[u32], to: &[[f32; 2]]) {
+        for (&v, place) in vertices.iter().zip(to) {
+            let at = u64::from(v) * STRIDE;
+            self.gpu.queue().write_buffer(&self.vertices, at, bytemuck::bytes_of(place));
+        }
     }
 
     /// Lets the user move vertices.

@@ -72,7 +72,9 @@ impl BoundVertices {
     /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
     /// where it was. Any other floats are taken as moved by the application: where several buffers show one mesh, import
     /// only the one that was exported to last. Two buffers that take turns, each imported and exported in its own frames,
-    /// would take the mesh back to where it was two frames ago. The application may have inverted triangles; sweeps then invert no others and improve the rest.
+    /// would take the mesh back to where it was two frames ago. The application may have inverted
+    /// triangles; sweeps then invert no others and improve the rest, and
+    /// [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) turn them back.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }

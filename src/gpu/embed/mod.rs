@@ -10,6 +10,7 @@ mod pins;
 mod readback;
 mod shown;
 mod sweeps;
+mod untangling_sweeps;
 mod vertex_buffer;
 mod window;
 
@@ -22,4 +23,5 @@ pub use objective::{BoundObjective, ObjectiveValues};
 pub use pins::BoundMask;
 pub use readback::Readback;
 pub use sweeps::Sweeps;
+pub use untangling_sweeps::UntanglingSweeps;
 pub use vertex_buffer::VertexBuffer;

@@ -8,16 +8,18 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
+use crate::gpu::embed::BoundVertices;
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::{Publish, SLOTS};
-use crate::gpu::mesh::Changes;
+use crate::gpu::mesh::{Changes, MeshBuffers};
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped_to_buffer;
+use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::run::Stop;
+use crate::run::{Plan, Stop};
 
 /// What [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command buffer. The application
 /// casts the bytes that it reads back to this struct, or declares it in its shaders:
@@ -29,6 +31,7 @@ use crate::run::Stop;
 ///     worst_imr: f32,
 ///     stop: u32,
 ///     sweeps: u32,
+///     worst_triangle: u32,
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -49,6 +52,9 @@ pub struct ObjectiveValues {
     /// How many sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) were done since they began, or began anew
     /// as the mesh was changed. Always 0 for sweeps that do not end by themselves.
     pub sweeps: u32,
+    /// The number on the device of the triangle that has the largest inverse mean ratio, or of one that is inverted or flat
+    /// while there are any; [`DeviceMesh::corners`](crate::DeviceMesh::corners) tells its vertices.
+    pub worst_triangle: u32,
 }
 
 impl ObjectiveValues {
@@ -69,12 +75,15 @@ impl ObjectiveValues {
     }
 }
 
-/// A place in a buffer of the application for the objectives of one [`Sweeps`](crate::gpu::Sweeps). Made by
-/// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective); it can be used after the sweeps are dropped.
+/// A place in a buffer of the application for the objectives of one [`Sweeps`](crate::gpu::Sweeps), or of the vertices as they
+/// are drawn. Made by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
+/// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective); it can be used after these are dropped.
 pub struct BoundObjective {
     evaluation: Arc<Dispatches>,
     publish: Pipeline,
     bind_group: wgpu::BindGroup,
+    /// The vertices of the application that are evaluated, where they are and not those of the mesh.
+    drawn: Option<BoundVertices>,
 }
 
 /// What sweeps and objectives of one scheme on one mesh share.
@@ -89,6 +98,18 @@ pub(crate) struct Run {
 }
 
 impl Run {
+    /// A run of which there are evaluations only.
+    pub(crate) fn of_no_sweeps(
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        plan: Plan,
+    ) -> Result<Self, GpuError> {
+        let evaluation = Arc::new(Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?);
+        let (changes, triangles) = (mesh.changes.clone(), problem.triangles().len());
+        Ok(Self { dispatches: Arc::clone(&evaluation), evaluation, changes, triangles })
+    }
+
     /// Whether the sweeps end by a stop rule.
     pub(crate) fn is_judged(&self) -> bool {
         !Arc::ptr_eq(&self.dispatches, &self.evaluation)
@@ -96,9 +117,11 @@ impl Run {
 }
 
 impl BoundObjective {
+    /// Evaluates what `drawn` imports, if given.
     pub(crate) fn new(
         gpu: &Gpu,
         run: &Run,
+        drawn: Option<BoundVertices>,
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<Self, GpuError> {
@@ -128,12 +151,16 @@ impl BoundObjective {
             gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
         })?;
         let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
-        Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group })
+        Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group, drawn })
     }
 
     /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
-    /// [`ObjectiveValues`].
+    /// [`ObjectiveValues`]; if it was made by [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective), of what
+    /// is in the vertex buffer then.
     pub fn encode_objective(&self, encoder: &mut impl Encoder) {
+        if let Some(drawn) = &self.drawn {
+            drawn.encode_import(encoder);
+        }
         let mut passes = encoder.passes("gpu-smooth objective");
         self.evaluation.encode_evaluation(&mut passes);
         passes.run(&self.publish, None, |pass| {
@@ -152,7 +179,8 @@ mod tests {
 
     #[test]
     fn objective_values_are_the_slots_of_the_kernel() {
-        assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS + 8);
+        assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS + 12);
+        assert_eq!(offset_of!(ObjectiveValues, worst_triangle), 4 * SLOTS + 8);
         assert_eq!(offset_of!(ObjectiveValues, stop), 4 * SLOTS);
         assert_eq!(offset_of!(ObjectiveValues, sweeps), 4 * SLOTS + 4);
         assert_eq!(offset_of!(ObjectiveValues, f), 0);

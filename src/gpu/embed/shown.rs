@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::gpu::device::{Gpu, MeshSize};
 use crate::gpu::embed::{BoundMask, BoundMove, BoundObjective, BoundVertices};
-use crate::gpu::embed::{DeviceMesh, LastValid, Sweeps};
+use crate::gpu::embed::{DeviceMesh, LastValid, Sweeps, UntanglingSweeps};
 use crate::gpu::encode::{Spans, Timestamps};
 
 impl fmt::Debug for Gpu {
@@ -39,7 +39,16 @@ macro_rules! by_name {
     )*};
 }
 
-by_name!(BoundMask, BoundMove, BoundObjective, BoundVertices, LastValid, Spans, Timestamps);
+by_name!(
+    BoundMask,
+    BoundMove,
+    BoundObjective,
+    BoundVertices,
+    LastValid,
+    Spans,
+    Timestamps,
+    UntanglingSweeps
+);
 
 #[cfg(test)]
 mod tests {

@@ -155,7 +155,7 @@ impl Sweeps {
         buffer: &wgpu::Buffer,
         offset: u64,
     ) -> Result<BoundObjective, GpuError> {
-        BoundObjective::new(&self.gpu, &self.run, buffer, offset)
+        BoundObjective::new(&self.gpu, &self.run, None, buffer, offset)
     }
 }
 

@@ -40,6 +40,17 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
         Interface::Move => {
             &[UNIFORM, ReadWrite, ReadOnly, ReadOnly, ReadOnly, ReadWrite, ReadWrite]
         }
+        Interface::Untangle => &[
+            UNIFORM,
+            Uniform { dynamic: true },
+            ReadWrite,
+            ReadOnly,
+            ReadOnly,
+            ReadOnly,
+            ReadWrite,
+            ReadWrite,
+            ReadWrite,
+        ],
         Interface::Fine => &[
             UNIFORM,
             Uniform { dynamic: true },
@@ -244,6 +255,7 @@ mod tests {
         kernels.extend([Kernel::Import, Kernel::Export, Kernel::Publish, Kernel::CheckArithmetic]);
         kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
         kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
+        kernels.extend([Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle]);
         kernels.extend(Metric::ALL.iter().flat_map(|&metric| Kernel::of_levels(metric)));
         kernels
     }

@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, NO_GUARD, SLOTS, WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SLOTS, WORKGROUP, WORST,
 };
 use crate::metric::Metric;
 use crate::run::multilevel::{NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
-use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search};
+use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};
 
 const COMMON: &str = include_str!("../../../shaders/common.wgsl");
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
@@ -21,6 +21,7 @@ const CONTROL: &str = include_str!("../../../shaders/control.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
 const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
+const DESCENT: &str = include_str!("../../../shaders/descent.wgsl");
 const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
 const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
@@ -41,6 +42,11 @@ const MASK: &str = include_str!("../../../shaders/mask.wgsl");
 const MOVEMENT: &str = include_str!("../../../shaders/clamp/common.wgsl");
 const FIND_SHARE: &str = include_str!("../../../shaders/clamp/find_share.wgsl");
 const MOVE_VERTICES: &str = include_str!("../../../shaders/clamp/move_vertices.wgsl");
+const TANGLE: &str = include_str!("../../../shaders/untangle/common.wgsl");
+const FIND_INVERTED: &str = include_str!("../../../shaders/untangle/find_inverted.wgsl");
+const REGULARIZE: &str = include_str!("../../../shaders/untangle/regularize.wgsl");
+const ENERGY: &str = include_str!("../../../shaders/untangle/energy.wgsl");
+const UNTANGLE: &str = include_str!("../../../shaders/untangle/untangle.wgsl");
 const CHECK_ARITHMETIC: &str = include_str!("../../../shaders/check_arithmetic.wgsl");
 
 const LEVELS: &str = include_str!("../../../shaders/levels/common.wgsl");
@@ -101,6 +107,7 @@ impl Kernel {
             Interface::Mask => (&[], None),
             Interface::Restore => (&[CONTROL, PAIRS], Some((1, 5))),
             Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
+            Interface::Untangle => (&[PARAMS, TANGLE, PAIRS, PATCH], Some((2, 9))),
             Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
             Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
             Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
@@ -125,6 +132,7 @@ impl Kernel {
                 source.push_str(PATCH);
                 source.push_str(ONE_RING);
                 source.push_str(&active_metric(*metric, *derivatives));
+                source.push_str(DESCENT);
                 source.push_str(NEWTON);
             }
             Kernel::Objective(metrics) => {
@@ -146,6 +154,15 @@ impl Kernel {
             Kernel::HoldByMask => source.push_str(MASK),
             Kernel::FindShare => source.push_str(FIND_SHARE),
             Kernel::MoveVertices => source.push_str(MOVE_VERTICES),
+            Kernel::FindInverted => source.push_str(FIND_INVERTED),
+            Kernel::Regularize => source.push_str(REGULARIZE),
+            Kernel::Untangle => {
+                // The energy is a form of the inverse mean ratio.
+                let floor = Metric::Imr.properties().eigenvalue_floor;
+                let _ = writeln!(source, "const EIGENVALUE_FLOOR: f32 = {floor:?}f;");
+                let parts = [ONE_RING, DESCENT, ENERGY, UNTANGLE];
+                parts.iter().for_each(|part| source.push_str(part));
+            }
             Kernel::Gradient(metric)
             | Kernel::Stiffness(metric)
             | Kernel::ObjectiveAlongCorrection(metric) => {
@@ -198,6 +215,7 @@ fn constants() -> String {
         ("SLOT_VECTORS", SLOTS.div_ceil(4) as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),
+        ("LEAST_NORMAL", LEAST_NORMAL),
         ("HELD", HELD),
         ("NONE", NONE),
         ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
@@ -215,6 +233,8 @@ fn constants() -> String {
         ("SHORTEN", line_search::SHORTEN),
         ("DIFFERENCE", line_search::DIFFERENCE),
         ("SLACK", line_search::SLACK),
+        ("LEAST_SQUARE", regularization::LEAST_SQUARE),
+        ("SQUARE_SHARE", regularization::SQUARE_SHARE),
         ("NOISE", NOISE),
         ("JITTER", JITTER),
         ("LEAST_SCALE", LEAST_SCALE),

@@ -32,6 +32,12 @@ pub enum Kernel {
     FindShare,
     /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
     MoveVertices,
+    /// Finds the triangles that are inverted, and how much.
+    FindInverted,
+    /// Begins a sweep that turns back what [`FindInverted`](Self::FindInverted) has found.
+    Regularize,
+    /// Newton steps that turn inverted triangles back, on the free vertices of one color.
+    Untangle,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
     /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
@@ -89,6 +95,8 @@ pub enum Interface {
     Mask,
     /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
     Move,
+    /// A mesh and its inverted triangles: `shaders/untangle/common.wgsl`.
+    Untangle,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
     Fine,
     /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
@@ -102,7 +110,7 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
@@ -110,6 +118,7 @@ impl Interface {
         Interface::Restore,
         Interface::Mask,
         Interface::Move,
+        Interface::Untangle,
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
@@ -125,6 +134,7 @@ impl Interface {
             | Interface::Exchange
             | Interface::Move
             | Interface::Restore
+            | Interface::Untangle
             | Interface::Fine
             | Interface::Secants => positions,
             Interface::Publish
@@ -191,6 +201,9 @@ impl Kernel {
                 | Kernel::MoveAlongCorrection
                 | Kernel::FindBroken
                 | Kernel::CloseSecant
+                | Kernel::FindInverted
+                | Kernel::Regularize
+                | Kernel::Untangle
         )
     }
 
@@ -203,6 +216,7 @@ impl Kernel {
         kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
         kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
         kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
+        kernels.extend([Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle]);
         kernels
     }
 
@@ -249,6 +263,9 @@ impl Kernel {
             Kernel::HoldByMask => "hold_by_mask",
             Kernel::FindShare => "find_share",
             Kernel::MoveVertices => "move_vertices",
+            Kernel::FindInverted => "find_inverted",
+            Kernel::Regularize => "regularize",
+            Kernel::Untangle => "untangle",
             Kernel::Gradient(_) => "find_gradient",
             Kernel::SmoothGradient => "smooth_gradient",
             Kernel::Restrict => "restrict_gradient",
@@ -280,6 +297,7 @@ impl Kernel {
             Kernel::RestoreLastValid => Interface::Restore,
             Kernel::Reopen | Kernel::Resume => Interface::Reopen,
             Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
+            Kernel::FindInverted | Kernel::Regularize | Kernel::Untangle => Interface::Untangle,
             Kernel::CheckArithmetic => Interface::Arithmetic,
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run

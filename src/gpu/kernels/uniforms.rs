@@ -20,6 +20,8 @@ pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 /// The slot of the worst imr² - 1.
 pub(crate) const WORST: u32 = INVERTED + 1;
+/// The bits of the least float that is neither zero nor denormal.
+pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
 /// Set in the ring start of a free vertex that the application holds in place. Ring starts themselves are less.
 pub(crate) const HELD: u32 = 1 << 31;
 /// The guard of steps that have none. Larger than any inverse mean ratio, and a number in single precision.
@@ -153,6 +155,38 @@ pub(crate) struct Movement {
     pub(crate) share: u32,
     pub(crate) scale: f32,
     pub(crate) center: [f32; 4],
+}
+
+/// `UntanglePart` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct UntanglePart {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) ring_base: u32,
+    pub(crate) free: u32,
+    pub(crate) begins: u32,
+    pub(crate) padding: [u32; 3],
+}
+
+/// `Tangle` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Tangle {
+    pub(crate) valid: u32,
+    pub(crate) inverted: u32,
+    pub(crate) depth: u32,
+    pub(crate) epsilon: f32,
+    pub(crate) sweep: u32,
+    pub(crate) since: u32,
+}
+
+/// `TangledVertex` in shaders/untangle/common.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct TangledVertex {
+    pub(crate) area: f32,
+    pub(crate) reached: u32,
 }
 
 /// `Publish` in shaders/publish.wgsl.
@@ -301,6 +335,10 @@ mod tests {
             check,
             ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
         );
+        let untangle = &Kernel::Untangle;
+        mirrors!(untangle, UntanglePart { first, count, ring_base, free, begins });
+        mirrors!(untangle, Tangle { valid, inverted, depth, epsilon, sweep, since });
+        mirrors!(untangle, TangledVertex { area, reached });
         mirrors!(&Kernel::Publish, Publish { offset, triangles, judged, ideal_squared });
     }
 

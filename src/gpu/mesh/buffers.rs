@@ -50,6 +50,28 @@ impl MeshBuffers {
         })
     }
 
+    /// The same mesh with positions, and changes, of its own.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub(crate) fn with_positions(
+        &self,
+        gpu: &Gpu,
+        problem: &Problem,
+        positions: &[DVec2],
+    ) -> Result<Self, GpuError> {
+        let parts = self.parts.clone();
+        let positions = laid_out(positions, problem.targets(), parts.low_positions);
+        scoped(&gpu.device, || Self {
+            positions: filled(gpu, "further positions", &positions, Usage::STORAGE),
+            ring_start: self.ring_start.clone(),
+            ring: self.ring.clone(),
+            triangles: self.triangles.clone(),
+            changes: Changes::new(gpu),
+            parts,
+        })
+    }
+
     /// The binding of the positions; where they take two bindings, that of their high parts and that of their low
     /// parts.
     pub(crate) fn bind_positions(

@@ -16,6 +16,7 @@ use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 
 /// The parts of a mesh, by kind. A kind that fits one binding has one part.
+#[derive(Clone)]
 pub(crate) struct Parts {
     /// The byte at which the low parts start in the buffer of positions, if they take a binding of their own.
     pub(crate) low_positions: Option<u64>,

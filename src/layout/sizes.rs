@@ -1,4 +1,4 @@
-//! The areas that triangles should have while they are untangled.
+//! The areas that triangles should have while they are untangled, on either engine.
 //!
 //! Where the mesh is sound, its own sizes are kept. Elsewhere they are interpolated: first outward from there, neighbor by
 //! neighbor, then smoothed. A boundary vertex without a sound triangle has the size of its boundary edges.

@@ -1,0 +1,49 @@
+// Counts the triangles that are inverted or flat, finds the most inverted one, and marks the vertices of all of them.
+
+// A larger depth counts as this one.
+const MOST_DEPTH: f32 = 1.0e30;
+
+fn may_move(vertex: u32) -> bool {
+    return vertex < part.free && (ring_start[vertex] & HELD) == 0u;
+}
+
+// How far beyond flat a triangle is, given its area.
+fn depth_of(area: f32) -> f32 {
+    if is_positive(-area) {
+        return min(-area, MOST_DEPTH);
+    }
+    return select(MOST_DEPTH, 0.0, is_finite(area));
+}
+
+fn look_at(t: u32) {
+    let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+    let p = position(corners.x);
+    let a = edge(p, position(corners.y));
+    let b = edge(p, position(corners.z));
+    let map = map_of(corners);
+    // As objective.wgsl judges.
+    let area = doubled_area(shown(Corner(a, b, vec2(0.0)), map));
+    if is_positive(area) {
+        return;
+    }
+    if !(may_move(corners.x) || may_move(corners.y) || may_move(corners.z)) {
+        // No sweep can mend it.
+        return;
+    }
+    atomicAdd(&tangle.inverted, 1u);
+    atomicMax(&tangle.depth, bitcast<u32>(depth_of(0.5 * area / wanted_area(corners, map))));
+    for (var i = 0u; i < 3u; i++) {
+        atomicStore(&vertices[corners[i]].reached, tangle.sweep);
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn find_inverted(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let count = select(part.count, 0u, tangle.valid != 0u && part.begins == 0u);
+    for (var t = invocation(id, groups); t < count; t += invocations(groups)) {
+        look_at(t);
+    }
+}

@@ -1,0 +1,187 @@
+//! Sweeps that turn inverted triangles back, for an application's command encoder.
+
+use std::ops::Range;
+
+use bytemuck::Zeroable;
+use wgpu::BufferUsages as Usage;
+
+use crate::error::GpuError;
+use crate::gpu::device::buffers::{filled, uniform};
+use crate::gpu::embed::DeviceMesh;
+use crate::gpu::encode::{Encoder, Passes};
+use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::uniforms::{Params, Tangle, TangledVertex, UntanglePart};
+use crate::gpu::mesh::Parts;
+use crate::gpu::scope::scoped;
+use crate::layout::{Problem, target_areas};
+
+/// How many vertices or triangles an invocation visits.
+const EACH: u32 = 8;
+
+/// Sweeps that turn inverted triangles back, bound to a mesh on the device: for frames in which vertices have come in that
+/// tangle it. They may be encoded in every frame, in front of ordinary sweeps. As long as no triangle is inverted or
+/// flat they look at the triangles once and leave every position as it is, bit by bit.
+///
+/// ```no_run
+/// # use gpu_smooth::*;
+/// # fn f(
+/// #     mesh: &DeviceMesh, vertices: &BoundVertices, sweeps: &mut Sweeps, encoder: &mut wgpu::CommandEncoder,
+/// # ) -> Result<(), GpuError> {
+/// // Once.
+/// let untangling = UntanglingSweeps::new(mesh)?;
+/// // In each frame.
+/// vertices.encode_import(encoder);
+/// untangling.encode_untangle(encoder, 5);
+/// sweeps.encode_sweeps(encoder, 3);
+/// vertices.encode_export(encoder);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// A sweep moves vertices by Newton steps on the energy of [`untangle`](crate::untangle()), at first those around
+/// inverted triangles, and with each further sweep also those one edge farther off. Vertices that are held stay. A triangle
+/// all of whose vertices are held, or on the boundary, is passed over: no sweep can mend it. Whether others are left is told
+/// by [`ObjectiveValues::inverted`](crate::ObjectiveValues::inverted); there is no proof that every mesh that can be
+/// untangled is. Inverted is what it counts: the area is not positive in single precision.
+pub struct UntanglingSweeps {
+    find: Pipeline,
+    regularize: Pipeline,
+    untangle: Pipeline,
+    /// One, or one for each part of the mesh.
+    bind_groups: Vec<wgpu::BindGroup>,
+    dispatches: Dispatches,
+}
+
+/// The dispatches, one uniform each: those of the triangles for the first of the sweeps that are encoded together, those for
+/// further ones, then those of the vertices.
+struct Dispatches {
+    triangles: Vec<Range<u32>>,
+    /// The color and the part of the mesh of each.
+    vertices: Vec<(u32, usize, Range<u32>)>,
+    /// Bytes from one uniform to the next.
+    stride: u32,
+}
+
+impl Dispatches {
+    /// With the content of the uniforms.
+    fn new(problem: &Problem, parts: &Parts, alignment: u32) -> (Self, Vec<u8>) {
+        let stride = alignment.max(size_of::<UntanglePart>() as u32);
+        let free = problem.free_count() as u32;
+        let mut uniforms = Vec::new();
+        for begins in [1, 0] {
+            uniforms.extend(parts.triangles.iter().map(|range| {
+                let (first, count) = (range.start, range.end - range.start);
+                UntanglePart { first, count, free, begins, ..UntanglePart::default() }
+            }));
+        }
+        let mut vertices = Vec::new();
+        for (color, of_color) in (0..).zip(problem.colors()) {
+            for (part, ring) in parts.rings.iter().enumerate() {
+                let first = of_color.start.max(ring.vertices.start);
+                let end = of_color.end.min(ring.vertices.end);
+                if first < end {
+                    let (count, ring_base, begins) = (end - first, ring.entries.start, 0);
+                    let padding = [0; 3];
+                    uniforms.push(UntanglePart { first, count, ring_base, free, begins, padding });
+                    vertices.push((color, part, first..end));
+                }
+            }
+        }
+        let mut bytes = vec![0; uniforms.len() * stride as usize];
+        for (part, chunk) in uniforms.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
+            chunk[..size_of::<UntanglePart>()].copy_from_slice(bytemuck::bytes_of(part));
+        }
+        (Self { triangles: parts.triangles.clone(), vertices, stride }, bytes)
+    }
+}
+
+impl UntanglingSweeps {
+    /// Binds untangling to a mesh on the device. Takes 8 bytes more there for each vertex. The areas that triangles should have
+    /// are those of the mesh as it was uploaded; only their ratios count, and only while triangles are inverted.
+    ///
+    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::Gpu::prepare) does so beforehand.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn new(mesh: &DeviceMesh) -> Result<Self, GpuError> {
+        let DeviceMesh { gpu, problem, buffers, .. } = mesh;
+        let form = buffers.parts.form();
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
+        let [find, regularize, untangle] =
+            [Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle].map(pipeline);
+        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+        let (dispatches, parts) = Dispatches::new(problem, &buffers.parts, alignment);
+        let areas = target_areas(problem, problem.positions());
+        let vertices = areas.iter().map(|&area| TangledVertex { area: area as f32, reached: 0 });
+        let vertices: Vec<TangledVertex> = vertices.collect();
+        let targets = problem.positions().len() as u32;
+        let params = Params { targets, ..Params::zeroed() };
+        // Vertices are marked by numbers of sweeps, and none is marked yet.
+        let tangle = Tangle { sweep: 1, since: 1, ..Tangle::zeroed() };
+        let bind_groups = scoped(&gpu.device, || {
+            let params = filled(gpu, "untangling params", &[params], Usage::UNIFORM);
+            let parts = filled(gpu, "untangling parts", &parts, Usage::UNIFORM);
+            let tangle = filled(gpu, "tangle", &[tangle], Usage::STORAGE);
+            let vertices = filled(gpu, "tangled vertices", &vertices, Usage::STORAGE);
+            let bind = |part| {
+                let (positions, beyond) = buffers.bind_positions();
+                let mut resources = vec![
+                    params.as_entire_binding(),
+                    uniform::<UntanglePart>(&parts),
+                    positions,
+                    buffers.ring_start.as_entire_binding(),
+                    buffers.bind_ring(part),
+                    buffers.bind_triangles(part),
+                    tangle.as_entire_binding(),
+                    vertices.as_entire_binding(),
+                    buffers.changes.buffer.as_entire_binding(),
+                ];
+                resources.extend(beyond);
+                gpu.pipelines.bind(&gpu.device, Interface::Untangle, form, &resources)
+            };
+            (0..buffers.parts.count()).map(bind).collect()
+        })?;
+        let [find, regularize, untangle] = [find?, regularize?, untangle?];
+        Ok(Self { find, regularize, untangle, bind_groups, dispatches })
+    }
+
+    /// Encodes at most this many sweeps: when the command buffer runs, they end with the last inverted or flat triangle.
+    ///
+    /// Each begins with a look at all triangles, the first one always. They count as a change of the mesh: sweeps
+    /// [`until_converged`](crate::Sweeps::until_converged) begin anew.
+    pub fn encode_untangle(&self, encoder: &mut impl Encoder, sweeps: u32) {
+        let mut passes = encoder.passes("gpu-smooth untangling");
+        let Dispatches { triangles, vertices, .. } = &self.dispatches;
+        for sweep in 0..sweeps {
+            let first = if sweep == 0 { 0 } else { triangles.len() };
+            for (part, range) in triangles.iter().enumerate() {
+                let count = range.end - range.start;
+                self.run(&mut passes, &self.find, None, part, first + part, count);
+            }
+            self.run(&mut passes, &self.regularize, None, 0, first, 1);
+            for ((color, part, range), uniform) in vertices.iter().zip(2 * triangles.len()..) {
+                let count = range.end - range.start;
+                self.run(&mut passes, &self.untangle, Some(*color), *part, uniform, count);
+            }
+        }
+    }
+
+    /// Encodes one dispatch, in a part of the mesh, with the uniform of this number.
+    fn run(
+        &self,
+        passes: &mut Passes<'_>,
+        pipeline: &Pipeline,
+        color: Option<u32>,
+        part: usize,
+        uniform: usize,
+        invocations: u32,
+    ) {
+        passes.run(pipeline, color, |pass| {
+            let offset = uniform as u32 * self.dispatches.stride;
+            pass.set_bind_group(0, &self.bind_groups[part], &[offset]);
+            dispatch(pass, invocations.div_ceil(EACH));
+        });
+    }
+}
