@@ -89,6 +89,7 @@
 //! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
 mod attempt;
+mod chart;
 mod choice;
 mod cpu;
 mod error;
@@ -132,6 +133,7 @@ mod embedding {}
 #[doc(hidden)]
 pub mod internal;
 
+pub use chart::Chart;
 pub use choice::Reason;
 pub use error::{
     BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,

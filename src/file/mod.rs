@@ -18,6 +18,7 @@ mod fields;
 mod format;
 mod freefem;
 mod gather;
+mod globe;
 mod gmsh;
 mod group;
 mod group_table;

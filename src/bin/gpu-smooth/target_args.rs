@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gpu_smooth::{MeshError, MeshFile, Metric, Smoother, Solution, Surface, Targets};
 
 use crate::explain;
 use crate::report::TargetReport;
+use crate::surface_args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
 
@@ -22,9 +23,8 @@ pub(crate) struct TargetArgs {
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise
     #[arg(long, value_name = "N", default_value_t = 2, help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     target_rings: u32,
-    /// What the coordinates are: lengths in the plane, or longitude and latitude in degrees on a sphere
-    #[arg(long, value_enum, default_value = "plane", value_name = "SURFACE", help_heading = HEADING)]
-    surface: OnSurface,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
 }
 
 #[derive(Clone, PartialEq, Eq)]
@@ -34,12 +34,6 @@ enum Target {
     KeepShape,
     Size { source: String },
     Metric { source: String },
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OnSurface {
-    Plane,
-    Sphere,
 }
 
 fn target(text: &str) -> Result<Target, String> {
@@ -75,10 +69,7 @@ impl TargetArgs {
 
     /// What the coordinates are.
     pub(crate) fn surface(&self) -> Surface {
-        match self.surface {
-            OnSurface::Plane => Surface::Plane,
-            OnSurface::Sphere => Surface::Sphere,
-        }
+        self.surface.surface()
     }
 
     /// What there is to report of targets, with f of them before and after.
@@ -88,18 +79,15 @@ impl TargetArgs {
         after: impl FnOnce() -> Result<f64, String>,
     ) -> Result<Option<TargetReport>, String> {
         let kind = match &self.target {
-            Target::Equilateral if self.surface == OnSurface::Plane => return Ok(None),
+            Target::Equilateral if self.is_on_plane() => return Ok(None),
             Target::Equilateral => "equilateral".to_owned(),
             Target::KeepSize => "keep-size".to_owned(),
             Target::KeepShape => "keep-shape".to_owned(),
             Target::Size { source } => format!("size={source}"),
             Target::Metric { source } => format!("metric={source}"),
         };
-        let surface = match self.surface {
-            OnSurface::Plane => "plane",
-            OnSurface::Sphere => "sphere",
-        };
         let f = [before, after()?];
+        let surface = self.surface.name();
         Ok(Some(TargetReport { kind, surface, rings: self.target_rings, f }))
     }
 
@@ -157,7 +145,7 @@ fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, S
             (fields[0].components(), fields[0].values().to_vec())
         }
     };
-    let vertices = file.mesh().points.len();
+    let vertices = file.original().points.len();
     if found != components {
         return Err(format!(
             "{source}: a vertex has {found} numbers where {components} are needed: --target size= takes one, metric= three (xx, xy, yy)"
@@ -170,5 +158,8 @@ fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, S
             file.path().display()
         ));
     }
-    Ok(values)
+    Ok(match file.chart() {
+        Some(chart) => chart.extended(&values, components),
+        None => values,
+    })
 }
