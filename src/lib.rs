@@ -103,6 +103,7 @@ mod mesh;
 mod metric;
 mod outcome;
 mod parallel;
+mod places;
 mod quality;
 mod resume;
 mod rounds;
@@ -160,7 +161,7 @@ pub use run::{
 };
 pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};
-pub use targets::{Surface, Targets};
+pub use targets::{Outside, Surface, TargetField, Targets};
 pub use topology::{Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

@@ -59,7 +59,7 @@ impl Interpolation {
         if let Some(vertex) = new.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
-        let locator = Locator { topology, points: old };
+        let locator = Locator { topology, points: old, patience: usize::MAX };
         let moved = map_ranges(new.len(), 1 << 10, |range| {
             let moved = range.filter(|&vertex| old[vertex] != new[vertex]);
             let found = moved.filter_map(|vertex| {
@@ -106,7 +106,7 @@ impl Interpolation {
 }
 
 /// The value between three. Where they are equal it is theirs to the bit.
-fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
+pub(super) fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
     if ![a, b, c].iter().all(|value| value.is_finite()) {
         return f64::NAN;
     }

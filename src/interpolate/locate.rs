@@ -15,6 +15,8 @@ const SPREAD: usize = 20_000;
 pub(super) struct Locator<'a> {
     pub(super) topology: &'a Topology<'a>,
     pub(super) points: &'a [[f64; 2]],
+    /// A search for the nearest triangle ends once so many in a row are no nearer.
+    pub(super) patience: usize,
 }
 
 /// A place by a triangle of a mesh: a + (b - a) `weights[0]` + (c - a) `weights[1]` of its corners a, b, c.
@@ -71,7 +73,11 @@ impl Locator<'_> {
         let mut seen: HashSet<u32> = star.iter().copied().collect();
         let mut open: BinaryHeap<Candidate> = star.iter().map(candidate).collect();
         let mut best: Option<Candidate> = None;
+        let mut in_vain = 0;
         for _ in 0..SPREAD {
+            if in_vain == self.patience {
+                break;
+            }
             let Some(met) = open.pop() else { break };
             let corners = self.corners(met.triangle);
             let edges = [0, 1, 2].map(|k| edge_of(corners, k));
@@ -85,7 +91,9 @@ impl Locator<'_> {
             }
             if best.as_ref().is_none_or(|best| met.distance < best.distance) {
                 best = Some(met);
+                in_vain = 0;
             }
+            in_vain += 1;
         }
         match best {
             Some(best) => self.within(best.triangle, best.nearest),

@@ -6,6 +6,7 @@ mod support;
 
 mod agreement;
 mod coloring;
+mod fields;
 mod flat;
 mod global;
 mod goals;

@@ -233,6 +233,21 @@ impl SmoothArgs {
                 "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
+        if self.target.is_of_places() {
+            let dropped = [
+                (self.sliding.slide, "--slide"),
+                (self.max_move.is_some(), "--max-move"),
+                (self.fraction.is_some(), "--fraction"),
+                (self.desired.is_some(), "--desired"),
+                (self.checkpoint.is_some(), "--checkpoint"),
+                (self.continued.is_some(), "--continue"),
+            ];
+            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
+                return Some(format!(
+                    "a target of places does not go with {other}: drop that, or let vertices take their targets along (--target-of vertex)"
+                ));
+            }
+        }
         if self.max_move.is_some() {
             let dropped = [
                 (self.sliding.slide, "--slide"),

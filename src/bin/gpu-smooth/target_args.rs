@@ -2,11 +2,16 @@
 
 use std::path::Path;
 
-use clap::Args;
-use gpu_smooth::{MeshError, MeshFile, Metric, Smoother, Solution, Surface, Targets};
+use clap::{Args, ValueEnum};
+use gpu_smooth::{
+    Mesh, MeshError, MeshFile, Metric, Outside, Smoother, Solution, Surface, TargetField, Targets,
+};
 
 use crate::explain;
+use crate::numbers::six;
+use crate::read_args::ReadArgs;
 use crate::report::TargetReport;
+use crate::streams;
 use crate::surface_args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
@@ -17,14 +22,25 @@ pub(crate) struct TargetArgs {
     /// What elements are to look like: equilateral, of any size that their neighbors leave them; equilateral, of the sizes
     /// they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
     /// in SOURCE (size=SOURCE), or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE is a .sol file of Medit,
-    /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex
+    /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex; or BACKGROUND:DATA, a mesh of its own
+    /// with the name of its point data or such a file for its vertices
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise
     #[arg(long, value_name = "N", default_value_t = 2, help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     target_rings: u32,
+    /// What a target belongs to: vertices, which take it along, or places, so that it is taken anew from where vertices have moved
+    /// [default: place for a BACKGROUND, else vertex]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]
+    target_of: Option<Owner>,
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Owner {
+    Vertex,
+    Place,
 }
 
 #[derive(Clone, PartialEq, Eq)]
@@ -88,19 +104,77 @@ impl TargetArgs {
         };
         let f = [before, after()?];
         let surface = self.surface.name();
-        Ok(Some(TargetReport { kind, surface, rings: self.target_rings, f }))
+        let of = if self.is_of_places() { "place" } else { "vertex" };
+        Ok(Some(TargetReport { kind, of, surface, rings: self.target_rings, f }))
     }
 
-    /// Sets the targets of a mesh with its vertices at `points`.
+    /// Whether targets belong to places.
+    pub(crate) fn is_of_places(&self) -> bool {
+        let is_uniform = matches!(self.target, Target::Equilateral);
+        let default = if self.background().is_some() { Owner::Place } else { Owner::Vertex };
+        !is_uniform && self.target_of.unwrap_or(default) == Owner::Place
+    }
+
+    /// The mesh that carries the target, and what in it, if it is not that which is smoothed.
+    fn background(&self) -> Option<(&Path, &str)> {
+        let (Target::Size { source } | Target::Metric { source }) = &self.target else {
+            return None;
+        };
+        let (mesh, data) = source.rsplit_once(':')?;
+        let is_file = Path::new(source).exists() || data.is_empty();
+        (!is_file && Path::new(mesh).exists()).then_some((Path::new(mesh), data))
+    }
+
+    /// Sets the targets of a mesh with its vertices at `points`. Returns a remark on them.
     pub(crate) fn set(
         &self,
         file: &MeshFile,
         smoother: &mut Smoother<'_>,
         points: &[[f64; 2]],
-    ) -> Result<(), String> {
+    ) -> Result<Option<String>, String> {
         let told = |error: MeshError| explain::mesh_error(file, &error);
-        let Some(targets) = self.targets(file, smoother, points, told)? else { return Ok(()) };
-        smoother.set_targets(&targets).map_err(told)
+        if let Some((path, data)) = self.background() {
+            let field = self.field(path, data, file)?;
+            let outside = match self.is_of_places() {
+                true => smoother.set_target_field(field).map_err(told)?,
+                false => {
+                    let (targets, outside) = field.at(points).map_err(told)?;
+                    smoother.set_targets(&targets).map_err(told)?;
+                    outside
+                }
+            };
+            return Ok(remark(path, outside));
+        }
+        let Some(targets) = self.targets(file, smoother, points, told)? else { return Ok(None) };
+        if !self.is_of_places() {
+            return smoother.set_targets(&targets).map(|()| None).map_err(told);
+        }
+        let triangles = smoother.topology().triangles().to_vec();
+        let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
+        let field = TargetField::new(&mesh, &targets).map_err(told)?;
+        smoother.set_target_field(field).map(|_| None).map_err(told)
+    }
+
+    /// The targets on a mesh of their own.
+    fn field(&self, path: &Path, data: &str, file: &MeshFile) -> Result<TargetField, String> {
+        let mut background = streams::read(path, ReadArgs { weld: false })
+            .map_err(|error| format!("the background of --target: {error}"))?;
+        self.surface.lay_out(&mut background)?;
+        if background.chart().or(file.chart()).is_some() {
+            return Err(format!(
+                "{}: a mesh across the line where longitudes start again is neither a background nor has one: give sizes for its vertices (--target)",
+                path.display()
+            ));
+        }
+        let targets = match &self.target {
+            Target::Metric { .. } => Targets::tensors(given(&background, data, 3)?.as_chunks().0),
+            _ => Targets::sizes(&given(&background, data, 1)?),
+        };
+        let mesh = background.mesh();
+        targets
+            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points))
+            .and_then(|targets| TargetField::new(mesh, &targets))
+            .map_err(|error| explain::mesh_error(&background, &error))
     }
 
     fn targets(
@@ -129,6 +203,21 @@ impl TargetArgs {
         let targets = targets.and_then(|targets| targets.seen_on(surface, points));
         targets.map(Some).map_err(told)
     }
+}
+
+/// What there is to say of vertices outside of a background.
+fn remark(background: &Path, outside: Outside) -> Option<String> {
+    let Outside { count, most } = outside;
+    let vertices = match count {
+        0 => return None,
+        1 => "1 vertex is".to_owned(),
+        n => format!("{n} vertices are"),
+    };
+    Some(format!(
+        "{vertices} outside of {}, by up to {}: the nearest place there has their target",
+        background.display(),
+        six(most)
+    ))
 }
 
 /// The numbers of each vertex that a file beside the mesh has, or point data of the mesh.

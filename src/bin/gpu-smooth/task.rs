@@ -121,7 +121,9 @@ pub(crate) fn carry_out<T>(
     };
     let taken = taken??;
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
-    args.target.set(&file, &mut smoother, points)?;
+    if let Some(remark) = args.target.set(&file, &mut smoother, points)? {
+        follow.remark(&remark);
+    }
     if let Some(remark) = args.sliding.set(&file, &mut smoother)? {
         follow.remark(&remark);
     }
