@@ -7,8 +7,8 @@ use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// Outside of the mesh, the nearest triangle is looked for until so many in a row are no nearer.
-const PATIENCE: usize = 100;
+/// From so many vertices nearby a walk is tried.
+const TRIED: usize = 9;
 
 /// A mesh in which any places are found, such as one that carries the sizes wanted on another mesh.
 #[derive(Clone, Debug)]
@@ -47,10 +47,10 @@ impl Background {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
         let (topology, points) = (&self.topology, &self.points[..]);
-        let locator = Locator { topology, points, patience: PATIENCE };
+        let locator = Locator { topology, points };
         let found = map_ranges(places.len(), 1 << 10, |range| {
             let spot = |place: &[f64; 2]| {
-                let found = locator.find(self.seeds.near(*place), *place)?;
+                let found = self.found(&locator, *place)?;
                 let at = [0, 1].map(|axis| {
                     linear(found.corners.map(|v| points[v as usize][axis]), found.weights)
                 });
@@ -60,6 +60,38 @@ impl Background {
             places[range].iter().filter_map(spot).collect::<Vec<_>>()
         });
         Ok(found.into_iter().flatten().collect())
+    }
+
+    /// The triangle that a place is in: reached by a walk from a vertex nearby, or, where the boundary is in the way, the nearest of
+    /// all triangles.
+    fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<Found> {
+        let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
+        if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
+            return Some(locator.within(triangle, place));
+        }
+        let mut best: Option<(f64, u32, [f64; 2])> = None;
+        for (triangle, t) in (0..).zip(self.topology.triangles()) {
+            // Most triangles are farther for the box around them.
+            let corners = t.map(|v| self.points[v as usize]);
+            let apart = [0, 1].map(|axis| {
+                let [a, b, c] = corners.map(|corner| corner[axis]);
+                (a.min(b).min(c) - place[axis]).max(place[axis] - a.max(b).max(c)).max(0.0)
+            });
+            let is_farther = |&(best, ..): &(f64, u32, [f64; 2])| {
+                apart[0] * apart[0] + apart[1] * apart[1] >= best
+            };
+            if best.as_ref().is_some_and(is_farther) {
+                continue;
+            }
+            let (distance, nearest) = locator.nearest(triangle, place);
+            if best.is_none_or(|(least, ..)| distance < least) {
+                best = Some((distance, triangle, nearest));
+            }
+            if distance == 0.0 {
+                break;
+            }
+        }
+        best.map(|(_, triangle, nearest)| locator.within(triangle, nearest))
     }
 
     /// The value at a place, of values for each vertex of the background.
@@ -138,8 +170,16 @@ impl Seeds {
         row * self.counts[0] + column
     }
 
-    fn near(&self, place: [f64; 2]) -> u32 {
-        self.vertices[self.cell(place)]
+    /// The vertices of the place's cell and of those around it.
+    fn around(&self, place: [f64; 2]) -> impl Iterator<Item = u32> + '_ {
+        let cell = self.cell(place);
+        let (column, row) = (cell % self.counts[0], cell / self.counts[0]);
+        let steps = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]];
+        steps.into_iter().filter_map(move |[x, y]: [isize; 2]| {
+            let column = column.checked_add_signed(x).filter(|c| *c < self.counts[0])?;
+            let row = row.checked_add_signed(y).filter(|r| *r < self.counts[1])?;
+            self.vertices.get(row * self.counts[0] + column).copied()
+        })
     }
 }
 

@@ -59,7 +59,7 @@ impl Interpolation {
         if let Some(vertex) = new.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
-        let locator = Locator { topology, points: old, patience: usize::MAX };
+        let locator = Locator { topology, points: old };
         let moved = map_ranges(new.len(), 1 << 10, |range| {
             let moved = range.filter(|&vertex| old[vertex] != new[vertex]);
             let found = moved.filter_map(|vertex| {

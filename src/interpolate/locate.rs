@@ -15,8 +15,6 @@ const SPREAD: usize = 20_000;
 pub(super) struct Locator<'a> {
     pub(super) topology: &'a Topology<'a>,
     pub(super) points: &'a [[f64; 2]],
-    /// A search for the nearest triangle ends once so many in a row are no nearer.
-    pub(super) patience: usize,
 }
 
 /// A place by a triangle of a mesh: a + (b - a) `weights[0]` + (c - a) `weights[1]` of its corners a, b, c.
@@ -39,7 +37,7 @@ impl Locator<'_> {
     }
 
     /// Walks towards a place, each time across an edge that the place lies beyond. None if the boundary is in the way.
-    fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
+    pub(super) fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
         let mut triangle = first;
         for step in 0..STEPS {
             let corners = self.corners(triangle);
@@ -73,11 +71,7 @@ impl Locator<'_> {
         let mut seen: HashSet<u32> = star.iter().copied().collect();
         let mut open: BinaryHeap<Candidate> = star.iter().map(candidate).collect();
         let mut best: Option<Candidate> = None;
-        let mut in_vain = 0;
         for _ in 0..SPREAD {
-            if in_vain == self.patience {
-                break;
-            }
             let Some(met) = open.pop() else { break };
             let corners = self.corners(met.triangle);
             let edges = [0, 1, 2].map(|k| edge_of(corners, k));
@@ -91,9 +85,7 @@ impl Locator<'_> {
             }
             if best.as_ref().is_none_or(|best| met.distance < best.distance) {
                 best = Some(met);
-                in_vain = 0;
             }
-            in_vain += 1;
         }
         match best {
             Some(best) => self.within(best.triangle, best.nearest),
@@ -102,7 +94,7 @@ impl Locator<'_> {
     }
 
     /// The weights of a place in a triangle; of one that rounding has put outside, those of a place on its edge.
-    fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
+    pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
         let corners = self.corners(triangle);
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
         let area = |corners: [[f64; 2]; 3]| orientation(&corners, &[0, 1, 2]);
@@ -133,7 +125,7 @@ impl Locator<'_> {
     }
 
     /// The place in a triangle that is nearest to another, and the square of the distance.
-    fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
+    pub(super) fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
         let corners = self.corners(triangle);
         let edges = [0, 1, 2].map(|k| edge_of(corners, k));
         if !edges.iter().any(|&edge| self.is_beyond(edge, place)) {
