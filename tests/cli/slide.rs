@@ -64,6 +64,28 @@ fn a_mesh_that_slid_is_reported_and_compared() {
 }
 
 #[test]
+fn what_slid_is_shown_in_the_page_and_in_pictures() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let shown = "--html p.html --picture p.svg";
+    let run = folder.line(&format!("in.mesh out.mesh --engine cpu --slide {shown}"));
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    // Four corners and the two ends of the line between the materials stay.
+    assert_holds(
+        &folder.text("p.html"),
+        &[
+            "6 of 6 vertices that must stay have the same bits",
+            "21 of 21 vertices on lines slid along them",
+            "vertex that slid",
+        ],
+    );
+    let picture = folder.text("p.svg");
+    assert_holds(&picture, &["vertex that slid"]);
+    assert!(!picture.contains("fixed vertex inside"), "all of those inside slid");
+    folder.line("in.mesh out.mesh --engine cpu --free-interfaces --picture q.svg");
+    assert!(!folder.text("q.svg").contains("vertex that slid"));
+}
+
+#[test]
 fn options_that_do_not_go_with_sliding_are_refused() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     for (options, told) in [
