@@ -88,6 +88,7 @@
 //! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
 //! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
+mod altitude;
 mod attempt;
 mod chart;
 mod choice;
@@ -95,6 +96,7 @@ mod cpu;
 mod error;
 mod file;
 pub mod gpu;
+mod holding;
 mod interpolate;
 mod layout;
 mod limit;

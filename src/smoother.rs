@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
+use crate::altitude;
 use crate::attempt::Attempt;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
@@ -247,6 +248,14 @@ impl<'a> Smoother<'a> {
                 return Err(SmoothError::Option { option, value, remedy });
             }
         }
+        if options.keep_altitude {
+            altitude::check(options, from.is_some())?;
+            if self.sliding.is_some() || self.field.is_some() {
+                let (option, value) = ("keep altitude", "on".to_owned());
+                let remedy = "it goes neither with sliding vertices nor with targets of places";
+                return Err(SmoothError::Option { option, value, remedy });
+            }
+        }
         let mut fault = None;
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
@@ -306,6 +315,11 @@ impl<'a> Smoother<'a> {
                 let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, bound);
                 limit.run(run, options, target, &mut keeping, observe).await?
             }
+            _ if options.keep_altitude => {
+                keeping.about = None;
+                let (all, goal) = ((self.mesh, &self.problem), (options, target));
+                altitude::run(all, run, goal, &mut keeping, observe).await?
+            }
             _ => run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?,
         };
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
@@ -325,6 +339,10 @@ impl<'a> Smoother<'a> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
+        if options.keep_altitude {
+            returned += altitude::restore(&self.topology, &self.mesh.points, &mut points);
+            returned += self.certify(&mut points)?;
+        }
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
         let swept = f(&end.history[best_sweep]);

@@ -105,6 +105,20 @@ fn options_that_do_not_go_with_sliding_are_refused() {
 }
 
 #[test]
+fn the_least_altitude_is_kept_and_certified() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let line = "in.mesh out.mesh --engine cpu --keep-altitude --free-interfaces --report r.json";
+    folder.line(line).clean();
+    let report = folder.json("r.json");
+    let [before, after] = [0, 1].map(|i| number(&report["change"]["least_altitude"][i]));
+    assert!(after >= before, "{before} {after}");
+    assert!(number(&report["after"]["f"]["imr"]) < number(&report["before"]["f"]["imr"]));
+    let run = folder.line("in.mesh out.mesh --keep-altitude --slide");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["--keep-altitude does not go with --slide"]);
+}
+
+#[test]
 fn a_bound_and_the_guard_of_the_worst_are_kept_and_reported() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     let options = "--max-move 0.1 --guard worst --free-interfaces";

@@ -5,6 +5,7 @@
 mod support;
 
 mod agreement;
+mod altitude;
 mod coloring;
 mod fields;
 mod flat;
