@@ -325,7 +325,7 @@ impl MeshFile {
     }
 
     /// Whether the file says that its model is periodic, so that vertices of the boundary belong together in pairs: it has a section
-    /// `$Periodic` of gmsh.
+    /// `$Periodic` of gmsh, or an `NPERIODIC` of SU2 above 1.
     pub fn is_periodic(&self) -> bool {
         self.curves.is_periodic
     }

@@ -149,7 +149,26 @@ fn the_boundary_of_a_periodic_model_stays() {
         elements.collect::<String>(),
     );
     let periodic = format!("{text}$Periodic\n1\n1 2 4\n1\n9 1\n$EndPeriodic\n");
-    let folder = Folder::new(&[("in.msh", &text), ("periodic.msh", &periodic)]);
+    let points = mesh.points.iter().map(|[x, y]| format!("{x} {y}\n")).collect::<String>();
+    let listed = mesh.triangles.iter().map(|[a, b, c]| format!("5 {a} {b} {c}\n"));
+    let su2 = |pairs: u32| {
+        let (triangles, count) = (listed.clone().collect::<String>(), mesh.triangles.len());
+        let points = format!("NPOIN= {}\n{points}", mesh.points.len());
+        format!("NDIME= 2\nNELEM= {count}\n{triangles}{points}NMARK= 0\nNPERIODIC= {pairs}\n")
+    };
+    let folder = Folder::new(&[
+        ("in.msh", &text),
+        ("periodic.msh", &periodic),
+        ("one.su2", &su2(1)),
+        ("two.su2", &su2(2)),
+    ]);
+    let run = folder.line("one.su2 out.su2 --engine cpu --slide");
+    assert_holds(&run.err, &["--slide: 20 vertices"]);
+    let run = folder.line("two.su2 out.su2 --engine cpu --slide");
+    assert_holds(
+        &run.err,
+        &["no vertex can slide", "the boundary stays, as the model is periodic"],
+    );
     let run = folder.line("in.msh out.msh --engine cpu --slide");
     assert_holds(&run.out, &["21 of 21 vertices on lines slid"]);
     let run = folder.line("periodic.msh out.msh --engine cpu --slide");
