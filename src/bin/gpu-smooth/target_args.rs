@@ -9,9 +9,7 @@ use gpu_smooth::{
 
 use crate::explain;
 use crate::numbers::six;
-use crate::read_args::ReadArgs;
 use crate::report::TargetReport;
-use crate::streams;
 use crate::surface_args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
@@ -157,8 +155,8 @@ impl TargetArgs {
 
     /// The targets on a mesh of their own.
     fn field(&self, path: &Path, data: &str, file: &MeshFile) -> Result<TargetField, String> {
-        let mut background = streams::read(path, ReadArgs { weld: false })
-            .map_err(|error| format!("the background of --target: {error}"))?;
+        let mut background =
+            MeshFile::read(path).map_err(|error| format!("the background of --target: {error}"))?;
         self.surface.lay_out(&mut background)?;
         if background.chart().or(file.chart()).is_some() {
             return Err(format!(
