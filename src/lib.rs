@@ -143,7 +143,7 @@ pub use error::{
 };
 pub use file::{
     AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
-    Solution, abandon_writes,
+    Solution, View, abandon_writes,
 };
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,

@@ -1,8 +1,9 @@
 //! What elements are to look like: sizes and shapes that are kept, given, or seen on the sphere.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
-use gpu_smooth::Mesh;
+use gpu_smooth::{Mesh, MeshFile};
 use std::fmt::Write;
+use std::fs;
 
 fn node_ele(mesh: &Mesh) -> [String; 2] {
     super::support::triangle_text(mesh, "")
@@ -230,6 +231,30 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     }
     assert_eq!(ends[0], ends[1]);
     assert_ne!(ends[0], ends[2]);
+    // The same as a view of gmsh, and views that are none.
+    let points = MeshFile::read(&folder.path("bg.msh")).unwrap().mesh().points.clone();
+    let corners = |t: [usize; 3]| {
+        let places = t.map(|v| format!("{:?},{:?},0", points[v][0], points[v][1])).join(", ");
+        format!("ST({places}){{{}}};\n", t.map(|v| [1, 4, 4, 1][v].to_string()).join(","))
+    };
+    let elements = corners([0, 1, 2]) + &corners([0, 2, 3]);
+    let view = format!("// sizes\nView \"h\" {{\nTIME{{0}};\n{elements}}};\n");
+    fs::write(folder.path("bg.pos"), &view).unwrap();
+    folder.line("in out --engine cpu --target size=bg.pos").clean();
+    assert_eq!(folder.mesh("out.node").points, ends[0]);
+    for (text, told) in [
+        (view.replacen("ST", "SP", 1), "bad.pos:4: an element of kind `SP`. Save the view"),
+        (view.replacen("{1,4,4}", "{1,x,4}", 1), "bad.pos:4: `x` is not a number"),
+        (view.replacen("{1,4,4}", "{1,4}", 1), "bad.pos:4: 2 numbers where 3 are needed"),
+        (view.replacen("{1,4,4}", "{1,-4,4}", 1), "its size is not positive"),
+        (view.replace("};", ""), "is missing"),
+        ("$PostFormat\n".to_owned(), "bad.pos:1: no view begins here"),
+        ("View \"h\" {\n};\n".to_owned(), "bad.pos: the view has no triangles"),
+    ] {
+        fs::write(folder.path("bad.pos"), text).unwrap();
+        folder.line("in out --engine cpu --target size=bad.pos").refused(&[told]);
+    }
+    folder.line("in out --engine cpu --target metric=bg.pos").refused(&["take size=bg.pos"]);
     let run = folder.line("in out --engine cpu --target size=half.msh:h");
     assert_holds(&run.err, &["vertices are outside of half.msh, by up to", "the nearest place"]);
     // The mesh's own sizes, of places.

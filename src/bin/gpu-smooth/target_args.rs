@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use gpu_smooth::{
     Mesh, MeshError, MeshFile, Metric, Outside, Smoother, Solution, Surface, TargetField, Targets,
+    View,
 };
 
 use crate::explain;
@@ -21,7 +22,7 @@ pub(crate) struct TargetArgs {
     /// they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
     /// in SOURCE (size=SOURCE), or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE is a .sol file of Medit,
     /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex; or BACKGROUND:DATA, a mesh of its own
-    /// with the name of its point data or such a file for its vertices
+    /// with the name of its point data or such a file for its vertices; or a view of gmsh (.pos), of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise
@@ -118,6 +119,9 @@ impl TargetArgs {
         let (Target::Size { source } | Target::Metric { source }) = &self.target else {
             return None;
         };
+        if is_view(source) {
+            return Some((Path::new(source), ""));
+        }
         let (mesh, data) = source.rsplit_once(':')?;
         let is_file = Path::new(source).exists() || data.is_empty();
         (!is_file && Path::new(mesh).exists()).then_some((Path::new(mesh), data))
@@ -155,6 +159,9 @@ impl TargetArgs {
 
     /// The targets on a mesh of their own.
     fn field(&self, path: &Path, data: &str, file: &MeshFile) -> Result<TargetField, String> {
+        if data.is_empty() {
+            return self.field_of_view(path, file);
+        }
         let mut background =
             MeshFile::read(path).map_err(|error| format!("the background of --target: {error}"))?;
         self.surface.lay_out(&mut background)?;
@@ -173,6 +180,25 @@ impl TargetArgs {
             .and_then(|targets| targets.seen_on(self.surface(), &mesh.points))
             .and_then(|targets| TargetField::new(mesh, &targets))
             .map_err(|error| explain::mesh_error(&background, &error))
+    }
+
+    /// The sizes of a view.
+    fn field_of_view(&self, path: &Path, file: &MeshFile) -> Result<TargetField, String> {
+        let told = |problem: String| format!("the background of --target: {problem}");
+        let view = View::read(path).map_err(|error| told(error.to_string()))?;
+        let name = path.display();
+        if matches!(self.target, Target::Metric { .. }) {
+            return Err(told(format!("{name}: a view has sizes: take size={name}")));
+        }
+        if file.chart().is_some() {
+            return Err(told(format!(
+                "{name}: a mesh across the line where longitudes start again has no background: give sizes for its vertices"
+            )));
+        }
+        Targets::sizes(view.values())
+            .and_then(|targets| targets.seen_on(self.surface(), &view.mesh().points))
+            .and_then(|targets| TargetField::new(view.mesh(), &targets))
+            .map_err(|error| told(format!("{name}: {error}, in the order of places in the file")))
     }
 
     fn targets(
@@ -201,6 +227,12 @@ impl TargetArgs {
         let targets = targets.and_then(|targets| targets.seen_on(surface, points));
         targets.map(Some).map_err(told)
     }
+}
+
+/// Whether a source is the file of a view of gmsh.
+fn is_view(source: &str) -> bool {
+    let path = Path::new(source);
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pos")) && path.exists()
 }
 
 /// What there is to say of vertices outside of a background.
