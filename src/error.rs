@@ -219,6 +219,13 @@ pub enum MeshError {
         /// What is wrong there.
         problem: &'static str,
     },
+    /// A pole of the sphere is inside of a triangle or on its edge, where longitudes have no direction; see
+    /// [`Chart`](crate::Chart).
+    #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
+    Pole {
+        /// The first such triangle.
+        triangle: usize,
+    },
     /// A list of positions does not have exactly one for each vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {

@@ -89,12 +89,15 @@
 //! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
 //! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
+mod altitude;
 mod attempt;
+mod chart;
 mod choice;
 mod cpu;
 mod error;
 mod file;
 pub mod gpu;
+mod holding;
 mod interpolate;
 mod layout;
 mod limit;
@@ -103,6 +106,7 @@ mod mesh;
 mod metric;
 mod outcome;
 mod parallel;
+mod places;
 mod quality;
 mod resume;
 mod rounds;
@@ -133,13 +137,14 @@ mod embedding {}
 #[doc(hidden)]
 pub mod internal;
 
+pub use chart::Chart;
 pub use choice::Reason;
 pub use error::{
     BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
 };
 pub use file::{
     AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
-    Solution, abandon_writes,
+    Solution, View, abandon_writes,
 };
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
@@ -159,7 +164,7 @@ pub use run::{
 };
 pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};
-pub use targets::{Surface, Targets};
+pub use targets::{Outside, Surface, TargetField, Targets};
 pub use topology::{Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

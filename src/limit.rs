@@ -4,8 +4,9 @@
 use glam::DVec2;
 
 use crate::attempt::{Attempt, Ended};
-use crate::error::{MeshError, SmoothError};
-use crate::layout::{Problem, prepare};
+use crate::error::SmoothError;
+use crate::holding::Holding;
+use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::{Mesh, Precision};
 use crate::rounds::{Rounds, is_sound, objectives};
@@ -28,15 +29,12 @@ const AT_BOUND: f64 = 1.0 - 1e-6;
 
 /// How far each free vertex may move, and which ones are as far as they may.
 pub(crate) struct Limit<'s> {
-    mesh: &'s Mesh,
     problem: &'s Problem,
     /// The largest distance of each free vertex from its start, normalized.
     bounds: Vec<f64>,
-    /// Which free vertices are at their bound. Sweeps leave them where they are.
-    held: Vec<bool>,
+    /// Which free vertices are at their bound.
+    holding: Holding<'s>,
     fans: Vec<Fan>,
-    /// The number in the problem of each vertex of the mesh.
-    number: Vec<u32>,
 }
 
 impl<'s> Limit<'s> {
@@ -58,23 +56,18 @@ impl<'s> Limit<'s> {
             (most * edges[v as usize] * (1.0 - 1e-9) - rounding).max(0.0)
         };
         let (_, scale) = problem.normalization();
-        let mut number = vec![u32::MAX; mesh.points.len()];
-        for (new, &v) in (0..).zip(problem.vertices()) {
-            number[v as usize] = new;
-        }
+        let holding = Holding::new(mesh, problem);
         let free = &problem.vertices()[..problem.free_count()];
         let fan = |&v: &u32| {
             let mut fan = Fan::new(topology, v);
-            fan.renumber(&number);
+            fan.renumber(&holding.number);
             fan
         };
         Self {
-            mesh,
             problem,
             bounds: free.iter().map(|&v| bound(v) * scale).collect(),
-            held: vec![false; free.len()],
             fans: free.iter().map(fan).collect(),
-            number,
+            holding,
         }
     }
 
@@ -99,14 +92,14 @@ impl<'s> Limit<'s> {
             let left = options.max_sweeps.saturating_sub(done);
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
             // Those at their bound are fixed to the engine.
-            let smaller = self.without_held()?;
+            let smaller = self.holding.smaller()?;
             let problem = smaller.as_ref().unwrap_or(self.problem);
-            let from = self.renumbered(&positions, problem);
+            let from = self.holding.renumbered(&positions, problem);
             let Attempt { device, phase, .. } = attempt;
             let attempt = Attempt { problem, device, phase, done };
             let mut next = attempt.sweep(&part, target, (&from, None), keeping, observe).await?;
-            let to = self.numbered_back(&next.positions, problem);
-            let before = self.held.clone();
+            let to = self.holding.numbered_back(&next.positions, problem);
+            let before = self.holding.held.clone();
             let has_moved = self.take(&plan, &mut positions, &to);
             for _ in 0..VISITS {
                 self.visit_held(&mut positions, &plan.base_step(1.0));
@@ -131,7 +124,7 @@ impl<'s> Limit<'s> {
             };
             f.push(last);
             let judged = rule.judge(&f[1..], f.len() - 2, 1);
-            let is_settled = judged.is_some() && (has_moved || before == self.held);
+            let is_settled = judged.is_some() && (has_moved || before == self.holding.held);
             estimates = if is_settled { estimates + 1 } else { 0 };
             let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left == 0;
             let is_last = left <= SWEEPS && ended.stop == Stop::MaxSweeps
@@ -180,15 +173,15 @@ impl<'s> Limit<'s> {
             share *= 0.5;
         }
         let beyond = |(v, to): (usize, &DVec2)| (self.within(v, *to) != *to).then_some(v);
-        let free = &to[..self.held.len()];
+        let free = &to[..self.holding.held.len()];
         let beyond: Vec<usize> = free.iter().enumerate().filter_map(beyond).collect();
-        beyond.into_iter().for_each(|v| self.held[v] = true);
+        beyond.into_iter().for_each(|v| self.holding.held[v] = true);
         false
     }
 
     /// Visits the vertices at their bound: a Newton step, brought back within the bound.
     fn visit_held(&self, positions: &mut [DVec2], step: &Step) {
-        for v in (0..self.held.len()).filter(|&v| self.held[v]) {
+        for v in (0..self.holding.held.len()).filter(|&v| self.holding.held[v]) {
             let here = positions[v];
             let fan = &self.fans[v];
             let patch = Patch { problem: self.problem, positions, fan, step };
@@ -220,41 +213,10 @@ impl<'s> Limit<'s> {
 
     /// Finds the vertices at their bound. Those that were held for another reason are let go where they have moved inward.
     fn find_held(&mut self, positions: &[DVec2]) {
-        for (v, held) in self.held.iter_mut().enumerate() {
+        for (v, held) in self.holding.held.iter_mut().enumerate() {
             let distance = positions[v].distance(self.problem.positions()[v]);
             *held = distance >= AT_BOUND * self.bounds[v];
         }
-    }
-
-    /// The problem in which those at their bound are fixed; `None` if there are none, or no others.
-    fn without_held(&self) -> Result<Option<Problem>, MeshError> {
-        let count = self.held.iter().filter(|held| **held).count();
-        if count == 0 || count == self.held.len() {
-            return Ok(None);
-        }
-        let vertices = self.problem.vertices().iter().zip(&self.held);
-        let held = vertices.filter(|(_, held)| **held).map(|(&v, _)| v);
-        let Mesh { points, triangles, fixed } = self.mesh;
-        let fixed = fixed.iter().copied().chain(held).collect();
-        let mesh = Mesh { points: points.clone(), triangles: triangles.clone(), fixed };
-        let (_, mut problem) = prepare(&mesh)?;
-        problem.take_targets(self.problem, &self.number);
-        Ok(Some(problem))
-    }
-
-    /// Positions in the order of another problem of the same mesh.
-    fn renumbered(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
-        let of = |&v: &u32| positions[self.number[v as usize] as usize];
-        other.vertices().iter().map(of).collect()
-    }
-
-    /// Positions in the order of the problem, from that of another one.
-    fn numbered_back(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
-        let mut back = vec![DVec2::ZERO; positions.len()];
-        for (&v, &position) in other.vertices().iter().zip(positions) {
-            back[self.number[v as usize] as usize] = position;
-        }
-        back
     }
 
     /// Checks that there can be a bound in a run by these options.

@@ -39,7 +39,8 @@ pub struct Outcome {
     pub lost: f64,
     /// How far the run went toward its goal, if it had one.
     pub goal: Option<GoalOutcome>,
-    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle.
+    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle, or made one flatter
+    /// than [`Options::keep_altitude`](crate::Options::keep_altitude) allows.
     pub returned: usize,
     /// What slid, if vertices might; see [`Smoother::set_slide`](crate::Smoother::set_slide).
     pub slid: Option<Slid>,

@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
+use crate::altitude;
 use crate::attempt::Attempt;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
@@ -17,6 +18,7 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::places::Places;
 use crate::quality::Quality;
 use crate::resume;
 use crate::rounds::Rounds;
@@ -25,7 +27,7 @@ use crate::run::{
     Options, Phase, ROUNDING, Sharpness, Stop,
 };
 use crate::slide::{Slide, Sliding};
-use crate::targets::Targets;
+use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
 
 /// The processor that does the sweeps.
@@ -42,6 +44,8 @@ pub struct Smoother<'a> {
     topology: Topology<'a>,
     problem: Problem,
     sliding: Option<Sliding>,
+    /// The targets of places, if targets do not belong to vertices.
+    field: Option<TargetField>,
     prepare: Duration,
 }
 
@@ -55,7 +59,7 @@ impl<'a> Smoother<'a> {
         let (mut topology, problem) = prepare(mesh)?;
         // Runs need the problem alone. Stars are found again if a vertex has to be set back.
         topology.forget_stars();
-        Ok(Self { mesh, topology, problem, sliding: None, prepare: start.elapsed() })
+        Ok(Self { mesh, topology, problem, sliding: None, field: None, prepare: start.elapsed() })
     }
 
     /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
@@ -66,7 +70,22 @@ impl<'a> Smoother<'a> {
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
         targets.check_count(self.mesh.points.len())?;
         self.problem.set_targets(targets.maps());
+        self.field = None;
         Ok(())
+    }
+
+    /// Sets what elements are to look like at each place, in place of targets that belong to vertices. A run then goes in rounds of
+    /// sweeps, after each of which targets are taken from where the vertices have moved to. f is that by the targets of the places
+    /// where vertices are, at the end of each round, and does not rise. As sweeps see targets that stand still, a run ends where
+    /// they lead to no lower f, which may be above the least there is. Returns which vertices are outside of the field's mesh.
+    ///
+    /// # Errors
+    /// [`MeshError::NotFinite`] if a vertex is at no place.
+    pub fn set_target_field(&mut self, field: TargetField) -> Result<Outside, MeshError> {
+        let (targets, outside) = field.at(&self.mesh.points)?;
+        self.set_targets(&targets)?;
+        self.field = Some(field);
+        Ok(outside)
     }
 
     /// Lets vertices slide along the boundary and other curves in further runs; `None` for none. Returns how many vertices may.
@@ -88,13 +107,18 @@ impl<'a> Smoother<'a> {
     }
 
     /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
-    /// [`Self::set_targets`].
+    /// [`Self::set_targets`] and [`Self::set_target_field`].
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a point at which there is
+    /// no target.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
-        Ok(self.objective(metric, &self.problem.normalized(points, Vec::new())))
+        let positions = self.problem.normalized(points, Vec::new());
+        let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
+        let mut places = Places::new(self.mesh, field, &self.problem);
+        places.follow(&positions)?;
+        Ok(metric.ideal_squared() + mean_excess(metric, &places.problem, &positions))
     }
 
     /// The mesh's windings, boundary and free vertices.
@@ -216,6 +240,22 @@ impl<'a> Smoother<'a> {
                 return Err(SmoothError::Option { option: "max move", value, remedy });
             }
         }
+        if self.field.is_some() {
+            Places::check(options, from.is_some())?;
+            if self.sliding.is_some() {
+                let (option, value) = ("target field", "with sliding vertices".to_owned());
+                let remedy = "set one of the two, or targets of vertices";
+                return Err(SmoothError::Option { option, value, remedy });
+            }
+        }
+        if options.keep_altitude {
+            altitude::check(options, from.is_some())?;
+            if self.sliding.is_some() || self.field.is_some() {
+                let (option, value) = ("keep altitude", "on".to_owned());
+                let remedy = "it goes neither with sliding vertices nor with targets of places";
+                return Err(SmoothError::Option { option, value, remedy });
+            }
+        }
         let mut fault = None;
         if let Some((gpu, waiting)) = device {
             gpu.check_size(self.size())?;
@@ -257,21 +297,30 @@ impl<'a> Smoother<'a> {
         keeping.about = Some(about);
         let positions = self.problem.positions();
         let mut rounds = self.sliding.as_ref().map(Rounds::new);
-        let end = match (&mut rounds, options.max_move) {
-            (Some(rounds), _) => {
+        let mut places =
+            self.field.as_ref().map(|field| Places::new(self.mesh, field, &self.problem));
+        let end = match (&mut rounds, &mut places, options.max_move) {
+            (_, Some(places), _) => {
+                keeping.about = None;
+                places.run(run, options, &mut keeping, observe).await?
+            }
+            (Some(rounds), ..) => {
                 // A checkpoint does not hold where vertices have slid.
                 keeping.about = None;
                 rounds.run(run, options, target, &mut keeping, observe).await?
             }
-            (None, Some(most)) => {
+            (_, _, Some(most)) => {
                 keeping.about = None;
                 let bound = (most, options.stored);
                 let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, bound);
                 limit.run(run, options, target, &mut keeping, observe).await?
             }
-            (None, None) => {
-                run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?
+            _ if options.keep_altitude => {
+                keeping.about = None;
+                let (all, goal) = ((self.mesh, &self.problem), (options, target));
+                altitude::run(all, run, goal, &mut keeping, observe).await?
             }
+            _ => run.sweep(options, target, (positions, resumed), &mut keeping, observe).await?,
         };
         let f = |objectives: &Objectives| objectives.of(base).unwrap_or(f64::INFINITY);
         let best_sweep = if monotone {
@@ -290,10 +339,21 @@ impl<'a> Smoother<'a> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
+        if options.keep_altitude {
+            returned += altitude::restore(&self.topology, &self.mesh.points, &mut points);
+            returned += self.certify(&mut points)?;
+        }
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
         let swept = f(&end.history[best_sweep]);
-        let written = self.objective(base, &self.problem.normalized(&points, end.positions));
+        let judged = self.problem.normalized(&points, end.positions);
+        let written = match &mut places {
+            None => self.objective(base, &judged),
+            Some(places) => {
+                places.follow(&judged)?;
+                base.ideal_squared() + mean_excess(base, &places.problem, &judged)
+            }
+        };
         let gains = initial - written > NOISE * initial + ROUNDING;
         // Of a smaller gain, the errors of f on a device would be a share to speak of.
         let lost = match initial - swept > 100.0 * JITTER * initial {

@@ -56,11 +56,11 @@ impl MeshFile {
             let what = format!("a mesh of {} files and one of {}", mine.len(), theirs.len());
             return differ(0, [0; 2], what);
         }
-        let counts = [self, other].map(|file| file.mesh().points.len());
+        let counts = [self, other].map(|file| file.original().points.len());
         if counts[0] != counts[1] {
             return differ(0, [0; 2], format!("{} vertices and {}", counts[0], counts[1]));
         }
-        if self.mesh().triangles != other.mesh().triangles {
+        if self.original().triangles != other.original().triangles {
             return differ(0, [0; 2], "the triangles are not the same".into());
         }
         let encoded = [self, other].map(|file| file.encoded().map(Encoded::bytes));

@@ -48,7 +48,7 @@ impl MeshFile {
                 Some((_, true)) => {}
             }
         }
-        let vertices = self.mesh().points.len();
+        let vertices = self.original().points.len();
         let is_real = |name: &str| known.iter().any(|(known, real)| known == name && *real);
         for (name, _) in known.iter().filter(|(_, is_real)| *is_real) {
             let is_wanted = names.is_none_or(|names| names.contains(name));
@@ -75,7 +75,7 @@ impl MeshFile {
     pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
         let source = &self.sources()[0];
         let PointData { fields, known } = self.data_of(Wanted::Named(&[name.to_owned()]))?;
-        let vertices = self.mesh().points.len();
+        let vertices = self.original().points.len();
         let shown = quoted(name.as_bytes());
         match fields.first().map(|field| (field.components(), field.values())) {
             Some((1, values)) if values.len() == vertices => Ok(values.to_vec()),

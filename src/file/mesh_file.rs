@@ -1,5 +1,6 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
+use crate::chart::Chart;
 use crate::error::{Location, MeshError, ReadError};
 use crate::file::assemble;
 use crate::file::curves::{Curves, between_regions};
@@ -101,6 +102,8 @@ pub struct MeshFile {
     /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
     /// `.ele` and, if there is one, `.poly`.
     sources: Vec<Source>,
+    /// How the mesh was laid out on a sphere, if it had to be.
+    chart: Option<Chart>,
 }
 
 impl MeshFile {
@@ -234,6 +237,7 @@ impl MeshFile {
             has_free_interfaces: false,
             interfaces,
             sources,
+            chart: None,
         })
     }
 
@@ -258,6 +262,24 @@ impl MeshFile {
     /// The mesh, vertices and triangles in the order of the file.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// How the mesh was laid out by [`lay_out_on_sphere`](Self::lay_out_on_sphere), if there was need for it.
+    pub fn chart(&self) -> Option<&Chart> {
+        self.chart.as_ref()
+    }
+
+    /// The mesh as the file has it, be it laid out on a sphere or not.
+    pub fn original(&self) -> &Mesh {
+        self.chart.as_ref().map_or(&self.mesh, Chart::original)
+    }
+
+    pub(crate) fn take_chart(&mut self, chart: Chart) {
+        self.curves.held.extend_from_slice(chart.held());
+        let Mesh { points, triangles, .. } = chart.mesh();
+        self.mesh.points.clone_from(points);
+        self.mesh.triangles.clone_from(triangles);
+        self.chart = Some(chart);
     }
 
     /// The [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]. Regions are numbered from 0 in
@@ -303,7 +325,7 @@ impl MeshFile {
     }
 
     /// Whether the file says that its model is periodic, so that vertices of the boundary belong together in pairs: it has a section
-    /// `$Periodic` of gmsh.
+    /// `$Periodic` of gmsh, or an `NPERIODIC` of SU2 above 1.
     pub fn is_periodic(&self) -> bool {
         self.curves.is_periodic
     }
@@ -425,8 +447,21 @@ impl MeshFile {
     /// Where vertices have their coordinates, by their zero-based indices. The file is searched once for all of them.
     /// Indices of no vertex are left out.
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
-        let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
-        keep_ascending(&mut wanted, self.mesh.points.len());
+        let wanted: Vec<u32> = indices.into_iter().collect();
+        // A copy is where its vertex is.
+        let count = self.original().points.len();
+        let owner = |v: u32| match self.chart.as_ref().zip((v as usize).checked_sub(count)) {
+            Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
+            None => v,
+        };
+        let owners = wanted.iter().map(|&v| owner(v) as usize).collect();
+        let found = self.places_of(owners);
+        let place = |&v: &u32| Some((v, found.get(&owner(v))?.clone()));
+        wanted.iter().filter_map(place).collect()
+    }
+
+    fn places_of(&self, mut wanted: Vec<usize>) -> BTreeMap<u32, Place> {
+        keep_ascending(&mut wanted, self.original().points.len());
         let source = &self.sources[0];
         let found = match &Family::of(self.format).reader {
             None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),

@@ -135,9 +135,11 @@ impl MeshFile {
     ) -> io::Result<()> {
         let bytes = &self.sources()[part].bytes;
         let Some((points, fields)) = content else { return out.write_all(bytes) };
+        let given = self.chart().map(|chart| chart.given(points));
+        let new = given.as_deref().unwrap_or(points);
         let points = || {
             let places = (self.x_at(), self.owners());
-            Column::of_points(places, self.numbers(), &self.mesh().points, points)
+            Column::of_points(places, self.numbers(), &self.original().points, new)
         };
         // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());

@@ -84,6 +84,12 @@ impl Walk for Su2 {
                     }
                     lists.push(List { cursor: start, ahead, count, zone, marker });
                 }
+                // The first of them is no transformation.
+                b"NPERIODIC"
+                    if !sink.asks_for_data() && integer(value).is_some_and(|count| count > 1) =>
+                {
+                    sink.periodic();
+                }
                 b"NMARK" | b"NZONE" | b"IZONE" => {}
                 // Counts of other lists, boxes of free-form deformation.
                 _ if sink.asks_for_data() && !value.is_empty() => {

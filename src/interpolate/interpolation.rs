@@ -106,7 +106,7 @@ impl Interpolation {
 }
 
 /// The value between three. Where they are equal it is theirs to the bit.
-fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
+pub(super) fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
     if ![a, b, c].iter().all(|value| value.is_finite()) {
         return f64::NAN;
     }

@@ -37,7 +37,7 @@ impl Locator<'_> {
     }
 
     /// Walks towards a place, each time across an edge that the place lies beyond. None if the boundary is in the way.
-    fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
+    pub(super) fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
         let mut triangle = first;
         for step in 0..STEPS {
             let corners = self.corners(triangle);
@@ -94,7 +94,7 @@ impl Locator<'_> {
     }
 
     /// The weights of a place in a triangle; of one that rounding has put outside, those of a place on its edge.
-    fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
+    pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
         let corners = self.corners(triangle);
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
         let area = |corners: [[f64; 2]; 3]| orientation(&corners, &[0, 1, 2]);
@@ -125,7 +125,7 @@ impl Locator<'_> {
     }
 
     /// The place in a triangle that is nearest to another, and the square of the distance.
-    fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
+    pub(super) fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
         let corners = self.corners(triangle);
         let edges = [0, 1, 2].map(|k| edge_of(corners, k));
         if !edges.iter().any(|&edge| self.is_beyond(edge, place)) {

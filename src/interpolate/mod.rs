@@ -1,6 +1,8 @@
 //! Data of vertices taken from a mesh at other places: linear in the triangles of the mesh.
 
+mod background;
 mod interpolation;
 mod locate;
 
+pub(crate) use background::Background;
 pub use interpolation::Interpolation;

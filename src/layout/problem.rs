@@ -109,9 +109,16 @@ impl Problem {
     /// Gives the mesh targets: a target map for each of its vertices, in any unit. Maps are scaled together such that the
     /// mean area of the triangles, as they show them, is 1.
     pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
+        let positions = std::mem::take(&mut self.positions);
+        self.set_targets_at(maps, &positions);
+        self.positions = positions;
+    }
+
+    /// The same, where the vertices have moved to these normalized positions.
+    pub(crate) fn set_targets_at(&mut self, maps: &[Tensor], positions: &[DVec2]) {
         let map = |v: u32| maps[v as usize].0;
         let area = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|v| self.positions[v as usize]);
+            let [p, q, r] = t.map(|v| positions[v as usize]);
             let map = TargetMap::mean(t.map(|v| map(self.vertices[v as usize])));
             let [a, b] = [q - p, r - p].map(|edge| map.apply(edge.to_array()));
             0.5 * (a[0] * b[1] - a[1] * b[0])
@@ -121,8 +128,7 @@ impl Problem {
         self.targets = Some(collect(self.vertices.len(), |i| scaled(self.vertices[i])));
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
         self.is_stretched = self.targets().is_some_and(|maps| maps.iter().any(is_longer));
-        let shown =
-            |t: &[u32; 3]| 0.5 * self.corner(t, |v| self.positions[v as usize]).doubled_area();
+        let shown = |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
         self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
     }
 

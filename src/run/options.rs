@@ -73,6 +73,9 @@ pub struct Options {
     /// How far a vertex may be from its place before the run, in the mean length of the edges there before. Above 0; `None` for as
     /// far as it takes. Only for whole runs, by one metric other than edge.
     pub max_move: Option<f64>,
+    /// Whether no triangle's altitude may fall below the least that the mesh has, which bounds the time step of explicit solvers. Only
+    /// for whole runs, by one metric other than edge.
+    pub keep_altitude: bool,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
     /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`Sharpness::CONTINUED`] in runs with
@@ -96,6 +99,7 @@ impl Default for Options {
             inner: 1,
             guard: Guard::ByMetric,
             max_move: None,
+            keep_altitude: false,
             derivatives: Derivatives::Analytic,
             sharpness: None,
             track_all: false,
@@ -158,6 +162,7 @@ impl Options {
         match (self.guard, self.max_move) {
             (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
             (_, Some(most)) => refuse("max move", most.to_string()),
+            _ if self.keep_altitude => refuse("keep altitude", "on".to_owned()),
             _ => Ok(()),
         }
     }

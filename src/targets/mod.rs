@@ -1,11 +1,13 @@
 //! Targets: the size, stretching and orientation that elements are to have, vertex by vertex.
 
+mod field;
 mod keep;
 mod surface;
 mod tensor;
 
 use crate::error::MeshError;
 use crate::topology::Topology;
+pub use field::{Outside, TargetField};
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;
 
@@ -112,6 +114,11 @@ impl Targets {
             given if given == vertices => Ok(()),
             given => Err(MeshError::ValueCount { expected: vertices, given }),
         }
+    }
+
+    /// Targets by √M of each vertex.
+    pub(crate) fn of_maps(maps: Vec<Tensor>) -> Self {
+        Self { maps }
     }
 
     /// √M of each vertex, as xx, xy, yy.

@@ -13,9 +13,9 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Fails if a point is not on the surface, or at a pole, where all longitudes are one point.
+    /// Fails if a point is not on the surface.
     pub fn check(self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        let is_off = |&[_, y]: &[f64; 2]| y.is_nan() || y.abs() >= 90.0;
+        let is_off = |&[_, y]: &[f64; 2]| y.is_nan() || y.abs() > 90.0;
         match (self, points.iter().position(is_off)) {
             (Surface::Sphere, Some(vertex)) => {
                 let problem = "its latitude is not between -90 and 90 degrees";

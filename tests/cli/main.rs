@@ -34,6 +34,7 @@ mod report;
 mod schemes;
 mod shell;
 mod slide;
+mod sphere;
 mod streams;
 mod targets;
 mod untangle;

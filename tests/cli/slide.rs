@@ -64,6 +64,28 @@ fn a_mesh_that_slid_is_reported_and_compared() {
 }
 
 #[test]
+fn what_slid_is_shown_in_the_page_and_in_pictures() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let shown = "--html p.html --picture p.svg";
+    let run = folder.line(&format!("in.mesh out.mesh --engine cpu --slide {shown}"));
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    // Four corners and the two ends of the line between the materials stay.
+    assert_holds(
+        &folder.text("p.html"),
+        &[
+            "6 of 6 vertices that must stay have the same bits",
+            "21 of 21 vertices on lines slid along them",
+            "vertex that slid",
+        ],
+    );
+    let picture = folder.text("p.svg");
+    assert_holds(&picture, &["vertex that slid"]);
+    assert!(!picture.contains("fixed vertex inside"), "all of those inside slid");
+    folder.line("in.mesh out.mesh --engine cpu --free-interfaces --picture q.svg");
+    assert!(!folder.text("q.svg").contains("vertex that slid"));
+}
+
+#[test]
 fn options_that_do_not_go_with_sliding_are_refused() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     for (options, told) in [
@@ -80,6 +102,20 @@ fn options_that_do_not_go_with_sliding_are_refused() {
         assert!(run.code != Some(0), "{options}");
         assert_holds(&run.err, &[told]);
     }
+}
+
+#[test]
+fn the_least_altitude_is_kept_and_certified() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let line = "in.mesh out.mesh --engine cpu --keep-altitude --free-interfaces --report r.json";
+    folder.line(line).clean();
+    let report = folder.json("r.json");
+    let [before, after] = [0, 1].map(|i| number(&report["change"]["least_altitude"][i]));
+    assert!(after >= before, "{before} {after}");
+    assert!(number(&report["after"]["f"]["imr"]) < number(&report["before"]["f"]["imr"]));
+    let run = folder.line("in.mesh out.mesh --keep-altitude --slide");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["--keep-altitude does not go with --slide"]);
 }
 
 #[test]
@@ -113,7 +149,26 @@ fn the_boundary_of_a_periodic_model_stays() {
         elements.collect::<String>(),
     );
     let periodic = format!("{text}$Periodic\n1\n1 2 4\n1\n9 1\n$EndPeriodic\n");
-    let folder = Folder::new(&[("in.msh", &text), ("periodic.msh", &periodic)]);
+    let points = mesh.points.iter().map(|[x, y]| format!("{x} {y}\n")).collect::<String>();
+    let listed = mesh.triangles.iter().map(|[a, b, c]| format!("5 {a} {b} {c}\n"));
+    let su2 = |pairs: u32| {
+        let (triangles, count) = (listed.clone().collect::<String>(), mesh.triangles.len());
+        let points = format!("NPOIN= {}\n{points}", mesh.points.len());
+        format!("NDIME= 2\nNELEM= {count}\n{triangles}{points}NMARK= 0\nNPERIODIC= {pairs}\n")
+    };
+    let folder = Folder::new(&[
+        ("in.msh", &text),
+        ("periodic.msh", &periodic),
+        ("one.su2", &su2(1)),
+        ("two.su2", &su2(2)),
+    ]);
+    let run = folder.line("one.su2 out.su2 --engine cpu --slide");
+    assert_holds(&run.err, &["--slide: 20 vertices"]);
+    let run = folder.line("two.su2 out.su2 --engine cpu --slide");
+    assert_holds(
+        &run.err,
+        &["no vertex can slide", "the boundary stays, as the model is periodic"],
+    );
     let run = folder.line("in.msh out.msh --engine cpu --slide");
     assert_holds(&run.out, &["21 of 21 vertices on lines slid"]);
     let run = folder.line("periodic.msh out.msh --engine cpu --slide");

@@ -1,8 +1,9 @@
 //! What elements are to look like: sizes and shapes that are kept, given, or seen on the sphere.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
-use gpu_smooth::Mesh;
+use gpu_smooth::{Mesh, MeshFile};
 use std::fmt::Write;
+use std::fs;
 
 fn node_ele(mesh: &Mesh) -> [String; 2] {
     super::support::triangle_text(mesh, "")
@@ -139,7 +140,7 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
         ("size=few.mtr", &["few.mtr: there are numbers for 3 vertices"][..]),
         ("size=cut.mtr", &["cut.mtr:8: the file ends after 7 of"]),
         ("size=wrong.mtr", &["wrong.mtr:2", "not a number"]),
-        ("size=zero.mtr", &["vertex 0", "its size is not positive"]),
+        ("size=zero.mtr", &["in.node:3: vertex 1: its size is not positive"]),
         ("size=two.mtr", &["two.mtr:1: a vertex has 2 numbers"]),
         ("metric=huge.mtr", &["huge.mtr:2: the file ends after 1 of 99999999999999 vertices"]),
         ("size=vector.sol", &["vector.sol:5: the solution is of kind 2"]),
@@ -187,4 +188,85 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
     folder
         .line("in.gr3 out.gr3 --engine cpu --surface sphere --quiet")
         .refused(&["its latitude is not between -90 and 90 degrees"]);
+}
+
+/// Two triangles around the small mesh, in a file of gmsh, with `h` at their corners: 1 on the left and 4 on the right.
+fn background(factor: f64) -> String {
+    let points = disturbed().points;
+    let most = |axis: usize| points.iter().fold(f64::MIN, |most, p| most.max(p[axis]));
+    let least = |axis: usize| points.iter().fold(f64::MAX, |least, p| least.min(p[axis]));
+    let (x, y) = ([least(0), factor * most(0)], [least(1), most(1)]);
+    let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
+    let nodes = corners.iter().zip(1..).map(|([x, y], tag)| format!("{tag} {x} {y} 0\n"));
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n{}$EndNodes\n$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n\
+         $NodeData\n1\n\"h\"\n1\n0\n3\n0\n1\n4\n1 1\n2 4\n3 4\n4 1\n$EndNodeData\n",
+        nodes.collect::<String>()
+    )
+}
+
+#[test]
+fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
+    let files = [
+        ("bg.msh", background(1.0)),
+        ("half.msh", background(0.5)),
+        ("bg.mtr", "4 1\n1 4 4 1\n".into()),
+    ];
+    let files: Vec<(&str, &str)> =
+        files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let folder = folder(&files);
+    let mut ends = Vec::new();
+    for target in ["size=bg.msh:h", "size=bg.msh:bg.mtr", "size=bg.msh:h --target-of vertex"] {
+        folder.line(&format!("in out --engine cpu --target {target} --report r.json")).clean();
+        let report = folder.json("r.json");
+        let (told, is_of_vertex) = (&report["target"], target.ends_with("vertex"));
+        assert_eq!(told["of"], if is_of_vertex { "vertex" } else { "place" });
+        assert_eq!(
+            (&report["scheme"], &report["stop"]),
+            (&"soft-size".into(), &"converged".into())
+        );
+        assert!(number(&told["f"][1]) < number(&told["f"][0]), "{told}");
+        assert_smoothed(&folder.mesh("in.node"), &folder.mesh("out.node"));
+        ends.push(folder.mesh("out.node").points);
+    }
+    assert_eq!(ends[0], ends[1]);
+    assert_ne!(ends[0], ends[2]);
+    // The same as a view of gmsh, and views that are none.
+    let points = MeshFile::read(&folder.path("bg.msh")).unwrap().mesh().points.clone();
+    let corners = |t: [usize; 3]| {
+        let places = t.map(|v| format!("{:?},{:?},0", points[v][0], points[v][1])).join(", ");
+        format!("ST({places}){{{}}};\n", t.map(|v| [1, 4, 4, 1][v].to_string()).join(","))
+    };
+    let elements = corners([0, 1, 2]) + &corners([0, 2, 3]);
+    let view = format!("// sizes\nView \"h\" {{\nTIME{{0}};\n{elements}}};\n");
+    fs::write(folder.path("bg.pos"), &view).unwrap();
+    folder.line("in out --engine cpu --target size=bg.pos").clean();
+    assert_eq!(folder.mesh("out.node").points, ends[0]);
+    for (text, told) in [
+        (view.replacen("ST", "SP", 1), "bad.pos:4: an element of kind `SP`. Save the view"),
+        (view.replacen("{1,4,4}", "{1,x,4}", 1), "bad.pos:4: `x` is not a number"),
+        (view.replacen("{1,4,4}", "{1,4}", 1), "bad.pos:4: 2 numbers where 3 are needed"),
+        (view.replacen("{1,4,4}", "{1,-4,4}", 1), "its size is not positive"),
+        (view.replace("};", ""), "is missing"),
+        ("$PostFormat\n".to_owned(), "bad.pos:1: no view begins here"),
+        ("View \"h\" {\n};\n".to_owned(), "bad.pos: the view has no triangles"),
+    ] {
+        fs::write(folder.path("bad.pos"), text).unwrap();
+        folder.line("in out --engine cpu --target size=bad.pos").refused(&[told]);
+    }
+    folder.line("in out --engine cpu --target metric=bg.pos").refused(&["take size=bg.pos"]);
+    let run = folder.line("in out --engine cpu --target size=half.msh:h");
+    assert_holds(&run.err, &["vertices are outside of half.msh, by up to", "the nearest place"]);
+    // The mesh's own sizes, of places.
+    folder.line("in out --engine cpu --target keep-size --target-of place").clean();
+    for (target, parts) in [
+        ("size=bg.msh:g", &["no point data is called 'g'"][..]),
+        ("metric=bg.msh:h", &["a vertex has 1 numbers where 3 are needed"]),
+        ("size=in.node:attribute", &["no point data is called 'attribute'"]),
+    ] {
+        folder.line(&format!("in out --engine cpu --target {target}")).refused(parts);
+    }
+    let run = folder.line("in out --engine cpu --target size=bg.msh:h --slide");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["a target of places does not go with --slide", "--target-of vertex"]);
 }

@@ -5,7 +5,9 @@
 mod support;
 
 mod agreement;
+mod altitude;
 mod coloring;
+mod fields;
 mod flat;
 mod global;
 mod goals;

@@ -298,7 +298,7 @@ fn what_is_no_target_is_refused() {
     tensors[9] = [1.0, 2.0, 1.0];
     refused(Targets::tensors(&tensors), 9);
     let mut points = mesh.points.clone();
-    points[4][1] = 90.0;
+    points[4][1] = 90.5;
     refused(Targets::equilateral(count).seen_on(Surface::Sphere, &points), 4);
 
     let mut smoother = Smoother::new(&mesh).unwrap();

@@ -16,6 +16,7 @@ use crate::read_args::ReadArgs;
 use crate::riding::RidingArgs;
 use crate::run_args::SmoothArgs;
 use crate::slide_args::SlideArgs;
+use crate::surface_args::SurfaceArgs;
 
 /// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
@@ -137,6 +138,8 @@ pub(crate) struct CompareArgs {
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
     pub(crate) sliding: SlideArgs,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
     #[command(flatten)]

@@ -3,6 +3,7 @@
 use gpu_smooth::MeshFile;
 
 use crate::cli::{CompareArgs, OutputArgs};
+use crate::explain;
 use crate::proof::{self, FileHash, Proof};
 use crate::streams::read;
 use crate::tell;
@@ -13,12 +14,15 @@ const LISTED: usize = 10;
 /// Compares two files. An error if more than vertices that may move is different.
 pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let mut before = read(&args.before, args.reading)?;
-    let after = read(&args.after, args.reading)?;
+    let mut after = read(&args.after, args.reading)?;
+    let laid_out = args.surface.lay_out(&mut before)?;
+    before.lay_out_likewise(&mut after);
+    let after = after;
     let choice = args.moving.apply(&mut before)?;
     if choice.nothing_to_do.is_some() {
         before.fix_all_but(&[]).map_err(|error| error.to_string())?;
     }
-    for note in choice.notes.iter().chain(&choice.nothing_to_do) {
+    for note in laid_out.iter().chain(&choice.notes).chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);
     }
     let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
@@ -43,6 +47,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     }
     if !args.sliding.slide && !held.is_empty() {
         list += "\n  --slide allows those that slid along their lines";
+    }
+    if explain::are_across(&after, bad) {
+        list += "\n  --surface sphere continues longitudes across the line where they start again";
     }
     if !problems.is_empty() {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
@@ -82,7 +89,7 @@ fn summary(
         "only coordinates differ: {} of {} vertices have moved\n\
          {slides}every vertex that must stay has the same bits; none of {triangles} triangles is inverted or flat",
         moved.len(),
-        new.len()
+        after.original().points.len()
     );
     if let Some(vertex) = farthest {
         let place = after.vertex_place(vertex);

@@ -67,12 +67,32 @@ pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Stri
     text
 }
 
+/// Whether triangles seem inverted because they reach across the line where longitudes start again.
+pub(crate) fn are_across(file: &MeshFile, bad: &[BadTriangle]) -> bool {
+    let points = &file.mesh().points;
+    let is_far = |bad: &BadTriangle| {
+        let x = bad.vertices.map(|v| points[v as usize][0]);
+        let (least, most) = x.iter().fold((x[0], x[0]), |(a, b), &x| (a.min(x), b.max(x)));
+        most - least >= 180.0
+    };
+    file.chart().is_none()
+        && points.iter().all(|&[x, y]| x.abs() <= 360.0 && y.abs() <= 90.0)
+        && bad.iter().any(is_far)
+}
+
 /// File, place, problem and remedy, in one line unless several triangles are to be listed.
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
         MeshError::Infeasible { ref triangles } => {
-            let remedy = "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back";
+            let remedy = match are_across(file, triangles) {
+                true => {
+                    "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again"
+                }
+                false => {
+                    "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
+                }
+            };
             let count = triangles.len();
             match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
                 [] => format!("{}: {error}. {remedy}", file.path().display()),
@@ -124,6 +144,18 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
                 place.label
             )
         }
+        MeshError::Target { vertex, problem } => {
+            let vertex = vertex as u32;
+            format!("{}: vertex {}: {problem}", file.vertex_place(vertex), name(vertex))
+        }
+        MeshError::Pole { triangle } => {
+            let place = file.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east. \
+                 Smooth the mesh in a projection around that pole, or with a vertex at the pole itself",
+                place.label
+            )
+        }
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())
         }
@@ -134,7 +166,6 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         | MeshError::RepeatedVertex { .. }
         | MeshError::PointCount { .. }
         | MeshError::ValueCount { .. }
-        | MeshError::Target { .. }
         | MeshError::BoundNotANumber => format!("{}: {error}", file.path().display()),
     }
 }

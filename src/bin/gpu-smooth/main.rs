@@ -28,6 +28,7 @@ mod shell;
 mod slide_args;
 mod smooth;
 mod streams;
+mod surface_args;
 mod target_args;
 mod task;
 mod tell;

@@ -173,7 +173,7 @@ impl<'f> Chooser<'f> {
             hold(format!("--fix-array {name}"), set.map(|(vertex, _)| vertex).collect());
         }
         for corners in &args.fix_box {
-            let vertices = select::vertices_in_box(&file.mesh().points, *corners);
+            let vertices = select::vertices_in_box(&file.original().points, *corners);
             let [[x0, y0], [x1, y1]] = corners;
             hold(format!("--fix-box {x0},{y0},{x1},{y1}"), vertices);
         }

@@ -114,6 +114,8 @@ pub(crate) struct MeshReport {
 pub(crate) struct TargetReport {
     /// equilateral, keep-size, keep-shape, size=SOURCE or metric=SOURCE.
     pub(crate) kind: String,
+    /// vertex, if vertices take their targets along, or place.
+    pub(crate) of: &'static str,
     /// plane or sphere.
     pub(crate) surface: &'static str,
     /// Over how many rings of neighbors sizes and shapes were averaged.

@@ -139,7 +139,11 @@ impl Riding {
             Interpolation::new(topology, &file.mesh().points, points).map_err(told)?;
         let mut left = 0;
         for field in &mut self.fields {
-            let values = interpolation.apply(field.values(), field.components()).map_err(told)?;
+            let each = field.components();
+            let copied = file.chart().map(|chart| chart.extended(field.values(), each));
+            let old = copied.as_deref().unwrap_or(field.values());
+            let mut values = interpolation.apply(old, each).map_err(told)?;
+            values.truncate(field.values().len());
             left += field.set(values).map_err(told)?;
         }
         let names = listed(self.names().into_iter());

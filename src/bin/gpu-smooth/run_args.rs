@@ -129,6 +129,10 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "EDGES", help_heading = "What may move", value_parser = edges, allow_negative_numbers = true)]
     pub(crate) max_move: Option<f64>,
 
+    /// Let no triangle's altitude fall below the least of IN, which bounds the time step of explicit solvers
+    #[arg(long, help_heading = "What may move")]
+    keep_altitude: bool,
+
     #[command(flatten)]
     pub(crate) riding: RidingArgs,
 
@@ -233,6 +237,33 @@ impl SmoothArgs {
                 "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
+        if self.target.is_of_places() {
+            let dropped = [
+                (self.sliding.slide, "--slide"),
+                (self.max_move.is_some(), "--max-move"),
+                (self.fraction.is_some(), "--fraction"),
+                (self.desired.is_some(), "--desired"),
+                (self.keep_altitude, "--keep-altitude"),
+                (self.checkpoint.is_some(), "--checkpoint"),
+                (self.continued.is_some(), "--continue"),
+            ];
+            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
+                return Some(format!(
+                    "a target of places does not go with {other}: drop that, or let vertices take their targets along (--target-of vertex)"
+                ));
+            }
+        }
+        if self.keep_altitude {
+            let dropped = [
+                (self.sliding.slide, "--slide"),
+                (self.max_move.is_some(), "--max-move"),
+                (self.checkpoint.is_some(), "--checkpoint"),
+                (self.continued.is_some(), "--continue"),
+            ];
+            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
+                return Some(format!("--keep-altitude does not go with {other}: drop one of them"));
+            }
+        }
         if self.max_move.is_some() {
             let dropped = [
                 (self.sliding.slide, "--slide"),
@@ -282,6 +313,7 @@ impl SmoothArgs {
             },
             inner: self.inner,
             max_move: self.max_move,
+            keep_altitude: self.keep_altitude,
             guard: match self.guard {
                 GuardChoice::ByMetric => Guard::ByMetric,
                 GuardChoice::Worst => Guard::Worst,

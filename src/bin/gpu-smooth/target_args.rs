@@ -3,10 +3,15 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use gpu_smooth::{MeshError, MeshFile, Metric, Smoother, Solution, Surface, Targets};
+use gpu_smooth::{
+    Mesh, MeshError, MeshFile, Metric, Outside, Smoother, Solution, Surface, TargetField, Targets,
+    View,
+};
 
 use crate::explain;
+use crate::numbers::six;
 use crate::report::TargetReport;
+use crate::surface_args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
 
@@ -16,15 +21,25 @@ pub(crate) struct TargetArgs {
     /// What elements are to look like: equilateral, of any size that their neighbors leave them; equilateral, of the sizes
     /// they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
     /// in SOURCE (size=SOURCE), or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE is a .sol file of Medit,
-    /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex
+    /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex; or BACKGROUND:DATA, a mesh of its own
+    /// with the name of its point data or such a file for its vertices; or a view of gmsh (.pos), of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise
     #[arg(long, value_name = "N", default_value_t = 2, help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     target_rings: u32,
-    /// What the coordinates are: lengths in the plane, or longitude and latitude in degrees on a sphere
-    #[arg(long, value_enum, default_value = "plane", value_name = "SURFACE", help_heading = HEADING)]
-    surface: OnSurface,
+    /// What a target belongs to: vertices, which take it along, or places, so that it is taken anew from where vertices have moved
+    /// [default: place for a BACKGROUND, else vertex]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]
+    target_of: Option<Owner>,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Owner {
+    Vertex,
+    Place,
 }
 
 #[derive(Clone, PartialEq, Eq)]
@@ -34,12 +49,6 @@ enum Target {
     KeepShape,
     Size { source: String },
     Metric { source: String },
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OnSurface {
-    Plane,
-    Sphere,
 }
 
 fn target(text: &str) -> Result<Target, String> {
@@ -75,10 +84,7 @@ impl TargetArgs {
 
     /// What the coordinates are.
     pub(crate) fn surface(&self) -> Surface {
-        match self.surface {
-            OnSurface::Plane => Surface::Plane,
-            OnSurface::Sphere => Surface::Sphere,
-        }
+        self.surface.surface()
     }
 
     /// What there is to report of targets, with f of them before and after.
@@ -88,31 +94,111 @@ impl TargetArgs {
         after: impl FnOnce() -> Result<f64, String>,
     ) -> Result<Option<TargetReport>, String> {
         let kind = match &self.target {
-            Target::Equilateral if self.surface == OnSurface::Plane => return Ok(None),
+            Target::Equilateral if self.is_on_plane() => return Ok(None),
             Target::Equilateral => "equilateral".to_owned(),
             Target::KeepSize => "keep-size".to_owned(),
             Target::KeepShape => "keep-shape".to_owned(),
             Target::Size { source } => format!("size={source}"),
             Target::Metric { source } => format!("metric={source}"),
         };
-        let surface = match self.surface {
-            OnSurface::Plane => "plane",
-            OnSurface::Sphere => "sphere",
-        };
         let f = [before, after()?];
-        Ok(Some(TargetReport { kind, surface, rings: self.target_rings, f }))
+        let surface = self.surface.name();
+        let of = if self.is_of_places() { "place" } else { "vertex" };
+        Ok(Some(TargetReport { kind, of, surface, rings: self.target_rings, f }))
     }
 
-    /// Sets the targets of a mesh with its vertices at `points`.
+    /// Whether targets belong to places.
+    pub(crate) fn is_of_places(&self) -> bool {
+        let is_uniform = matches!(self.target, Target::Equilateral);
+        let default = if self.background().is_some() { Owner::Place } else { Owner::Vertex };
+        !is_uniform && self.target_of.unwrap_or(default) == Owner::Place
+    }
+
+    /// The mesh that carries the target, and what in it, if it is not that which is smoothed.
+    fn background(&self) -> Option<(&Path, &str)> {
+        let (Target::Size { source } | Target::Metric { source }) = &self.target else {
+            return None;
+        };
+        if is_view(source) {
+            return Some((Path::new(source), ""));
+        }
+        let (mesh, data) = source.rsplit_once(':')?;
+        let is_file = Path::new(source).exists() || data.is_empty();
+        (!is_file && Path::new(mesh).exists()).then_some((Path::new(mesh), data))
+    }
+
+    /// Sets the targets of a mesh with its vertices at `points`. Returns a remark on them.
     pub(crate) fn set(
         &self,
         file: &MeshFile,
         smoother: &mut Smoother<'_>,
         points: &[[f64; 2]],
-    ) -> Result<(), String> {
+    ) -> Result<Option<String>, String> {
         let told = |error: MeshError| explain::mesh_error(file, &error);
-        let Some(targets) = self.targets(file, smoother, points, told)? else { return Ok(()) };
-        smoother.set_targets(&targets).map_err(told)
+        if let Some((path, data)) = self.background() {
+            let field = self.field(path, data, file)?;
+            let outside = match self.is_of_places() {
+                true => smoother.set_target_field(field).map_err(told)?,
+                false => {
+                    let (targets, outside) = field.at(points).map_err(told)?;
+                    smoother.set_targets(&targets).map_err(told)?;
+                    outside
+                }
+            };
+            return Ok(remark(path, outside));
+        }
+        let Some(targets) = self.targets(file, smoother, points, told)? else { return Ok(None) };
+        if !self.is_of_places() {
+            return smoother.set_targets(&targets).map(|()| None).map_err(told);
+        }
+        let triangles = smoother.topology().triangles().to_vec();
+        let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
+        let field = TargetField::new(&mesh, &targets).map_err(told)?;
+        smoother.set_target_field(field).map(|_| None).map_err(told)
+    }
+
+    /// The targets on a mesh of their own.
+    fn field(&self, path: &Path, data: &str, file: &MeshFile) -> Result<TargetField, String> {
+        if data.is_empty() {
+            return self.field_of_view(path, file);
+        }
+        let mut background =
+            MeshFile::read(path).map_err(|error| format!("the background of --target: {error}"))?;
+        self.surface.lay_out(&mut background)?;
+        if background.chart().or(file.chart()).is_some() {
+            return Err(format!(
+                "{}: a mesh across the line where longitudes start again is neither a background nor has one: give sizes for its vertices (--target)",
+                path.display()
+            ));
+        }
+        let targets = match &self.target {
+            Target::Metric { .. } => Targets::tensors(given(&background, data, 3)?.as_chunks().0),
+            _ => Targets::sizes(&given(&background, data, 1)?),
+        };
+        let mesh = background.mesh();
+        targets
+            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points))
+            .and_then(|targets| TargetField::new(mesh, &targets))
+            .map_err(|error| explain::mesh_error(&background, &error))
+    }
+
+    /// The sizes of a view.
+    fn field_of_view(&self, path: &Path, file: &MeshFile) -> Result<TargetField, String> {
+        let told = |problem: String| format!("the background of --target: {problem}");
+        let view = View::read(path).map_err(|error| told(error.to_string()))?;
+        let name = path.display();
+        if matches!(self.target, Target::Metric { .. }) {
+            return Err(told(format!("{name}: a view has sizes: take size={name}")));
+        }
+        if file.chart().is_some() {
+            return Err(told(format!(
+                "{name}: a mesh across the line where longitudes start again has no background: give sizes for its vertices"
+            )));
+        }
+        Targets::sizes(view.values())
+            .and_then(|targets| targets.seen_on(self.surface(), &view.mesh().points))
+            .and_then(|targets| TargetField::new(view.mesh(), &targets))
+            .map_err(|error| told(format!("{name}: {error}, in the order of places in the file")))
     }
 
     fn targets(
@@ -143,6 +229,27 @@ impl TargetArgs {
     }
 }
 
+/// Whether a source is the file of a view of gmsh.
+fn is_view(source: &str) -> bool {
+    let path = Path::new(source);
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pos")) && path.exists()
+}
+
+/// What there is to say of vertices outside of a background.
+fn remark(background: &Path, outside: Outside) -> Option<String> {
+    let Outside { count, most } = outside;
+    let vertices = match count {
+        0 => return None,
+        1 => "1 vertex is".to_owned(),
+        n => format!("{n} vertices are"),
+    };
+    Some(format!(
+        "{vertices} outside of {}, by up to {}: the nearest place there has their target",
+        background.display(),
+        six(most)
+    ))
+}
+
 /// The numbers of each vertex that a file beside the mesh has, or point data of the mesh.
 fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, String> {
     let (found, values) = match Path::new(source).exists() {
@@ -157,7 +264,7 @@ fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, S
             (fields[0].components(), fields[0].values().to_vec())
         }
     };
-    let vertices = file.mesh().points.len();
+    let vertices = file.original().points.len();
     if found != components {
         return Err(format!(
             "{source}: a vertex has {found} numbers where {components} are needed: --target size= takes one, metric= three (xx, xy, yy)"
@@ -170,5 +277,8 @@ fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, S
             file.path().display()
         ));
     }
-    Ok(values)
+    Ok(match file.chart() {
+        Some(chart) => chart.extended(&values, components),
+        None => values,
+    })
 }

@@ -77,15 +77,15 @@ pub(crate) fn carry_out<T>(
     let bytes = std::fs::metadata(input).map_or(0, |found| found.len());
     follow.stage(Stage::Reading { bytes });
     let mut file = streams::read(input, args.reading)?;
+    let laid_out = args.target.surface.lay_out(&mut file)?;
     let choice = args.moving.apply(&mut file)?;
     let mut riding = args.riding.choose(&file)?;
     let file = file;
     let read_done = Instant::now();
     follow.has_read(&file)?;
     let degrees = args.target.is_on_plane().then(|| tell::degrees(&file)).flatten();
-    for remark in
-        tell::remarks(&file, args.sliding.slide).iter().chain(&choice.notes).chain(&degrees)
-    {
+    let remarks = tell::remarks(&file, args.sliding.slide);
+    for remark in remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees) {
         follow.remark(remark);
     }
     let mesh = file.mesh();
@@ -121,7 +121,9 @@ pub(crate) fn carry_out<T>(
     };
     let taken = taken??;
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
-    args.target.set(&file, &mut smoother, points)?;
+    if let Some(remark) = args.target.set(&file, &mut smoother, points)? {
+        follow.remark(&remark);
+    }
     if let Some(remark) = args.sliding.set(&file, &mut smoother)? {
         follow.remark(&remark);
     }
@@ -222,7 +224,9 @@ fn certificate(
     input: Vec<FileHash>,
     (out, smoother): (&Path, &Smoother<'_>),
 ) -> Result<Certificate, String> {
-    let after = streams::read(out, args.reading)?;
+    let mut after = streams::read(out, args.reading)?;
+    file.lay_out_likewise(&mut after);
+    let after = after;
     let mut theirs = args.riding.choose(&after)?;
     theirs.add_parameters(&after, &after.mesh().points)?;
     let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
@@ -369,7 +373,7 @@ fn engine_report(taken: &Taken, outcome: &Outcome) -> EngineReport {
 fn mesh_report(file: &MeshFile, smoother: &Smoother<'_>) -> MeshReport {
     MeshReport {
         format: file.format().to_string(),
-        vertices: file.mesh().points.len(),
+        vertices: file.original().points.len(),
         triangles: file.mesh().triangles.len(),
         free: smoother.topology().free_count(),
         colors: smoother.colors(),

@@ -51,7 +51,12 @@ pub(crate) fn data(
 ) -> Result<Value, String> {
     let topology = states[0].topology();
     let is_whole = topology.triangles().len() <= bounds.most;
-    let outlines = Outlines::of(topology, &file.mesh().fixed, file.regions());
+    let outlines = Outlines::of(
+        topology,
+        &file.mesh().fixed,
+        file.regions(),
+        states.map(|state| state.points()),
+    );
     let shown = match is_whole {
         true => (0..topology.triangles().len()).collect(),
         false => around(topology, spots),
@@ -68,6 +73,10 @@ pub(crate) fn data(
     let between = edges(&outlines.between_regions, &mut part);
     let held: Vec<u32> = match is_whole {
         true => outlines.held.iter().map(|&v| part.number(v)).collect(),
+        false => Vec::new(),
+    };
+    let slid: Vec<u32> = match is_whole {
+        true => outlines.slid.iter().map(|&v| part.number(v)).collect(),
         false => Vec::new(),
     };
     let measures = SHOWN.map(|measure| {
@@ -107,6 +116,7 @@ pub(crate) fn data(
         "boundary": indices(&boundary),
         "between": indices(&between),
         "held": indices(&held),
+        "slid": indices(&slid),
         "states": both,
         "spots": corners,
     }))

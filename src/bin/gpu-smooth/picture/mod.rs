@@ -15,7 +15,7 @@ mod svg;
 pub(crate) use args::PictureArgs;
 pub(crate) use color::{VIRIDIS, bad_end, goodness, ticks};
 pub(crate) use layout::Extent;
-pub(crate) use outlines::Outlines;
+pub(crate) use outlines::{Outlines, slid};
 
 use std::path::Path;
 
@@ -81,11 +81,15 @@ pub(crate) fn write(
     let panels = shots.iter().map(|shot| panel(args, topology, shot));
     let panels =
         panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
+    let (before, after) = match shots {
+        [first, .., last] => (first.points, last.points),
+        _ => (&[][..], &[][..]),
+    };
     let scene = Scene {
         measure: args.picture_measure,
         triangles: topology.triangles(),
         with_arrows: args.picture_arrows,
-        outlines: Outlines::of(topology, &file.mesh().fixed, file.regions()),
+        outlines: Outlines::of(topology, &file.mesh().fixed, file.regions(), [before, after]),
         panels,
     };
     let layout = scene.layout(args.picture_size);

@@ -8,22 +8,39 @@ pub(crate) struct Outlines {
     pub(crate) boundary: Vec<[u32; 2]>,
     /// Edges of two triangles of different regions.
     pub(crate) between_regions: Vec<[u32; 2]>,
-    /// Vertices inside the mesh that must not move.
+    /// Vertices inside the mesh that did not move and must not.
     pub(crate) held: Vec<u32>,
+    /// Vertices on lines that slid along them.
+    pub(crate) slid: Vec<u32>,
 }
 
 impl Outlines {
-    /// Of a mesh with a list of fixed vertices and, if there are several, the region of each triangle.
-    pub(crate) fn of(topology: &Topology<'_>, fixed: &[u32], regions: Option<&[u32]>) -> Self {
+    /// Of a mesh with a list of fixed vertices and, if there are several, the region of each triangle; with its vertices before a run
+    /// and after it.
+    pub(crate) fn of(
+        topology: &Topology<'_>,
+        fixed: &[u32],
+        regions: Option<&[u32]>,
+        [before, after]: [&[[f64; 2]]; 2],
+    ) -> Self {
+        let slid = slid(topology, before, after);
         let boundary = topology.boundary_edges();
         let mut is_outer = vec![false; topology.free().len()];
         boundary.iter().flatten().for_each(|&v| is_outer[v as usize] = true);
         let mut held: Vec<u32> = fixed.iter().copied().filter(|&v| !is_outer[v as usize]).collect();
         held.sort_unstable();
         held.dedup();
+        held.retain(|v| slid.binary_search(v).is_err());
         let between_regions = regions.map(|regions| between(topology, regions)).unwrap_or_default();
-        Self { boundary, between_regions, held }
+        Self { boundary, between_regions, held, slid }
     }
+}
+
+/// The vertices that are not free and have moved all the same, ascending: they slid.
+pub(crate) fn slid(topology: &Topology<'_>, before: &[[f64; 2]], after: &[[f64; 2]]) -> Vec<u32> {
+    let states = before.iter().zip(after).zip(topology.free());
+    let slid = states.map(|((was, is), is_free)| !is_free && was != is);
+    (0..).zip(slid).filter(|(_, slid)| *slid).map(|(v, _)| v).collect()
 }
 
 /// The edges between triangles of different regions.

@@ -162,6 +162,8 @@ impl Scene<'_> {
         let square = |at: Point| at.map(|x| (x / (0.45 * text)) as i32);
         let places = self.outlines.held.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
         places.filter(|&at| taken.insert(square(at))).for_each(|at| held(at, text, canvas));
+        let places = self.outlines.slid.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
+        places.filter(|&at| taken.insert(square(at))).for_each(|at| slid(at, text, canvas));
     }
 
     fn draw_legend(&self, layout: &Layout, canvas: &mut dyn Canvas) {
@@ -216,6 +218,7 @@ impl Scene<'_> {
             (true, boundary, "boundary"),
             (!self.outlines.between_regions.is_empty(), between, "between regions"),
             (!self.outlines.held.is_empty(), held as Sign, "fixed vertex inside"),
+            (!self.outlines.slid.is_empty(), slid as Sign, "vertex that slid"),
             (self.panels.iter().any(is_bad), bad, "inverted or flat"),
             (
                 self.panels.iter().any(|panel| !panel.worst.is_empty()),
@@ -224,11 +227,12 @@ impl Scene<'_> {
             ),
             (self.with_arrows, moved as Sign, "way of a vertex"),
         ];
-        let signs = signs.into_iter().filter(|sign| sign.0);
+        let signs: Vec<_> = signs.into_iter().filter(|sign| sign.0).collect();
+        let rows = signs.len().div_ceil(2).max(3);
         let [mut x, mut y] = [left, top + 0.3 * text];
         let mut widest: f32 = 0.0;
-        for (i, (_, sign, name)) in signs.enumerate() {
-            if i == 3 {
+        for (i, (_, sign, name)) in signs.into_iter().enumerate() {
+            if i == rows {
                 x += widest + 4.0 * text;
                 y = top + 0.3 * text;
             }
@@ -275,6 +279,12 @@ fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
 fn held(at: Point, text: f32, canvas: &mut dyn Canvas) {
     canvas.disc(at, text / 6.5, BLACK);
     canvas.disc(at, text / 12.0, WHITE);
+}
+
+/// A vertex that slid along its line.
+fn slid(at: Point, text: f32, canvas: &mut dyn Canvas) {
+    canvas.disc(at, text / 6.5, WHITE);
+    canvas.disc(at, text / 9.0, BLACK);
 }
 
 /// A mark around a bad triangle.

@@ -1,0 +1,156 @@
+//! Runs in which no triangle's altitude falls below the least that the mesh had: vertices that would make it do so go back
+//! until they do not and are held, while the others go on.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::attempt::{Attempt, Ended};
+use crate::error::SmoothError;
+use crate::holding::Holding;
+use crate::layout::Problem;
+use crate::mesh::Mesh;
+use crate::rounds::{Rounds, objectives};
+use crate::run::{Keeper, Keeping, Observer, Options, Stop};
+use crate::topology::Topology;
+
+/// Number of sweeps in a round, until there is one after which no vertex goes back.
+const SWEEPS: u32 = 2;
+/// The most rounds of sweeps.
+const ROUNDS: u32 = 60;
+/// How often the way of vertices is halved before they go back all of it.
+const HALVED: u32 = 3;
+
+/// The least altitude of a triangle.
+pub(crate) fn altitude([p, q, r]: [DVec2; 3]) -> f64 {
+    let longest =
+        (q - p).length_squared().max((r - q).length_squared()).max((p - r).length_squared());
+    (q - p).perp_dot(r - p) / longest.sqrt()
+}
+
+/// The least altitude of some triangles.
+fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
+    triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
+}
+
+/// Brings the vertices of triangles whose altitude is below `floor` back to where they were, half of the way as often as `halved` says and
+/// then all of it, until there is none but those that were so before. Returns the vertices that were brought back.
+fn bring_back(
+    triangles: &[[u32; 3]],
+    before: &[DVec2],
+    points: &mut [DVec2],
+    (floor, mut halved): (f64, u32),
+) -> Vec<u32> {
+    let mut returned = Vec::new();
+    loop {
+        // Not a number is below as well.
+        let is_low = |t: &&[u32; 3]| {
+            let altitude = altitude(t.map(|v| points[v as usize]));
+            altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
+        };
+        let mut low: Vec<u32> = triangles.iter().filter(is_low).flatten().copied().collect();
+        low.sort_unstable();
+        low.dedup();
+        low.retain(|&v| points[v as usize] != before[v as usize]);
+        if low.is_empty() {
+            returned.sort_unstable();
+            returned.dedup();
+            return returned;
+        }
+        for &v in &low {
+            let (point, before) = (&mut points[v as usize], before[v as usize]);
+            *point = if halved > 0 { before + (*point - before) * 0.5 } else { before };
+        }
+        halved = halved.saturating_sub(1);
+        returned.extend(low);
+    }
+}
+
+/// Sets back what makes the least altitude of a mesh less than before, of points as they are written. Returns how many vertices it
+/// was.
+pub(crate) fn restore(
+    topology: &Topology<'_>,
+    before: &[[f64; 2]],
+    points: &mut [[f64; 2]],
+) -> usize {
+    let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
+    let (old, mut new) = (vectors(before), vectors(points));
+    let floor = least(topology.triangles(), |v| old[v as usize]);
+    let returned = bring_back(topology.triangles(), &old, &mut new, (floor, 0));
+    for &v in &returned {
+        points[v as usize] = before[v as usize];
+    }
+    returned.len()
+}
+
+/// Checks that altitudes can be kept in a run by these options.
+pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
+    let option = "keep altitude";
+    if options.max_move.is_some() {
+        let (value, remedy) = ("with a bound on moves".to_owned(), "set one of the two");
+        return Err(SmoothError::Option { option, value, remedy });
+    }
+    Rounds::check(option, options, is_continued)
+}
+
+/// Sweeps from the positions of the problem until a run ends in which no altitude is below the least there was.
+pub(crate) async fn run<K: Keeper + ?Sized>(
+    (mesh, problem): (&Mesh, &Problem),
+    attempt: Attempt<'_>,
+    (options, target): (&Options, Option<f64>),
+    keeping: &mut Keeping<'_, K>,
+    observe: &mut (impl Observer + ?Sized),
+) -> Result<Ended, SmoothError> {
+    let (plan, base) = (options.plan_to(target), options.scheme.base());
+    let mut holding = Holding::new(mesh, problem);
+    let mut positions = problem.positions().to_vec();
+    let floor = least(problem.triangles(), |v| positions[v as usize]);
+    let mut whole: Option<Ended> = None;
+    let (mut round, mut is_clean) = (0, false);
+    loop {
+        round += 1;
+        let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
+        let left = options.max_sweeps.saturating_sub(done);
+        let most = if is_clean { left } else { left.min(SWEEPS) };
+        let part = Options { max_sweeps: most, ..options.clone() };
+        let smaller = holding.smaller()?;
+        let now = smaller.as_ref().unwrap_or(problem);
+        let from = holding.renumbered(&positions, now);
+        let Attempt { device, phase, .. } = attempt;
+        let attempt = Attempt { problem: now, device, phase, done };
+        let mut next = attempt.sweep(&part, target, (&from, None), keeping, observe).await?;
+        let mut to = holding.numbered_back(&next.positions, now);
+        let returned = bring_back(problem.triangles(), &positions, &mut to, (floor, HALVED));
+        positions = to;
+        // f of what was set back does not count.
+        let here = objectives(problem, &plan, &positions);
+        let count = next.history.len() - 1;
+        for (k, entry) in next.history.iter_mut().enumerate().skip(1) {
+            if k == count || entry.of(base) < here.of(base) {
+                *entry = here;
+            }
+        }
+        let free = holding.held.len();
+        let mut new = 0;
+        for v in returned.into_iter().map(|v| v as usize).filter(|&v| v < free) {
+            new += usize::from(!std::mem::replace(&mut holding.held[v], true));
+        }
+        let is_all = holding.held.iter().all(|held| *held);
+        let ended = match whole.take() {
+            None => next,
+            Some(before) => before.followed_by(next),
+        };
+        let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left <= most;
+        let is_done = is_clean && new == 0 || is_all || round == ROUNDS;
+        if is_over || is_done {
+            let stop = match ended.stop {
+                Stop::MaxSweeps if is_all => Stop::Converged,
+                Stop::MaxSweeps | Stop::Converged if round == ROUNDS && new > 0 => Stop::Stalled,
+                stop => stop,
+            };
+            return Ok(Ended { positions, stop, ..ended });
+        }
+        is_clean = new == 0;
+        whole = Some(ended);
+    }
+}

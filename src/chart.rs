@@ -1,0 +1,443 @@
+//! A mesh in longitude and latitude whose triangles reach across the line where longitudes start again, or have a corner at a pole,
+//! laid out side by side.
+
+use std::collections::HashMap;
+
+use crate::error::MeshError;
+use crate::mesh::{Mesh, Precision};
+
+/// A full turn, in degrees.
+const TURN: f64 = 360.0;
+
+/// A mesh in longitude and latitude, in degrees, with longitudes continued across the line where they start again: 180, or 0 where
+/// they go up to 360. So the triangles across that line have the shape in coordinates that they have on the sphere.
+///
+/// A part of the mesh that closes around the globe is cut along that line, and around a pole at which triangles meet. Vertices there
+/// stand in the chart's mesh several times: once under their own number, and as copies after all others. As the chart's mesh ends
+/// there, none of them moves. Triangles keep their numbers.
+///
+/// ```
+/// use gpu_smooth::{Chart, Mesh, Precision};
+///
+/// // A square across the date line with a vertex in its middle.
+/// let points = vec![[179.0, 0.0], [-179.0, 0.0], [-179.0, 2.0], [179.0, 2.0], [-179.8, 1.1]];
+/// let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+/// let mesh = Mesh { points, triangles, fixed: vec![] };
+/// let chart = Chart::new(&mesh, Precision::Double)?.expect("triangles are across the date line");
+/// assert_eq!(chart.mesh().points[4], [180.2, 1.1]);
+/// let mut moved = chart.mesh().points.clone();
+/// moved[4] = [180.0625, 1.0];
+/// assert_eq!(chart.given(&moved)[4], [-179.9375, 1.0]);
+/// # Ok::<(), gpu_smooth::MeshError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Chart {
+    mesh: Mesh,
+    /// The mesh as it was given.
+    given: Mesh,
+    stored: Precision,
+    /// The vertex that each copy is of.
+    owners: Vec<u32>,
+    /// The vertices of the chart that stay because it is cut there, ascending.
+    held: Vec<u32>,
+    across: usize,
+    polar: usize,
+}
+
+/// A corner of a triangle in the chart: a vertex, and by how many turns its longitude is continued. `None` for a vertex at a pole,
+/// which goes to the middle of the other two corners.
+type Turned = (u32, Option<i32>);
+
+impl Chart {
+    /// The chart of a mesh whose coordinates are stored with so many digits; `None` if every triangle has its shape in the
+    /// coordinates as they are.
+    ///
+    /// # Errors
+    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if there is a pole inside of a
+    /// triangle or on its edge. Of a mesh with vertices that are not there, or coordinates that are not finite, there is no chart.
+    pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
+        let Mesh { points, triangles, .. } = mesh;
+        let has_point = |&v: &u32| points.get(v as usize).is_some_and(|[x, y]| (x + y).is_finite());
+        if !triangles.as_flattened().iter().all(has_point) {
+            return Ok(None);
+        }
+        let is_off = |&&v: &&u32| points[v as usize][1].abs() > 90.0;
+        if let Some(&vertex) = triangles.as_flattened().iter().find(is_off) {
+            let problem = "its latitude is not between -90 and 90 degrees";
+            return Err(MeshError::Target { vertex: vertex as usize, problem });
+        }
+        let is_across = |t: &&[u32; 3]| span(points, t) >= TURN / 2.0;
+        let across = triangles.iter().filter(is_across).count();
+        let polar = triangles.iter().filter(|t| pole_of(points, t).is_some()).count();
+        if across == 0 && polar == 0 {
+            return Ok(None);
+        }
+        let corners = turned(points, triangles)?;
+        Ok(Some(Self::of_corners(mesh, stored, &corners, [across, polar])))
+    }
+
+    fn of_corners(
+        given: &Mesh,
+        stored: Precision,
+        corners: &[[Turned; 3]],
+        [across, polar]: [usize; 2],
+    ) -> Self {
+        let mut mesh = given.clone();
+        // A vertex itself is where its longitude is continued least; elsewhere there are copies of it.
+        let mut own: Vec<Option<i32>> = vec![None; given.points.len()];
+        for &(v, turns) in corners.as_flattened() {
+            let (Some(turns), own) = (turns, &mut own[v as usize]) else { continue };
+            if own.is_none_or(|own| (turns.abs(), turns) < (own.abs(), own)) {
+                *own = Some(turns);
+            }
+        }
+        let place = |v: u32, turns: i32| {
+            let [x, y] = given.points[v as usize];
+            [stored.rounded(x + TURN * f64::from(turns)), y]
+        };
+        for (v, own) in (0..).zip(&own) {
+            if let Some(turns @ (..=-1 | 1..)) = *own {
+                mesh.points[v as usize] = place(v, turns);
+            }
+        }
+        let (mut owners, mut held, mut copies) = (Vec::new(), Vec::new(), HashMap::new());
+        for (triangle, corners) in mesh.triangles.iter_mut().zip(corners) {
+            for (corner, &(v, turns)) in triangle.iter_mut().zip(corners) {
+                let Some(turns) = turns else { continue };
+                if own[v as usize] == Some(turns) {
+                    continue;
+                }
+                *corner = *copies.entry((v, turns)).or_insert_with(|| {
+                    let copy = mesh.points.len() as u32;
+                    mesh.points.push(place(v, turns));
+                    owners.push(v);
+                    held.extend([v, copy]);
+                    copy
+                });
+            }
+            if let Some(at) = corners.iter().position(|(_, turns)| turns.is_none()) {
+                let pole = triangle[at];
+                let others = [triangle[(at + 1) % 3], triangle[(at + 2) % 3]];
+                let [[a, _], [b, _]] = others.map(|other| mesh.points[other as usize]);
+                let copy = mesh.points.len() as u32;
+                mesh.points.push([stored.rounded(0.5 * (a + b)), given.points[pole as usize][1]]);
+                owners.push(pole);
+                held.extend([pole, copy].into_iter().chain(others));
+                triangle[at] = copy;
+            }
+        }
+        held.sort_unstable();
+        held.dedup();
+        Self { mesh, given: given.clone(), stored, owners, held, across, polar }
+    }
+
+    /// The mesh with its longitudes continued: its vertices, and then the copies.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The mesh as it was given.
+    pub fn original(&self) -> &Mesh {
+        &self.given
+    }
+
+    /// The vertices of the chart's mesh that do not move because it is cut there, copies among them. Ascending.
+    pub fn held(&self) -> &[u32] {
+        &self.held
+    }
+
+    /// The vertex of the given mesh that each copy is of.
+    pub fn owners(&self) -> &[u32] {
+        &self.owners
+    }
+
+    /// How many triangles reach across the line where longitudes start again.
+    pub fn across(&self) -> usize {
+        self.across
+    }
+
+    /// How many triangles have a corner at a pole.
+    pub fn polar(&self) -> usize {
+        self.polar
+    }
+
+    /// The chart's points for these points of the given mesh, each continued to where it is nearest to its own place. Points
+    /// that are left out, or too many, are as in the chart.
+    pub fn continued(&self, given: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut points = self.mesh.points.clone();
+        let count = self.given.points.len();
+        let same = |v: usize| given.get(v).map(bits) == Some(bits(&self.given.points[v]));
+        for v in (0..count.min(given.len())).filter(|&v| !same(v)) {
+            let [x, y] = given[v];
+            let turns = ((self.mesh.points[v][0] - x) / TURN).round();
+            points[v] = [self.stored.rounded(x + TURN * turns), y];
+        }
+        let (points_of_vertices, copies) = points.split_at_mut(count);
+        for (copy, &owner) in copies.iter_mut().zip(&self.owners) {
+            // Where somebody has moved a vertex that has copies, they go with it.
+            if !same(owner as usize) && !is_pole(&self.given.points, owner) {
+                let [x, y] = points_of_vertices[owner as usize];
+                let turns = ((copy[0] - x) / TURN).round();
+                *copy = [self.stored.rounded(x + TURN * turns), y];
+            }
+        }
+        points
+    }
+
+    /// The same chart of another state of the given mesh; see [`continued`](Self::continued).
+    pub(crate) fn moved(&self, given: &Mesh) -> Self {
+        let mesh = Mesh { points: self.continued(&given.points), ..self.mesh.clone() };
+        Self { mesh, given: given.clone(), ..self.clone() }
+    }
+
+    /// Values of the given mesh's vertices, so many each, for those of the chart's mesh: copies have those of their vertices.
+    pub fn extended(&self, values: &[f64], each: usize) -> Vec<f64> {
+        let of = |&v: &u32| values.iter().skip(v as usize * each).take(each).copied();
+        values.iter().copied().chain(self.owners.iter().flat_map(of)).collect()
+    }
+
+    /// The points of the given mesh for these points of the chart's: longitudes in the range that they had, and those that have not
+    /// moved with the same bits as before.
+    pub fn given(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let all = || self.given.points.iter().map(|point| point[0]);
+        let range = [[-180.0, 180.0], [0.0, TURN]];
+        let range =
+            range.into_iter().find(|[low, high]| all().all(|x| (*low..=*high).contains(&x)));
+        let back = |((now, was), given): ((&[f64; 2], &[f64; 2]), &[f64; 2])| {
+            if bits(now) == bits(was) {
+                return *given;
+            }
+            let x = now[0] - TURN * ((was[0] - given[0]) / TURN).round();
+            let x = match range {
+                Some([_, high]) if x > high => x - TURN,
+                Some([low, _]) if x < low => x + TURN,
+                _ => x,
+            };
+            [x, now[1]]
+        };
+        let pairs = points.iter().zip(&self.mesh.points).zip(&self.given.points);
+        pairs.map(back).collect()
+    }
+}
+
+fn bits(point: &[f64; 2]) -> [u64; 2] {
+    point.map(f64::to_bits)
+}
+
+fn is_pole(points: &[[f64; 2]], v: u32) -> bool {
+    points[v as usize][1].abs() == 90.0
+}
+
+/// Which corner of a triangle is at a pole, if one alone is.
+fn pole_of(points: &[[f64; 2]], t: &[u32; 3]) -> Option<usize> {
+    let mut at = (0..3).filter(|&i| is_pole(points, t[i]));
+    at.next().filter(|_| at.next().is_none())
+}
+
+/// The edges of a triangle, but for those of a corner that alone is at a pole, where all longitudes are one point.
+fn edges<'t>(points: &[[f64; 2]], t: &'t [u32; 3]) -> impl Iterator<Item = [u32; 2]> + 't {
+    let pole = pole_of(points, t);
+    (0..3).filter(move |&i| pole.is_none_or(|at| at == (i + 2) % 3)).map(|i| [t[i], t[(i + 1) % 3]])
+}
+
+/// How far the longitudes of a triangle are apart.
+fn span(points: &[[f64; 2]], t: &[u32; 3]) -> f64 {
+    let apart = |[a, b]: [u32; 2]| (points[a as usize][0] - points[b as usize][0]).abs();
+    edges(points, t).map(apart).fold(0.0, f64::max)
+}
+
+/// The corners of all triangles, continued such that the longitudes of a triangle are less than half a turn apart: over the whole
+/// of a part where that is possible, else only in triangles across the line where longitudes start again.
+fn turned(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<[Turned; 3]>, MeshError> {
+    let x = |v: u32| points[v as usize][0];
+    // By how many turns the second longitude is continued to be less than half a turn from the first.
+    let turns = |a: u32, b: u32| ((x(a) - x(b)) / TURN).round() as i32;
+    let mut parts = Parts::new(points.len());
+    for (triangle, t) in triangles.iter().enumerate() {
+        let (mut around, mut count) = (0, 0);
+        for [a, b] in edges(points, t) {
+            if (x(a) - x(b)).abs().rem_euclid(TURN) == TURN / 2.0 {
+                return Err(MeshError::Pole { triangle });
+            }
+            (around, count) = (around + turns(a, b), count + 1);
+            parts.join(a, b, turns(a, b));
+        }
+        if count == 3 && around != 0 {
+            return Err(MeshError::Pole { triangle });
+        }
+    }
+    let mut corners = |t: &[u32; 3]| {
+        let pole = pole_of(points, t);
+        let others = (0..3).filter(|&i| Some(i) != pole).map(|i| t[i]);
+        let east = others.reduce(|east, v| if x(v) > x(east) { v } else { east }).unwrap_or(t[0]);
+        [0, 1, 2].map(|i| {
+            let (part, own) = parts.find(t[i]);
+            match parts.is_closed[part as usize] {
+                _ if Some(i) == pole => (t[i], None),
+                true => (t[i], Some(turns(east, t[i]))),
+                false => (t[i], Some(own)),
+            }
+        })
+    };
+    Ok(triangles.iter().map(&mut corners).collect())
+}
+
+/// Vertices joined by edges to parts, in which each has its number of turns.
+struct Parts {
+    /// For each vertex another one of its part, or itself, and how many turns it has more than that one.
+    toward: Vec<(u32, i32)>,
+    /// Whether a part, told by its least vertex, closes around the globe.
+    is_closed: Vec<bool>,
+}
+
+impl Parts {
+    fn new(count: usize) -> Self {
+        Self { toward: (0..count as u32).map(|v| (v, 0)).collect(), is_closed: vec![false; count] }
+    }
+
+    /// The least vertex of a vertex's part, and how many turns the vertex has more than that one.
+    fn find(&mut self, v: u32) -> (u32, i32) {
+        let (mut at, mut turns) = (v, 0);
+        loop {
+            let (next, more) = self.toward[at as usize];
+            if next == at {
+                return (at, turns);
+            }
+            // Half as far the next time.
+            let (over, beyond) = self.toward[next as usize];
+            self.toward[at as usize] = (over, more + beyond);
+            (at, turns) = (over, turns + more + beyond);
+        }
+    }
+
+    /// Joins two vertices, of which the second has so many turns more.
+    fn join(&mut self, a: u32, b: u32, turns: i32) {
+        let ((least, of_a), (other, of_b)) = (self.find(a), self.find(b));
+        let between = of_a + turns - of_b;
+        if least == other {
+            self.is_closed[least as usize] |= between != 0;
+            return;
+        }
+        let (from, to, more) =
+            if least < other { (other, least, between) } else { (least, other, -between) };
+        self.toward[from as usize] = (to, more);
+        self.is_closed[to as usize] |= self.is_closed[from as usize];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::topology::Topology;
+
+    /// A grid of fields of 20 by 10 degrees, from one longitude and latitude on, each vertex's longitude as `written` has it.
+    fn grid(
+        [columns, rows]: [u32; 2],
+        [west, south]: [f64; 2],
+        written: impl Fn(f64) -> f64,
+    ) -> Mesh {
+        let closes = columns == 18;
+        let across = if closes { columns } else { columns + 1 };
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for row in 0..=rows {
+            for column in 0..across {
+                let x = west + 20.0 * f64::from(column);
+                points.push([written(x), south + 10.0 * f64::from(row)]);
+            }
+        }
+        for row in 0..rows {
+            for column in 0..columns {
+                let at = |c: u32, r: u32| (row + r) * across + (column + c) % across;
+                triangles.push([at(0, 0), at(1, 0), at(1, 1)]);
+                triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+            }
+        }
+        Mesh { points, triangles, fixed: vec![] }
+    }
+
+    fn within_half(x: f64) -> f64 {
+        (x + 180.0).rem_euclid(360.0) - 180.0
+    }
+
+    #[track_caller]
+    fn assert_sound(chart: &Chart) {
+        let mesh = chart.mesh();
+        let topology = Topology::new(mesh).unwrap();
+        assert_eq!(topology.bad_triangles(&mesh.points), Ok(vec![]));
+        assert!(mesh.triangles.iter().all(|t| span(&mesh.points, t) < 90.0));
+        assert!(chart.held().iter().all(|&v| !topology.free()[v as usize]));
+    }
+
+    #[test]
+    fn a_strip_across_the_line_is_continued_whole_and_written_back_to_the_bit() {
+        for (west, written) in
+            [(130.0, within_half as fn(f64) -> f64), (-50.0, |x| x.rem_euclid(360.0))]
+        {
+            let mesh = grid([6, 3], [west, -20.0], written);
+            let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
+            assert_sound(&chart);
+            assert!(chart.owners().is_empty() && chart.held().is_empty());
+            assert_eq!((chart.across(), chart.polar()), (6, 0));
+            assert_eq!(chart.given(&chart.mesh().points), mesh.points);
+            assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
+            // Places that have moved across the line and back are written within the file's range.
+            for by in [-25.0, 25.0] {
+                let mut moved = chart.mesh().points.clone();
+                moved.iter_mut().for_each(|point| point[0] += by);
+                let given = chart.given(&moved);
+                for (given, chart) in given.iter().zip(&moved) {
+                    assert_eq!(given[0], written(chart[0]));
+                }
+                assert_eq!(chart.continued(&given), moved);
+            }
+        }
+    }
+
+    #[test]
+    fn a_mesh_around_the_globe_is_cut_and_only_vertices_there_stay() {
+        let mesh = grid([18, 3], [-170.0, -20.0], within_half);
+        let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
+        assert_sound(&chart);
+        // A column of four vertices, and their copies.
+        assert_eq!((chart.owners().len(), chart.held().len()), (4, 8));
+        assert_eq!((chart.across(), chart.polar()), (6, 0));
+        let topology = Topology::new(chart.mesh()).unwrap();
+        assert_eq!(topology.free_count(), 17 * 2);
+        assert_eq!(chart.given(&chart.mesh().points), mesh.points);
+        assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
+    }
+
+    #[test]
+    fn the_triangles_at_a_pole_stay() {
+        let mut mesh = grid([18, 3], [-170.0, 50.0], within_half);
+        let pole = mesh.points.len() as u32;
+        mesh.points.push([0.0, 90.0]);
+        let top = pole - 18;
+        mesh.triangles.extend((0..18).map(|k| [top + k, top + (k + 1) % 18, pole]));
+        let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
+        assert_sound(&chart);
+        assert_eq!((chart.across(), chart.polar()), (7, 18));
+        let topology = Topology::new(chart.mesh()).unwrap();
+        assert_eq!(topology.free_count(), 17 * 2, "those around the pole stay");
+        assert_eq!(chart.given(&chart.mesh().points), mesh.points);
+        assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
+    }
+
+    #[test]
+    fn a_pole_within_a_triangle_and_a_latitude_off_the_sphere_are_refused() {
+        let of = |points: [[f64; 2]; 3]| {
+            let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
+            Chart::new(&mesh, Precision::Double).map(|chart| chart.is_some())
+        };
+        let pole = Err(MeshError::Pole { triangle: 0 });
+        assert_eq!(of([[-120.0, 80.0], [0.0, 80.0], [120.0, 80.0]]), pole);
+        assert_eq!(of([[-90.0, 80.0], [90.0, 80.0], [100.0, 70.0]]), pole);
+        assert!(matches!(
+            of([[0.0, 0.0], [1.0, 91.0], [2.0, 0.0]]),
+            Err(MeshError::Target { vertex: 1, .. })
+        ));
+        assert_eq!(of([[0.0, 80.0], [10.0, 80.0], [5.0, 85.0]]), Ok(false));
+        // What is wrong otherwise is for others to say.
+        assert_eq!(of([[0.0, f64::NAN], [10.0, 80.0], [-175.0, 85.0]]), Ok(false));
+    }
+}

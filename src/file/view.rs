@@ -1,0 +1,168 @@
+//! Background fields as gmsh writes them: a view of scalars on triangles, as text (`.pos`).
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use crate::error::{Location, ReadError};
+use crate::file::source::Source;
+use crate::file::token::quoted;
+use crate::mesh::Mesh;
+
+/// A number on each vertex of a mesh that it brings along, such as the sizes wanted there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    mesh: Mesh,
+    values: Vec<f64>,
+}
+
+const SAVE: &str = "Save the view from gmsh as text (.pos), of scalars on triangles (ST)";
+
+impl View {
+    /// Reads the first view of a `.pos` file of gmsh, whose elements are scalar triangles, `ST(x, y, z, ...){value, ...};`. Corners at
+    /// the same place are one vertex, with the value that is given there first; of several time steps the first is taken. Third
+    /// coordinates are left out.
+    ///
+    /// # Errors
+    /// [`ReadError`] if the file cannot be read, or has no such view.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let source = Source::load(path)?;
+        let mut parser = Parser { source: &source, at: source.begin() };
+        parser.header()?;
+        let mut view = Self { mesh: Mesh::default(), values: Vec::new() };
+        let mut vertices = HashMap::new();
+        while let Some(kind) = parser.kind()? {
+            if kind == b"TIME" {
+                parser.list([b'{', b'}'], 0)?;
+                parser.skip(b';');
+                continue;
+            }
+            if kind != b"ST" {
+                let problem = format!("an element of kind `{}`", quoted(kind));
+                return Err(parser.error(problem, SAVE));
+            }
+            let places = parser.list([b'(', b')'], 9)?;
+            let values = parser.list([b'{', b'}'], 3)?;
+            parser.skip(b';');
+            let mut corners = [0; 3];
+            for (k, corner) in corners.iter_mut().enumerate() {
+                // Zeros of both signs are one place.
+                let place = [places[3 * k] + 0.0, places[3 * k + 1] + 0.0];
+                *corner = *vertices.entry(place.map(f64::to_bits)).or_insert_with(|| {
+                    view.mesh.points.push(place);
+                    view.values.push(values[k]);
+                    view.values.len() as u32 - 1
+                });
+            }
+            view.mesh.triangles.push(corners);
+        }
+        match view.mesh.triangles.is_empty() {
+            true => Err(source.error("the view has no triangles", SAVE)),
+            false => Ok(view),
+        }
+    }
+
+    /// The triangles of the view.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The number of each vertex.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+struct Parser<'s> {
+    source: &'s Source,
+    at: usize,
+}
+
+impl<'s> Parser<'s> {
+    fn error(&self, problem: impl Into<String>, remedy: &str) -> ReadError {
+        let at = self.at.min(self.source.bytes.len());
+        self.source.error_at(Location::Line(self.source.line_of(at)), problem, remedy)
+    }
+
+    /// What is left, after white space and comments.
+    fn rest(&mut self) -> &'s [u8] {
+        let bytes = &self.source.bytes;
+        loop {
+            let rest = &bytes[self.at.min(bytes.len())..];
+            let space = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+            self.at += space;
+            let rest = &rest[space..];
+            if !rest.starts_with(b"//") {
+                return rest;
+            }
+            self.at += memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+        }
+    }
+
+    /// Goes beyond a sign if it is next.
+    fn skip(&mut self, sign: u8) -> bool {
+        let is_next = self.rest().first() == Some(&sign);
+        self.at += usize::from(is_next);
+        is_next
+    }
+
+    /// The start of a view: `View "name" {`.
+    fn header(&mut self) -> Result<(), ReadError> {
+        if !self.rest().starts_with(b"View") {
+            return Err(self.error("no view begins here", SAVE));
+        }
+        self.at += b"View".len();
+        let name = self.rest().strip_prefix(b"\"");
+        let end = name.and_then(|name| memchr::memchr(b'"', name));
+        self.at += end.map_or(0, |end| end + 2);
+        match self.skip(b'{') {
+            true => Ok(()),
+            false => Err(self.error("a view is `View \"name\" {`", SAVE)),
+        }
+    }
+
+    /// The kind of the next element; `None` at the end of the view.
+    fn kind(&mut self) -> Result<Option<&'s [u8]>, ReadError> {
+        let rest = self.rest();
+        if rest.is_empty() {
+            return Err(self.error("the file ends within the view", SAVE));
+        }
+        if rest[0] == b'}' {
+            return Ok(None);
+        }
+        let length = rest.iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_');
+        let length = length.count();
+        self.at += length;
+        match length {
+            0 => Err(self.error(format!("`{}` is no element", quoted(&rest[..1])), SAVE)),
+            _ => Ok(Some(&rest[..length])),
+        }
+    }
+
+    /// Numbers between two signs, `least` or more.
+    fn list(&mut self, [open, close]: [u8; 2], least: usize) -> Result<Vec<f64>, ReadError> {
+        let remedy = "Correct the line, or save the view again";
+        if !self.skip(open) {
+            return Err(self.error(format!("`{}` is missing", char::from(open)), remedy));
+        }
+        let rest = self.rest();
+        let Some(end) = memchr::memchr(close, rest) else {
+            return Err(self.error(format!("`{}` is missing", char::from(close)), remedy));
+        };
+        let mut numbers = Vec::with_capacity(least);
+        for text in rest[..end].split(|byte| *byte == b',').map(<[u8]>::trim_ascii) {
+            let number = std::str::from_utf8(text).ok().and_then(|text| text.parse().ok());
+            match number.filter(|number: &f64| number.is_finite()) {
+                Some(number) => numbers.push(number),
+                None => {
+                    return Err(self.error(format!("`{}` is not a number", quoted(text)), remedy));
+                }
+            }
+        }
+        if numbers.len() < least {
+            let problem = format!("{} numbers where {least} are needed", numbers.len());
+            return Err(self.error(problem, remedy));
+        }
+        self.at += end + 1;
+        Ok(numbers)
+    }
+}

@@ -1,0 +1,233 @@
+//! Values on one mesh, taken at any places.
+
+use super::interpolation::linear;
+use super::locate::{Found, Locator};
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::parallel::map_ranges;
+use crate::topology::Topology;
+
+/// From so many vertices nearby a walk is tried.
+const TRIED: usize = 9;
+
+/// A mesh in which any places are found, such as one that carries the sizes wanted on another mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Background {
+    topology: Topology<'static>,
+    points: Vec<[f64; 2]>,
+    seeds: Seeds,
+}
+
+/// A place by the triangle of a background that it is in, or nearest to.
+pub(crate) struct Spot {
+    found: Found,
+    /// How far the place is outside of the mesh.
+    pub(crate) outside: f64,
+}
+
+impl Background {
+    /// # Errors
+    /// Those of [`Topology::new`], and [`MeshError::Infeasible`] if triangles are inverted or flat.
+    pub(crate) fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        let topology = Topology::new(mesh)?.into_owned();
+        let triangles = topology.bad_triangles(&mesh.points)?;
+        if !triangles.is_empty() {
+            return Err(MeshError::Infeasible { triangles });
+        }
+        let seeds = Seeds::new(topology.triangles(), &mesh.points);
+        Ok(Self { topology, points: mesh.points.clone(), seeds })
+    }
+
+    /// Finds places, on all cores.
+    ///
+    /// # Errors
+    /// [`MeshError::NotFinite`] for a place that is not finite.
+    pub(crate) fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
+        if let Some(vertex) = places.iter().position(|place| !place.iter().all(|x| x.is_finite())) {
+            return Err(MeshError::NotFinite { vertex: vertex as u32 });
+        }
+        let (topology, points) = (&self.topology, &self.points[..]);
+        let locator = Locator { topology, points };
+        let found = map_ranges(places.len(), 1 << 10, |range| {
+            let spot = |place: &[f64; 2]| {
+                let found = self.found(&locator, *place)?;
+                let at = [0, 1].map(|axis| {
+                    linear(found.corners.map(|v| points[v as usize][axis]), found.weights)
+                });
+                let outside = (at[0] - place[0]).hypot(at[1] - place[1]);
+                Some(Spot { found, outside })
+            };
+            places[range].iter().filter_map(spot).collect::<Vec<_>>()
+        });
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// The triangle that a place is in: reached by a walk from a vertex nearby, or, where the boundary is in the way, the nearest of
+    /// all triangles.
+    fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<Found> {
+        let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
+        if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
+            return Some(locator.within(triangle, place));
+        }
+        let mut best: Option<(f64, u32, [f64; 2])> = None;
+        for (triangle, t) in (0..).zip(self.topology.triangles()) {
+            // Most triangles are farther for the box around them.
+            let corners = t.map(|v| self.points[v as usize]);
+            let apart = [0, 1].map(|axis| {
+                let [a, b, c] = corners.map(|corner| corner[axis]);
+                (a.min(b).min(c) - place[axis]).max(place[axis] - a.max(b).max(c)).max(0.0)
+            });
+            let is_farther = |&(best, ..): &(f64, u32, [f64; 2])| {
+                apart[0] * apart[0] + apart[1] * apart[1] >= best
+            };
+            if best.as_ref().is_some_and(is_farther) {
+                continue;
+            }
+            let (distance, nearest) = locator.nearest(triangle, place);
+            if best.is_none_or(|(least, ..)| distance < least) {
+                best = Some((distance, triangle, nearest));
+            }
+            if distance == 0.0 {
+                break;
+            }
+        }
+        best.map(|(_, triangle, nearest)| locator.within(triangle, nearest))
+    }
+
+    /// The value at a place, of values for each vertex of the background.
+    pub(crate) fn value(&self, spot: &Spot, of: impl Fn(u32) -> f64) -> f64 {
+        linear(spot.found.corners.map(of), spot.found.weights)
+    }
+
+    /// How long the background is in the longer of its directions.
+    pub(crate) fn extent(&self) -> f64 {
+        self.seeds.size[0].max(self.seeds.size[1])
+    }
+}
+
+/// A vertex near any place: a grid with one in each of its cells.
+#[derive(Clone, Debug)]
+struct Seeds {
+    low: [f64; 2],
+    size: [f64; 2],
+    counts: [usize; 2],
+    vertices: Vec<u32>,
+}
+
+impl Seeds {
+    fn new(triangles: &[[u32; 3]], points: &[[f64; 2]]) -> Self {
+        let used = triangles.as_flattened();
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for &v in used {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(points[v as usize][axis]);
+                high[axis] = high[axis].max(points[v as usize][axis]);
+            }
+        }
+        let size = [high[0] - low[0], high[1] - low[1]];
+        // About as many cells as vertices, as high as they are wide.
+        let wanted = (triangles.len() as f64 / 2.0).max(1.0);
+        let share = |a: f64, b: f64| (wanted * a / b).sqrt().clamp(1.0, wanted);
+        let counts = [share(size[0], size[1]), share(size[1], size[0])].map(|n| n.ceil() as usize);
+        let mut seeds = Self { low, size, counts, vertices: vec![u32::MAX; counts[0] * counts[1]] };
+        let mut filled = Vec::new();
+        for &v in used {
+            let cell = seeds.cell(points[v as usize]);
+            if seeds.vertices[cell] == u32::MAX {
+                seeds.vertices[cell] = v;
+                filled.push(cell);
+            }
+        }
+        // Empty cells take the vertex of a neighbor.
+        let mut next = 0;
+        while let Some(&cell) = filled.get(next) {
+            next += 1;
+            let (column, row) = (cell % counts[0], cell / counts[0]);
+            let beside = [
+                (column > 0).then(|| cell - 1),
+                (column + 1 < counts[0]).then(|| cell + 1),
+                (row > 0).then(|| cell - counts[0]),
+                (row + 1 < counts[1]).then(|| cell + counts[0]),
+            ];
+            for other in beside.into_iter().flatten() {
+                if seeds.vertices[other] == u32::MAX {
+                    seeds.vertices[other] = seeds.vertices[cell];
+                    filled.push(other);
+                }
+            }
+        }
+        seeds
+    }
+
+    fn cell(&self, place: [f64; 2]) -> usize {
+        let [column, row] = [0, 1].map(|axis| {
+            let share = (place[axis] - self.low[axis]) / self.size[axis];
+            let last = self.counts[axis] - 1;
+            // Places outside count to the cell at the border.
+            ((share * self.counts[axis] as f64) as usize).min(last)
+        });
+        row * self.counts[0] + column
+    }
+
+    /// The vertices of the place's cell and of those around it.
+    fn around(&self, place: [f64; 2]) -> impl Iterator<Item = u32> + '_ {
+        let cell = self.cell(place);
+        let (column, row) = (cell % self.counts[0], cell / self.counts[0]);
+        let steps = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]];
+        steps.into_iter().filter_map(move |[x, y]: [isize; 2]| {
+            let column = column.checked_add_signed(x).filter(|c| *c < self.counts[0])?;
+            let row = row.checked_add_signed(y).filter(|r| *r < self.counts[1])?;
+            self.vertices.get(row * self.counts[0] + column).copied()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square ring: 6 by 6 fields without the four in the middle.
+    fn ring() -> Mesh {
+        let points = (0..49).map(|v| [f64::from(v % 7), f64::from(v / 7)]).collect();
+        let is_hole = |c: u32, r: u32| (2..4).contains(&c) && (2..4).contains(&r);
+        let fields = (0..36).map(|k| (k % 6, k / 6)).filter(|&(c, r)| !is_hole(c, r));
+        let of = |(c, r): (u32, u32)| {
+            let a = 7 * r + c;
+            [[a, a + 1, a + 8], [a, a + 8, a + 7]]
+        };
+        Mesh { points, triangles: fields.flat_map(of).collect(), fixed: vec![] }
+    }
+
+    #[test]
+    fn linear_values_are_found_everywhere_and_the_nearest_outside() {
+        let mesh = ring();
+        let background = Background::new(&mesh).unwrap();
+        let values: Vec<f64> = mesh.points.iter().map(|[x, y]| 3.0 * x - 2.0 * y + 1.0).collect();
+        let at = |place: [f64; 2]| {
+            let spot = &background.find(&[place]).unwrap()[0];
+            (background.value(spot, |v| values[v as usize]), spot.outside)
+        };
+        for k in 0..200 {
+            let place = [f64::from(k) * 0.03, (f64::from(k) * 0.37) % 6.0];
+            let is_hole = place.iter().all(|x| (2.0..4.0).contains(x));
+            let (value, outside) = at(place);
+            if !is_hole {
+                let wanted = 3.0 * place[0] - 2.0 * place[1] + 1.0;
+                assert!((value - wanted).abs() < 1e-12 && outside < 1e-12, "{place:?}: {value}");
+            }
+        }
+        // The nearest place of the ring, in the hole and around the ring.
+        for (place, [x, y], apart) in [
+            ([2.5, 2.9], [2.0, 2.9], 0.5),
+            ([-1.0, 3.3], [0.0, 3.3], 1.0),
+            ([9.0, 10.0], [6.0, 6.0], 5.0),
+        ] {
+            let (value, outside) = at(place);
+            assert!((value - (3.0 * x - 2.0 * y + 1.0)).abs() < 1e-12, "{place:?}: {value}");
+            assert!((outside - apart).abs() < 1e-12, "{place:?}: {outside}");
+        }
+        let wrong = background.find(&[[0.0, 0.0], [f64::NAN, 1.0]]);
+        assert!(matches!(wrong, Err(MeshError::NotFinite { vertex: 1 })));
+    }
+}

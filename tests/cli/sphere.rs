@@ -1,0 +1,94 @@
+//! `--surface sphere` across the line where longitudes start again, around the globe, and at a pole.
+
+use super::{Folder, assert_holds, number, support};
+use std::fmt::Write;
+
+const COLUMNS: u32 = 18;
+const ROWS: u32 = 5;
+
+/// A band around the globe from 10 to 60 degrees north, as a grid of SCHISM, or a part of it: so many of the fields of 20 degrees.
+/// Longitudes are from -180 to 180. With a pole, triangles go on from the top row to a vertex there.
+fn band(fields: u32, has_pole: bool) -> String {
+    let mut random = support::SplitMix64::new(4);
+    let across = if fields == COLUMNS { fields } else { fields + 1 };
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..=ROWS {
+        for column in 0..across {
+            let is_inside =
+                row % ROWS != 0 && (fields == COLUMNS || !column.is_multiple_of(fields));
+            let mut off = || if is_inside { random.range(-0.25, 0.25) } else { 0.0 };
+            let x: f64 = 130.0 + 20.0 * (f64::from(column) + off());
+            points
+                .push([(x + 180.0).rem_euclid(360.0) - 180.0, 10.0 * (f64::from(row + 1) + off())]);
+            if row < ROWS && column < fields {
+                let at = |c: u32, r: u32| (row + r) * across + (column + c) % across;
+                triangles.push([at(0, 0), at(1, 0), at(1, 1)]);
+                triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+            }
+        }
+    }
+    if has_pole {
+        let (top, pole) = (ROWS * across, (ROWS + 1) * across);
+        points.push([0.0, 90.0]);
+        triangles.extend((0..fields).map(|k| [top + k, top + (k + 1) % across, pole]));
+    }
+    let mut text = format!("band\n{} {}\n", triangles.len(), points.len());
+    for (i, [x, y]) in points.iter().enumerate() {
+        writeln!(text, "{} {x} {y} {}", i + 1, x.abs()).unwrap();
+    }
+    for (i, [a, b, c]) in triangles.iter().enumerate() {
+        writeln!(text, "{} 3 {} {} {}", i + 1, a + 1, b + 1, c + 1).unwrap();
+    }
+    text + "0 = Number of open boundaries\n"
+}
+
+#[test]
+fn triangles_across_the_date_line_are_smoothed_and_proved() {
+    let line = "longitudes are continued for";
+    for (fields, has_pole, notes) in [
+        (9, false, &[line][..]),
+        (COLUMNS, false, &[line, "closes around the globe, so 6 vertices at that line stay"]),
+        (COLUMNS, true, &[line, "18 triangles at a pole stay, with all vertices"]),
+    ] {
+        let folder = Folder::new(&[("in.gr3", &band(fields, has_pole))]);
+        let options = "--engine cpu --surface sphere --slide --interpolate depth";
+        let run = folder.line(&format!("in.gr3 out.gr3 {options} --report r.json --html p.html"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, notes);
+        let (report, certificate) = (folder.json("r.json"), &folder.json("r.json")["certificate"]);
+        assert_eq!((&certificate["inverted"], &certificate["fixed_moved"]), (&0.into(), &0.into()));
+        assert!(number(&certificate["moved"]) > 25.0, "{certificate}");
+        let f = |state: &str| number(&report[state]["f"]["imr"]);
+        assert!(f("after") < f("before"), "{} {}", f("before"), f("after"));
+        let (before, after) = (folder.mesh("in.gr3"), folder.mesh("out.gr3"));
+        assert_eq!(report["mesh"]["vertices"], before.points.len());
+        // In the range of the file, and with depths that are those of the new places.
+        assert!(after.points.iter().all(|point| (-180.0..=180.0).contains(&point[0])));
+        let compared =
+            folder.line("compare in.gr3 out.gr3 --surface sphere --slide --interpolate depth");
+        assert_eq!(compared.code, Some(0), "{}", compared.err);
+        // A vertex that is moved by hand to the other side of its triangles is found.
+        let text = folder.text("out.gr3");
+        let inside = (fields + usize::from(fields < COLUMNS) as u32) as usize + 1;
+        let row = text.lines().nth(2 + inside).unwrap();
+        let number: Vec<&str> = row.split_whitespace().collect();
+        let spoiled = format!("{} 0 {} {}", number[0], number[2], number[3]);
+        std::fs::write(folder.path("bad.gr3"), text.replacen(row, &spoiled, 1)).unwrap();
+        folder
+            .line("compare -q in.gr3 bad.gr3 --surface sphere --slide --interpolate depth")
+            .refused(&["inverted or flat"]);
+    }
+}
+
+#[test]
+fn what_is_across_the_line_is_refused_with_the_way_out_elsewhere() {
+    let folder = Folder::new(&[("in.gr3", &band(9, false))]);
+    folder
+        .line("in.gr3 out.gr3 --engine cpu -q")
+        .refused(&["10 triangles are inverted or flat", "--surface sphere continues longitudes"]);
+    let north = "cap\n1 3\n1 -120 80 1\n2 0 80 1\n3 120 80 1\n1 3 1 2 3\n";
+    let folder = Folder::new(&[("in.gr3", north)]);
+    folder
+        .line("in.gr3 out.gr3 --engine cpu --surface sphere -q")
+        .refused(&["in.gr3:6: triangle 1 has a pole of the sphere inside of it", "projection"]);
+}

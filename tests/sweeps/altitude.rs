@@ -1,0 +1,65 @@
+//! Runs that keep the least altitude of a mesh.
+
+use crate::{backends, history, name, run};
+use gpu_smooth::{
+    Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, validity,
+};
+use std::ops::ControlFlow;
+
+/// A square of fields, each cut along the same diagonal, in rows that are ever lower toward one side: smoothing presses triangles
+/// against that.
+fn fields(count: u32) -> Mesh {
+    let across = count + 1;
+    let points = (0..across * across)
+        .map(|v| [f64::from(v % across), f64::from((v / across).pow(2)) / f64::from(count)]);
+    let of = |k: u32| {
+        let a = k / count * across + k % count;
+        [[a, a + 1, a + across + 1], [a, a + across + 1, a + across]]
+    };
+    let triangles = (0..count * count).flat_map(of).collect();
+    Mesh { points: points.collect(), triangles, fixed: vec![] }
+}
+
+#[test]
+fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
+    let mesh = fields(12);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let altitudes = |points: &[[f64; 2]]| {
+        Change::between(smoother.topology(), &mesh.points, points).unwrap().least_altitude
+    };
+    for (backend, stored) in backends().iter().zip([Precision::Double, Precision::Single]) {
+        let label = name(backend);
+        let free = run(&smoother, &Options { stored, ..Options::default() }, backend);
+        let [before, after] = altitudes(&free.points);
+        assert!(after < 0.95 * before, "{label}: {before} {after}");
+        let options = Options { stored, keep_altitude: true, ..Options::default() };
+        let kept = run(&smoother, &options, backend);
+        let [before, after] = altitudes(&kept.points);
+        assert!(after >= before, "{label}: {before} {after}");
+        assert_eq!(kept.stop, Stop::Converged, "{label}");
+        // It costs much here, where the low rows are the least altitudes of all, but something is gained.
+        let f = history(&kept, Metric::Imr);
+        assert!(f.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-6)), "{label}: {f:?}");
+        let least = *history(&free, Metric::Imr).last().unwrap();
+        let share = (f[0] - f[f.len() - 1]) / (f[0] - least);
+        assert!((0.05..1.0).contains(&share), "{label}: {share}");
+        let bad = validity::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
+        assert!(bad.is_empty(), "{label}");
+    }
+}
+
+#[test]
+fn what_does_not_go_with_kept_altitudes_is_refused() {
+    let mesh = fields(4);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let refused = |smoother: &Smoother, options: Options| {
+        let options = Options { keep_altitude: true, ..options };
+        let error = smoother.run(&options, &backends()[0], &mut |_| ControlFlow::Continue(()));
+        let option = "keep altitude";
+        assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
+    };
+    refused(&smoother, Options { max_move: Some(1.0), ..Options::default() });
+    refused(&smoother, Options { scheme: Metric::Edge.into(), ..Options::default() });
+    smoother.set_slide(Some(&Slide::default())).unwrap();
+    refused(&smoother, Options::default());
+}

@@ -1,0 +1,96 @@
+//! Targets that belong to places: fields on a mesh of their own, on both engines.
+
+use crate::support;
+use crate::{backends, history, name, run};
+use gpu_smooth::{
+    Backend, Desired, Goal, Mesh, Metric, Options, Slide, SmoothError, Smoother, Stop, TargetField,
+    Targets,
+};
+use std::ops::ControlFlow;
+
+/// A square in two triangles, to be of small elements on the left and of four times larger ones on the right.
+fn background(width: f64, height: f64) -> (Mesh, Targets) {
+    let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+    let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], fixed: vec![] };
+    (mesh, Targets::sizes(&[1.0, 4.0, 4.0, 1.0]).unwrap())
+}
+
+/// An even mesh whose lower left corner is at the origin, with vertices out of place.
+fn even() -> (Mesh, [f64; 2]) {
+    let mut mesh = support::lattice(24, 20);
+    let low = mesh.points.iter().fold([f64::INFINITY; 2], |[a, b], [x, y]| [a.min(*x), b.min(*y)]);
+    mesh.points.iter_mut().for_each(|point| *point = [point[0] - low[0], point[1] - low[1]]);
+    let high = mesh.points.iter().fold([0.0_f64; 2], |[a, b], [x, y]| [a.max(*x), b.max(*y)]);
+    (support::perturb_random(&mesh, 0.6, 7), high)
+}
+
+#[test]
+fn sizes_are_those_wanted_where_vertices_have_moved_to() {
+    let (mesh, [width, height]) = even();
+    let (square, targets) = background(width, height);
+    let field = TargetField::new(&square, &targets).unwrap();
+    let options = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let (start, outside) = field.at(&mesh.points).unwrap();
+    assert_eq!(outside.count, 0);
+    smoother.set_targets(&start).unwrap();
+    let carried = run(&smoother, &options, &Backend::Cpu);
+    assert_eq!(smoother.set_target_field(field.clone()).unwrap().count, 0);
+    let of_vertices = smoother.f(Metric::ShapeSize, &carried.points).unwrap();
+    for backend in backends() {
+        let outcome = run(&smoother, &options, backend);
+        let label = name(backend);
+        assert_eq!(outcome.stop, Stop::Converged, "{label}");
+        let of_places = smoother.f(Metric::ShapeSize, &outcome.points).unwrap();
+        assert!(of_places < 0.98 * of_vertices, "{label}: {of_places} {of_vertices}");
+        // f is that by the targets of the places at the end: another smoother has the same.
+        let f = *history(&outcome, Metric::ShapeSize).last().unwrap();
+        assert!((smoother.f(Metric::ShapeSize, &outcome.points).unwrap() / f - 1.0).abs() < 1e-6);
+        let moved = Mesh { points: outcome.points.clone(), ..mesh.clone() };
+        let mut again = Smoother::new(&moved).unwrap();
+        again.set_target_field(field.clone()).unwrap();
+        assert!((again.f(Metric::ShapeSize, &moved.points).unwrap() / f - 1.0).abs() < 1e-6);
+        // Targets and vertices have both settled: a further run finds next to nothing.
+        let further = run(&again, &options, backend);
+        let least = *history(&further, Metric::ShapeSize).last().unwrap();
+        assert!((least / f - 1.0).abs() < 1e-4, "{label}: {f} {least}");
+    }
+}
+
+#[test]
+fn a_field_of_one_size_is_no_field() {
+    let (mesh, [width, height]) = even();
+    let (square, _) = background(width, height);
+    let field = TargetField::new(&square, &Targets::equilateral(4)).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let plain = run(&smoother, &Options::default(), &Backend::Cpu);
+    smoother.set_target_field(field).unwrap();
+    let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
+    assert_eq!(outcome.stop, Stop::Converged);
+    let f = [&plain, &outcome].map(|outcome| *history(outcome, Metric::Imr).last().unwrap());
+    assert!((f[0] / f[1] - 1.0).abs() < 2e-6, "{f:?}");
+}
+
+#[test]
+fn what_does_not_go_with_a_field_is_refused() {
+    let (mesh, [width, height]) = even();
+    let (square, targets) = background(width / 2.0, height);
+    assert!(TargetField::new(&mesh, &targets).is_err());
+    let field = TargetField::new(&square, &targets).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    // Half of the mesh is outside, by up to half of its width.
+    let outside = smoother.set_target_field(field).unwrap();
+    assert!(outside.count > mesh.points.len() / 3, "{outside:?}");
+    assert!((outside.most / width - 0.5).abs() < 0.05, "{outside:?}");
+    let refused = |smoother: &Smoother, options: &Options| {
+        let error = smoother.run(options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        let option = "target field";
+        assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
+    };
+    let goal = Some(Goal { fraction: 0.95, desired: Desired::Value(1.0) });
+    refused(&smoother, &Options { goal, ..Options::default() });
+    refused(&smoother, &Options { max_move: Some(1.0), ..Options::default() });
+    refused(&smoother, &Options { scheme: Metric::Edge.into(), ..Options::default() });
+    smoother.set_slide(Some(&Slide::default())).unwrap();
+    refused(&smoother, &Options::default());
+}
