@@ -6,7 +6,7 @@ use crate::file::curves::{Curves, between_regions};
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
-use crate::file::numbers::{Encoded, Numbers};
+use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
 use crate::file::source::Source;
@@ -85,7 +85,7 @@ pub struct MeshFile {
     data: Vec<String>,
     has_parameters: bool,
     /// The bytes at which the x of vertices start in the first of the sources.
-    x_at: Vec<usize>,
+    x_at: Places,
     /// The vertex of each of these, if there are several to a vertex.
     owners: Option<Vec<u32>>,
     /// How the first of the sources has the coordinates.
@@ -370,7 +370,7 @@ impl MeshFile {
         &self.sources
     }
 
-    pub(crate) fn x_at(&self) -> &[usize] {
+    pub(crate) fn x_at(&self) -> &Places {
         &self.x_at
     }
 
@@ -429,7 +429,7 @@ impl MeshFile {
         keep_ascending(&mut wanted, self.mesh.points.len());
         let source = &self.sources[0];
         let found = match &Family::of(self.format).reader {
-            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),
+            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at.at(v))),
             Some(reader) => assemble::vertex_places(reader, source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };

@@ -9,6 +9,7 @@ use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::heights::Heights;
 use crate::file::numbers::{Form, Numbers, Places};
+use crate::file::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
 use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
@@ -72,7 +73,7 @@ impl Walk for Ply {
                 }
                 _ => {
                     sink.leaves_out("elements that are neither vertices, faces nor edges");
-                    items.each(cursor, list, |_, _, _| Ok(()))?;
+                    items.each(cursor, list, 0, |_, _, _| Ok(()))?;
                 }
             }
         }
@@ -217,16 +218,17 @@ impl Items {
         }
     }
 
-    /// Hands all numbers of each item to `take`, with the places of the first number of each property.
+    /// Hands all numbers of each item, from one of them on, to `take`, with the places of the first number of each property.
     fn each<'a>(
         self,
         cursor: &mut Cursor<'a>,
         list: &List<'_>,
+        from: u64,
         mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); list.properties.len()];
         let mut places = vec![0; list.properties.len()];
-        for done in 0..list.count {
+        for done in from..list.count {
             if self.order.is_none() {
                 cursor.row(done, list.count, "items")?;
             }
@@ -307,8 +309,8 @@ impl Items {
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
         let mut heights = Heights::new(sink);
         let mut data = Data::new(list, z, sink);
-        let mut tag = 0;
-        self.each(cursor, list, |place, values, places| {
+        let mut tag = self.plain_vertices(cursor, list, x, z, &mut heights, sink);
+        self.each(cursor, list, tag, |place, values, places| {
             data.see(values, places);
             if let Some(z) = z {
                 heights.see((places[z], values[z][0]));
@@ -333,6 +335,91 @@ impl Items {
         })
     }
 
+    /// Hands on the first vertices as far as they are plain, if they are in binary and each has as many bytes. `x` and `z` are the
+    /// places of properties. Returns how many there are.
+    fn plain_vertices(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        x: usize,
+        z: Option<usize>,
+        heights: &mut Heights,
+        sink: &mut dyn Sink,
+    ) -> u64 {
+        let properties = &list.properties;
+        let before = |index| properties[..index].iter().map(|p| p.number.size()).sum::<usize>();
+        let stride = before(properties.len());
+        let (Some(order), Some((bytes, start)), false) = (
+            self.order,
+            cursor.ahead(list.count, stride),
+            properties.iter().any(|property| property.length.is_some()),
+        ) else {
+            return 0;
+        };
+        let field = |index: usize| {
+            Field::new(bytes.get(before(index)..), (stride, properties[index].number.size()), order)
+        };
+        let (count, x_at, tags) = (list.count as usize, start + before(x), Tags::From(0));
+        let heights_of = z.map(|z| (field(z), start + before(z)));
+        if heights_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
+            return 0;
+        }
+        let records = NodeRecords { count, x: field(x), y: field(x + 1), x_at, tags };
+        let taken = sink.node_records(&records);
+        if let Some((z, at)) = heights_of {
+            heights.see_all(z, taken, at);
+        }
+        cursor.take(taken * stride);
+        taken as u64
+    }
+
+    /// Hands on the first elements as far as they are triangles, if they are in binary. Returns how many there are.
+    fn plain_triangles(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        names: &[&[u8]],
+        sink: &mut dyn Sink,
+    ) -> u64 {
+        let properties = &list.properties;
+        let size = |property: &Property<'_>| match property.length {
+            None => property.number.size(),
+            // A list of three.
+            Some(length) => length.size() + 3 * property.number.size(),
+        };
+        let is_list = |property: &Property<'_>| property.length.is_some();
+        let whole = |number| matches!(number, Number::Integer { .. });
+        let (Some(order), Some(corners)) = (self.order, properties.iter().position(is_list)) else {
+            return 0;
+        };
+        let Property { name, length: Some(length), number } = properties[corners] else { return 0 };
+        let is_named = |property: &Property<'_>| names.contains(&property.name);
+        if !names.contains(&name)
+            || properties.iter().filter(|property| is_list(property) || is_named(property)).count()
+                > 1
+            || !whole(length)
+            || !whole(number)
+        {
+            return 0;
+        }
+        let stride = properties.iter().map(size).sum::<usize>();
+        let at = properties[..corners].iter().map(size).sum::<usize>();
+        // Where some have other lengths than triangles, there need not be so many bytes; then none is plain.
+        let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
+        let field =
+            |at: usize, number: Number| Field::new(bytes.get(at..), (stride, number.size()), order);
+        let taken = sink.triangle_records(&TriangleRecords {
+            count: list.count as usize,
+            corners: field(at + length.size(), number),
+            first: 0,
+            below: u64::MAX,
+            regions: [Region::Same(0); 2],
+            expected: &[(field(at, length), Expected::Is(3))],
+        });
+        cursor.take(taken * stride);
+        taken as u64
+    }
+
     /// Reads elements whose corners are the numbers of the properties of these names.
     fn elements(
         self,
@@ -341,12 +428,12 @@ impl Items {
         names: &[&[u8]],
         sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
-        let mut tag = 0;
         let properties = &list.properties;
         if properties.iter().any(|property| !names.contains(&property.name)) {
             sink.leaves_out("properties of faces or edges");
         }
-        self.each(cursor, list, |place, values, _| {
+        let mut tag = self.plain_triangles(cursor, list, names, sink);
+        self.each(cursor, list, tag, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
             // No vertex has a number that is negative, or not whole.

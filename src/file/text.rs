@@ -66,7 +66,17 @@ impl<'a> Cursor<'a> {
     /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
     /// from its own first.
     pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
-        let mut at = self.next_line();
+        self.parts_after(None, size, count)
+    }
+
+    /// Splits the lines that follow a part in the same way; those that follow this cursor if it is none.
+    pub(crate) fn parts_after(
+        &self,
+        part: Option<&Cursor<'_>>,
+        size: usize,
+        count: usize,
+    ) -> Vec<Cursor<'a>> {
+        let mut at = part.map_or_else(|| self.next_line(), |part| part.bytes.len());
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
             let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
@@ -112,6 +122,13 @@ impl<'a> Cursor<'a> {
         let taken = self.bytes[start..].get(..count)?;
         self.at += count;
         Some(taken)
+    }
+
+    /// The bytes of so many items that [`take`](Self::take) would take next, and where they start. None if there are fewer.
+    pub(crate) fn ahead(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
+        let start = self.next_line();
+        let length = usize::try_from(count).ok()?.checked_mul(size)?;
+        Some((self.bytes[start..].get(..length)?, start))
     }
 
     /// Moves to a byte of the whole file, for messages, and there counts the line it stands on. Quick where it moves forward.

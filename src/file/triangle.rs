@@ -74,7 +74,7 @@ pub(crate) fn parse(
     Ok(Parsed {
         format: Format::Triangle,
         mesh,
-        x_at,
+        x_at: numbers::Places::List(x_at),
         owners: None,
         numbers: numbers::Numbers::TEXT,
         encoded: None,
