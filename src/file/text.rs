@@ -289,6 +289,20 @@ impl<'a> Cursor<'a> {
     /// Reads a number that may be negative, called `what` in messages.
     #[inline]
     pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
+        let bytes = self.bytes;
+        let start = skip_blanks(bytes, self.at);
+        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
+        let mut at = first;
+        let mut number = 0_i64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=18).contains(&(at - first)) && token_end(bytes, at) == at {
+            self.at = at;
+            return Ok(if first > start { -number } else { number });
+        }
         let token = self.token();
         let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
         number.ok_or_else(|| self.unusable(token, what, SIGNED))

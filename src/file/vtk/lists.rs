@@ -71,23 +71,25 @@ pub(super) fn integers<'a>(
 
 /// Reads the numbers of the rows that follow on all threads, as long as they are plain and no more than are wanted.
 fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
-    /// Rows of more numbers are left to be read one by one.
+    /// Rows of more numbers, or of numbers of more than 32 bits, are left to be read one by one.
     const MOST: usize = 10;
-    let read = |cursor: &mut Cursor<'_>| -> Result<([u64; MOST], usize), ReadError> {
+    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
         let mut row = ([0; MOST], 0);
         while !cursor.is_at_end() {
-            if row.1 == MOST {
-                return Err(cursor.error("a long row", CORRECT));
-            }
-            row.0[row.1] = cursor.integer("a number")?;
+            let number = u32::try_from(cursor.integer("a number")?).ok();
+            let (Some(number), Some(next)) = (number, row.0.get_mut(usize::from(row.1))) else {
+                return Err(cursor.error("a long row or number", CORRECT));
+            };
+            *next = number;
             row.1 += 1;
         }
         Ok(row)
     };
     let done = take_rows(cursor, u64::MAX, read, |(row, length)| {
+        let length = usize::from(length);
         let fits = numbers.len() as u64 + length as u64 <= count;
         if fits {
-            row[..length].iter().for_each(|&number| numbers.push(number));
+            row[..length].iter().for_each(|&number| numbers.push(u64::from(number)));
         }
         fits
     });
