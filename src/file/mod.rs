@@ -57,6 +57,7 @@ mod token;
 mod triangle;
 mod triangle_data;
 mod triangle_groups;
+mod triangle_names;
 mod vtk;
 mod vtu;
 mod whole;

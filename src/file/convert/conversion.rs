@@ -11,7 +11,7 @@ use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
 use crate::file::packed::Packing;
 use crate::file::replace::{self, Job as Replacement};
-use crate::file::triangle::Names;
+use crate::file::triangle_names::Names;
 use std::io;
 use std::path::{Path, PathBuf};
 
