@@ -58,6 +58,11 @@ pub(crate) fn integer(token: &[u8]) -> Option<u64> {
     if digits.is_empty() {
         return None;
     }
+    // So many digits cannot overflow.
+    if digits.len() < 20 && digits.iter().all(u8::is_ascii_digit) {
+        let append = |number: u64, &byte: &u8| 10 * number + u64::from(byte - b'0');
+        return Some(digits.iter().fold(0, append));
+    }
     digits.iter().try_fold(0_u64, |number, &byte| {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
