@@ -19,6 +19,7 @@ fn ending(format: Format) -> &'static str {
         Format::Xdmf => "xdmf",
         Format::Su2 => "su2",
         Format::Medit => "mesh",
+        Format::MeditBinary => "meshb",
         Format::Obj => "obj",
         Format::Off => "off",
         Format::Ply => "ply",

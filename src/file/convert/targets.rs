@@ -50,8 +50,19 @@ const VTK: Holds = Holds {
     ..Holds::TRIANGLES
 };
 
+const MEDIT: Holds = Holds {
+    points: Elements::OfGroups,
+    lines: Elements::All,
+    quadrilaterals: true,
+    heights: true,
+    groups: Groups::One,
+    own: "list",
+    vertex_groups: true,
+    ..Holds::TRIANGLES
+};
+
 /// Each format, of those that files end the same way for the usual one first.
-pub(crate) static TARGETS: [Target; 15] = [
+pub(crate) static TARGETS: [Target; 16] = [
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
@@ -100,17 +111,14 @@ pub(crate) static TARGETS: [Target; 15] = [
     Target {
         format: Format::Medit,
         name: "medit",
-        holds: Holds {
-            points: Elements::OfGroups,
-            lines: Elements::All,
-            quadrilaterals: true,
-            heights: true,
-            groups: Groups::One,
-            own: "list",
-            vertex_groups: true,
-            ..Holds::TRIANGLES
-        },
+        holds: MEDIT,
         write: Write::One(medit::write_medit),
+    },
+    Target {
+        format: Format::MeditBinary,
+        name: "meshb",
+        holds: MEDIT,
+        write: Write::Binary(medit::write_meshb),
     },
     Target {
         format: Format::Triangle,
