@@ -8,7 +8,7 @@ use crate::file::text::Cursor;
 use crate::parallel::{map_parts, meanwhile};
 
 /// How many bytes of text one thread reads at a time.
-const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 17;
 /// Lists with fewer rows are read as fast on one thread.
 const LONG: u64 = 1 << 14;
 
