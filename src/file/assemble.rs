@@ -2,17 +2,29 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::curves::Curves;
+use crate::file::numbers::{FoundPlaces, Places};
 use crate::file::parsed::{Parsed, fixed_note};
+use crate::file::records::{NodeRecords, TriangleRecords};
 use crate::file::regions::{Numbering, Regions};
 use crate::file::sink::{Copies, Element, Kind, Layout, Reader, Sink};
 use crate::file::source::Source;
-use crate::file::tags::TagMap;
+use crate::file::tags::{FoundTags, TagMap};
 use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
 
 /// Reads a mesh.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
-    let mut assembler = Assembler { vertices_of: reader.vertices, ..Assembler::default() };
+    parse_by(reader, source, true)
+}
+
+/// Reads a mesh, and what is long on all threads, or all of it item by item.
+pub(crate) fn parse_by(
+    reader: &Reader,
+    source: &Source,
+    takes_ahead: bool,
+) -> Result<Parsed, ReadError> {
+    let vertices_of = reader.vertices;
+    let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
     let Layout { format, numbers, encoded, copies } = (reader.walk)(source, &mut assembler)?;
     let has_parameters = assembler.has_parameters;
     let Assembler { mut mesh, x_at, regions, curves, .. } = assembler;
@@ -36,8 +48,8 @@ pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadErro
     }
     let regions = regions.finish();
     let (x_at, owners) = match copies {
-        None => (x_at, None),
-        Some(Copies { x_at, vertices }) => (x_at, Some(vertices)),
+        None => (x_at.finish(), None),
+        Some(Copies { x_at, vertices }) => (Places::List(x_at), Some(vertices)),
     };
     Ok(Parsed {
         format,
@@ -74,10 +86,12 @@ pub(crate) fn triangle_places(
 
 #[derive(Default)]
 struct Assembler {
+    /// Whether it takes what was read on all threads.
+    takes_ahead: bool,
     mesh: Mesh,
-    x_at: Vec<usize>,
+    x_at: FoundPlaces,
     /// The tag of each node, until the map is made.
-    tags: Vec<u64>,
+    tags: FoundTags,
     map: Option<TagMap>,
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
@@ -115,13 +129,13 @@ impl Assembler {
 
 impl Sink for Assembler {
     fn takes_ahead(&self) -> bool {
-        true
+        self.takes_ahead
     }
 
     fn expect_nodes(&mut self, count: usize) {
         self.mesh.points.reserve_exact(count);
-        self.x_at.reserve_exact(count);
-        self.tags.reserve_exact(count);
+        self.x_at.expect(count);
+        self.tags.expect(count);
     }
 
     #[inline]
@@ -130,14 +144,21 @@ impl Sink for Assembler {
             // On a point or curve of the model, which may lie inside the domain without being
             // saved as line elements: the interface of two surfaces, say.
             self.on_lower += 1;
-            self.mesh.fixed.push(self.tags.len() as u32);
+            self.mesh.fixed.push(self.mesh.points.len() as u32);
         }
         if dimension == 0 {
-            self.curves.held.push(self.tags.len() as u32);
+            self.curves.held.push(self.mesh.points.len() as u32);
         }
         self.tags.push(tag);
         self.x_at.push(x_at);
         self.mesh.points.push(at);
+    }
+
+    fn node_records(&mut self, records: &NodeRecords<'_>) -> usize {
+        if !self.takes_ahead {
+            return 0;
+        }
+        records.read(&mut self.mesh.points, &mut self.tags, &mut self.x_at)
     }
 
     fn polyline(
@@ -178,15 +199,16 @@ impl Sink for Assembler {
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         let tags = std::mem::take(&mut self.tags);
-        match TagMap::new(&tags) {
+        match tags.map() {
             Ok(map) => {
                 self.map = Some(map);
                 Ok(())
             }
             Err(second) => {
-                let problem = format!("these are the second coordinates of node {}", tags[second]);
+                let problem =
+                    format!("these are the second coordinates of node {}", tags.of(second));
                 let remedy = "Give each node a tag of its own";
-                let location = cursor.location_of(self.x_at[second]);
+                let location = cursor.location_of(self.x_at.at(second));
                 Err(cursor.source.error_at(location, problem, remedy))
             }
         }
@@ -194,6 +216,17 @@ impl Sink for Assembler {
 
     fn expect_elements(&mut self, count: usize) {
         self.mesh.triangles.reserve(count);
+    }
+
+    fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
+        let Self { map: Some(map), takes_ahead: true, mesh, regions, region_names, .. } = self
+        else {
+            return 0;
+        };
+        records.read(map, &mut mesh.triangles, |region, triangles| {
+            let number = region_names.number(region);
+            (0..triangles).for_each(|_| regions.push(number));
+        })
     }
 
     #[inline]

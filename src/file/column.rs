@@ -22,13 +22,9 @@ pub(crate) struct Column<'a> {
 /// Where the items of a column start.
 enum At<'a> {
     /// So many bytes after each of these places.
-    After(&'a [usize], usize),
-    Regular {
-        start: usize,
-        stride: usize,
-    },
+    After(&'a Places, usize),
     /// Each of these places, with a second number the token after the first.
-    Pairs(&'a [usize]),
+    Pairs(&'a Places),
 }
 
 /// A number to be replaced.
@@ -42,7 +38,7 @@ impl<'a> Column<'a> {
     /// The coordinates of vertices, whose x start at these places. A vertex may have several: then its index is given for each
     /// place.
     pub(crate) fn of_points(
-        (x_at, owners): (&'a [usize], Option<&'a [u32]>),
+        (x_at, owners): (&'a Places, Option<&'a [u32]>),
         numbers: Numbers,
         old: &'a [[f64; 2]],
         new: &'a [[f64; 2]],
@@ -66,25 +62,27 @@ impl<'a> Column<'a> {
         old: &'a [f64],
         new: &'a [f64],
     ) -> Column<'a> {
-        let at = match places {
-            Places::List(list) => At::After(list, 0),
-            &Places::Regular { start, stride } => At::Regular { start, stride },
-        };
-        Column { at, form, old, new, first: 0, step: 1, owners: None }
+        Column { at: At::After(places, 0), form, old, new, first: 0, step: 1, owners: None }
     }
 
     fn count(&self) -> usize {
-        match self.at {
-            At::After(list, _) | At::Pairs(list) => list.len(),
-            At::Regular { .. } => self.old.len(),
+        match (self.places(), self.owners) {
+            (Places::List(list), _) => list.len(),
+            (Places::Regular { .. }, Some(owners)) => owners.len(),
+            (Places::Regular { .. }, None) => self.old.len() / self.step,
         }
     }
 
     fn start(&self, item: usize) -> usize {
         match self.at {
-            At::After(list, shift) => list[item] + shift,
-            At::Pairs(list) => list[item],
-            At::Regular { start, stride } => start + item * stride,
+            At::After(places, shift) => places.at(item) + shift,
+            At::Pairs(places) => places.at(item),
+        }
+    }
+
+    fn places(&self) -> &'a Places {
+        match self.at {
+            At::After(places, _) | At::Pairs(places) => places,
         }
     }
 

@@ -96,11 +96,14 @@ impl MeshFile {
     /// The ranges of coordinates in the bytes that hold them, ascending.
     fn coordinates(&self) -> Vec<Range<usize>> {
         let x_at = self.x_at();
-        let mut ranges = Vec::with_capacity(2 * x_at.len());
+        // As many as vertices, or as the places that these are repeated in.
+        let count = self.owners().map_or(self.mesh().points.len(), <[u32]>::len);
+        let mut ranges = Vec::with_capacity(2 * count);
+        let places = (0..count).map(|index| x_at.at(index));
         match self.numbers() {
             Numbers::Text { .. } => {
                 let bytes = &self.sources()[0].bytes;
-                for &x in x_at {
+                for x in places {
                     let x_end = token_end(bytes, x);
                     let y = skip_to_token(bytes, x_end);
                     ranges.extend([x..x_end, y..token_end(bytes, y)]);
@@ -108,7 +111,7 @@ impl MeshFile {
             }
             Numbers::Binary { precision, y_after, .. } => {
                 let size = precision.bytes();
-                ranges.extend(x_at.iter().flat_map(|&x| [x, x + y_after].map(|at| at..at + size)));
+                ranges.extend(places.flat_map(|x| [x, x + y_after].map(|at| at..at + size)));
                 ranges.sort_unstable_by_key(|range| range.start);
             }
         }

@@ -6,7 +6,7 @@ use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
 use crate::file::text::Cursor;
 use crate::file::token::integer;
-use crate::file::triangle::{Names, appended};
+use crate::file::triangle_names::{Names, appended};
 use std::path::{Path, PathBuf};
 
 /// What a file holds, of the formats with a reader.

@@ -2,6 +2,7 @@
 
 use crate::error::ReadError;
 use crate::file::numbers::{Form, Places};
+use crate::file::records::{Field, LONG};
 use crate::file::sink::{Home, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
@@ -29,6 +30,18 @@ impl Heights {
         if let Some((places, numbers)) = &mut self.collected {
             places.push(at);
             numbers.push(z);
+        }
+    }
+
+    /// Takes those of all records of a list in binary, the first of which stands at this byte.
+    pub(crate) fn see_all(&mut self, z: Field<'_>, count: usize, at: usize) {
+        if self.collected.is_some() || count < LONG {
+            z.real(0..count).enumerate().for_each(|(index, z_of)| {
+                self.see((at + index * z.stride(), z_of));
+            });
+        } else if let Some(own) = z.real(0..1).next() {
+            let first = *self.first.get_or_insert(own);
+            self.differ |= !z.all_real(count, |z| z == first);
         }
     }
 

@@ -10,6 +10,7 @@ use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::{Form, Numbers};
 use crate::file::parsed::fixed_note;
+use crate::file::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
@@ -190,8 +191,12 @@ fn vertices(
     let item = dimension as usize * size + widths.integer;
     let bytes = items(cursor, count, item, "vertices")?;
     let start = cursor.taken();
-    sink.expect_nodes(bytes.len() / item);
-    for (index, vertex) in bytes.chunks_exact(item).enumerate() {
+    let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+    let count = bytes.len() / item;
+    sink.expect_nodes(count);
+    let (x, y, tags) = (field(0), field(size), Tags::From(1));
+    let taken = sink.node_records(&NodeRecords { count, x, y, x_at: start, tags });
+    for (index, vertex) in bytes.chunks_exact(item).enumerate().skip(taken) {
         let [x, y] = [0, 1].map(|axis| {
             let bytes = &vertex[axis * size..][..size];
             widths.order.real(widths.precision, bytes)
@@ -206,10 +211,7 @@ fn vertices(
     }
     if dimension == 3 {
         let mut heights = Heights::new(sink);
-        for (index, vertex) in bytes.chunks_exact(item).enumerate() {
-            let z = widths.order.real(widths.precision, &vertex[2 * size..3 * size]);
-            heights.see((start + index * item + 2 * size, z));
-        }
+        heights.see_all(field(2 * size), count, start + 2 * size);
         heights.send("z", Form::Binary(widths.order, widths.precision), sink);
     }
     if sink.asks_for_groups() {
@@ -263,10 +265,22 @@ fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), 
     sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
+    let mut taken = 0;
     if kind == Kind::Triangle {
-        sink.expect_elements(bytes.len() / item);
+        let count = bytes.len() / item;
+        sink.expect_elements(count);
+        let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+        let regions = [Region::Field(field(3 * size)), Region::Same(0)];
+        taken = sink.triangle_records(&TriangleRecords {
+            count,
+            corners: field(0),
+            first: 0,
+            below: u64::MAX,
+            regions,
+            expected: &[],
+        });
     }
-    for (index, element) in bytes.chunks_exact(item).enumerate() {
+    for (index, element) in bytes.chunks_exact(item).enumerate().skip(taken) {
         let mut numbers = [0; 5];
         for (value, bytes) in numbers.iter_mut().zip(element.chunks_exact(size)) {
             *value = widths.order.signed(bytes);

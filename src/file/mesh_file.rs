@@ -7,11 +7,12 @@ use crate::file::curves::{Curves, between_regions};
 use crate::file::detect::{self, Content};
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
-use crate::file::numbers::{Encoded, Numbers};
+use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
 use crate::file::source::Source;
-use crate::file::triangle::{self, Names};
+use crate::file::triangle;
+use crate::file::triangle_names::Names;
 use crate::mesh::{Mesh, Precision};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -86,7 +87,7 @@ pub struct MeshFile {
     data: Vec<String>,
     has_parameters: bool,
     /// The bytes at which the x of vertices start in the first of the sources.
-    x_at: Vec<usize>,
+    x_at: Places,
     /// The vertex of each of these, if there are several to a vertex.
     owners: Option<Vec<u32>>,
     /// How the first of the sources has the coordinates.
@@ -392,7 +393,7 @@ impl MeshFile {
         &self.sources
     }
 
-    pub(crate) fn x_at(&self) -> &[usize] {
+    pub(crate) fn x_at(&self) -> &Places {
         &self.x_at
     }
 
@@ -464,7 +465,7 @@ impl MeshFile {
         keep_ascending(&mut wanted, self.original().points.len());
         let source = &self.sources[0];
         let found = match &Family::of(self.format).reader {
-            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at[v])),
+            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at.at(v))),
             Some(reader) => assemble::vertex_places(reader, source, &wanted),
         };
         let place = |(location, label)| Place { path: source.path.clone(), location, label };

@@ -1,6 +1,8 @@
 //! Mesh files: read once, written again with moved vertices and nothing else changed.
 
 mod adcirc;
+#[cfg(test)]
+mod ahead_tests;
 mod assemble;
 mod binary;
 mod column;
@@ -38,6 +40,7 @@ mod parametric;
 mod parsed;
 mod ply;
 mod point_data;
+mod records;
 mod regions;
 mod replace;
 mod rewrite;
@@ -55,9 +58,11 @@ mod token;
 mod triangle;
 mod triangle_data;
 mod triangle_groups;
+mod triangle_names;
 mod view;
 mod vtk;
 mod vtu;
+mod whole;
 mod xdmf;
 
 pub use compare::Difference;

@@ -78,7 +78,10 @@ impl MeshFile {
         match &Family::of(self.format()).reader {
             Some(reader) => gather::labels(reader, source),
             None => {
-                let places = triangle::vertex_places(source, self.x_at().iter().copied());
+                let places = triangle::vertex_places(
+                    source,
+                    (0..self.mesh().points.len()).map(|vertex| self.x_at().at(vertex)),
+                );
                 Ok(places.into_iter().map(|(_, label)| label).collect())
             }
         }

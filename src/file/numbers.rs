@@ -64,6 +64,89 @@ pub(crate) enum Places {
     Regular { start: usize, stride: usize },
 }
 
+impl Places {
+    /// Where the number of this index starts.
+    #[inline]
+    pub(crate) fn at(&self, index: usize) -> usize {
+        match self {
+            Places::List(list) => list[index],
+            Places::Regular { start, stride } => start + index * stride,
+        }
+    }
+}
+
+/// Places of numbers as they are found. They take memory only once they are not at equal steps.
+#[derive(Default)]
+pub(crate) struct FoundPlaces {
+    start: usize,
+    stride: usize,
+    count: usize,
+    /// All of them, if they are not at equal steps.
+    list: Vec<usize>,
+    /// About how many there will be.
+    expected: usize,
+}
+
+impl FoundPlaces {
+    pub(crate) fn expect(&mut self, more: usize) {
+        self.expected = self.count + more;
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, at: usize) {
+        if !self.list.is_empty() {
+            self.list.push(at);
+        } else if self.count > 1 && at == self.start + self.count * self.stride {
+            self.count += 1;
+        } else {
+            self.extend(at, 0, 1);
+        }
+    }
+
+    /// Adds so many places at equal steps.
+    pub(crate) fn extend(&mut self, start: usize, stride: usize, count: usize) {
+        let follows = match (self.count, count) {
+            (_, 0) => return,
+            (0, _) => {
+                (self.start, self.stride) = (start, stride);
+                true
+            }
+            (1, 1) if start > self.start => {
+                self.stride = start - self.start;
+                true
+            }
+            (own, more) => {
+                self.list.is_empty()
+                    && start == self.start + own * self.stride
+                    && (more == 1 || stride == self.stride)
+            }
+        };
+        if !follows {
+            if self.list.is_empty() {
+                self.list.reserve_exact(self.expected.max(self.count + count));
+                self.list.extend((0..self.count).map(|index| self.start + index * self.stride));
+            }
+            self.list.extend((0..count).map(|index| start + index * stride));
+        }
+        self.count += count;
+    }
+
+    /// The place of this index.
+    pub(crate) fn at(&self, index: usize) -> usize {
+        match self.list.is_empty() {
+            true => self.start + index * self.stride,
+            false => self.list[index],
+        }
+    }
+
+    pub(crate) fn finish(self) -> Places {
+        match self.list.is_empty() {
+            true => Places::Regular { start: self.start, stride: self.stride },
+            false => Places::List(self.list),
+        }
+    }
+}
+
 /// Bytes that replace a range of a file.
 pub(crate) struct Splice {
     pub(crate) range: Range<usize>,
@@ -90,4 +173,41 @@ pub(crate) trait Encoded: Send + Sync {
     fn splices(&self, new: &[u8]) -> Vec<Splice>;
     /// What the file says of places in the data at its end: the same for all of its arrays.
     fn offsets(&self) -> &[Offset];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn found_places_are_those_that_were_added() {
+        type Run = (usize, usize, usize);
+        let cases: [(&[Run], bool); 8] = [
+            (&[], true),
+            (&[(7, 0, 1)], true),
+            (&[(7, 0, 1), (10, 0, 1), (13, 0, 1), (16, 3, 4)], true),
+            (&[(7, 3, 4), (19, 0, 1), (22, 3, 2)], true),
+            (&[(7, 3, 4), (20, 0, 1), (21, 0, 1)], false),
+            (&[(7, 3, 4), (19, 4, 3)], false),
+            (&[(7, 0, 1), (10, 4, 3)], false),
+            (&[(7, 0, 1), (10, 0, 1), (14, 0, 1), (18, 5, 3), (40, 0, 0)], false),
+        ];
+        for (runs, is_regular) in cases {
+            let mut found = FoundPlaces::default();
+            let mut expected = Vec::new();
+            for &(start, stride, count) in runs {
+                match count {
+                    1 => found.push(start),
+                    _ => found.extend(start, stride, count),
+                }
+                expected.extend((0..count).map(|index| start + index * stride));
+            }
+            let all: Vec<usize> = (0..expected.len()).map(|index| found.at(index)).collect();
+            assert_eq!(all, expected, "{runs:?}");
+            let places = found.finish();
+            assert_eq!(matches!(places, Places::Regular { .. }), is_regular, "{runs:?}");
+            let all: Vec<usize> = (0..expected.len()).map(|index| places.at(index)).collect();
+            assert_eq!(all, expected, "{runs:?}");
+        }
+    }
 }

@@ -233,7 +233,7 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
         Some(kind @ (b"f" | b"l" | b"p")) => {
             let mut corners = Corners::Few([0; 4], 0);
             while let Some(token) = cursor.token() {
-                let end = memchr::memchr(b'/', token).unwrap_or(token.len());
+                let end = token.iter().position(|&byte| byte == b'/').unwrap_or(token.len());
                 corners.push(signed(&token[..end]).ok_or_else(|| {
                     let problem = format!("a vertex is `{}`, not a whole number", quoted(token));
                     cursor.error(problem, CORRECT)

@@ -5,7 +5,7 @@
 
 use crate::error::ReadError;
 use crate::file::text::Cursor;
-use crate::parallel::map_parts;
+use crate::parallel::{map_parts, meanwhile};
 
 /// How many bytes of text one thread reads at a time.
 const CHUNK: usize = 1 << 17;
@@ -35,19 +35,55 @@ fn take_chunks<'a, T: Send>(
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
     mut take: impl FnMut(T) -> bool,
 ) -> u64 {
-    let mut buffers: Vec<Vec<T>> = Vec::new();
-    buffers.resize_with(4 * rayon::current_num_threads(), Vec::new);
+    let at_once = 4 * rayon::current_num_threads();
+    let mut batch = Batch::new(cursor.parts(size, at_once), Vec::new());
+    let mut spare = Vec::new();
+    batch.read(count, &read);
     let mut done = 0;
-    while done < count {
-        let left = count - done;
-        let mut parts = cursor.parts(size, buffers.len());
-        if parts.is_empty() {
+    while done < count && !batch.parts.is_empty() {
+        // While this thread takes what was read, the others read on.
+        let found: u64 = batch.rows.iter().map(|rows| rows.len() as u64).sum();
+        let parts = match done + found < count {
+            true => cursor.parts_after(batch.parts.last(), size, at_once),
+            false => Vec::new(),
+        };
+        let mut next = Batch::new(parts, std::mem::take(&mut spare));
+        let mut is_plain = true;
+        meanwhile(&mut || next.read(count, &read), &mut || {
+            is_plain = batch.take(cursor, count, &mut done, &mut take);
+        });
+        if !is_plain {
             break;
         }
-        let each = parts.iter_mut().zip(&mut buffers);
-        let damaged = map_parts(each, |_, (part, rows)| {
-            rows.clear();
-            while (rows.len() as u64) < left && part.next_row() {
+        spare = std::mem::replace(&mut batch, next).rows;
+    }
+    done
+}
+
+/// Some parts of a list, and the rows of each.
+struct Batch<'a, T> {
+    parts: Vec<Cursor<'a>>,
+    rows: Vec<Vec<T>>,
+    /// Whether a part has a row that cannot be read, after those that were.
+    damaged: Vec<bool>,
+}
+
+impl<'a, T: Send> Batch<'a, T> {
+    /// `rows` are lists that were emptied, and have room.
+    fn new(parts: Vec<Cursor<'a>>, mut rows: Vec<Vec<T>>) -> Batch<'a, T> {
+        rows.resize_with(parts.len(), Vec::new);
+        Batch { parts, rows, damaged: Vec::new() }
+    }
+
+    /// Reads at most so many rows of each part.
+    fn read(
+        &mut self,
+        most: u64,
+        read: &(impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync),
+    ) {
+        let each = self.parts.iter_mut().zip(&mut self.rows);
+        self.damaged = map_parts(each, |_, (part, rows)| {
+            while (rows.len() as u64) < most && part.next_row() {
                 match read(part) {
                     Ok(row) => rows.push(row),
                     Err(_) => return true,
@@ -55,26 +91,37 @@ fn take_chunks<'a, T: Send>(
             }
             false
         });
-        for ((part, rows), damaged) in parts.iter().zip(&mut buffers).zip(damaged) {
+    }
+
+    /// Takes rows up to `count`, of which `done` were taken, and moves the cursor past them. Whether all were taken that the
+    /// parts have.
+    fn take(
+        &mut self,
+        cursor: &mut Cursor<'a>,
+        count: u64,
+        done: &mut u64,
+        take: &mut impl FnMut(T) -> bool,
+    ) -> bool {
+        for ((part, rows), &damaged) in self.parts.iter().zip(&mut self.rows).zip(&self.damaged) {
             let found = rows.len();
             let mut taken = 0;
             for row in rows.drain(..) {
-                if done == count || !take(row) {
+                if *done == count || !take(row) {
                     break;
                 }
                 taken += 1;
-                done += 1;
+                *done += 1;
             }
-            if done == count || taken < found || damaged {
+            if *done == count || taken < found || damaged {
                 for _ in 0..taken {
                     cursor.next_row();
                 }
-                return done;
+                return false;
             }
             cursor.skip(part);
         }
+        true
     }
-    done
 }
 
 #[cfg(test)]

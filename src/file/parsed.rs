@@ -2,7 +2,7 @@
 
 use crate::file::curves::Curves;
 use crate::file::format::Format;
-use crate::file::numbers::{Encoded, Numbers};
+use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::mesh::Mesh;
 
 /// What a reader returns.
@@ -11,7 +11,7 @@ pub(crate) struct Parsed {
     /// The mesh. Its fixed vertices are those of lines and other elements of the file, not those between regions.
     pub(crate) mesh: Mesh,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
-    pub(crate) x_at: Vec<usize>,
+    pub(crate) x_at: Places,
     /// The vertex of each of these, if they are not one for each vertex in their order.
     pub(crate) owners: Option<Vec<u32>>,
     /// How the file has its coordinates.

@@ -111,7 +111,8 @@ mod tests {
     use crate::mesh::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
-        let columns = Column::of_points((x_at, None), Numbers::TEXT, old, new);
+        let places = Places::List(x_at.to_vec());
+        let columns = Column::of_points((&places, None), Numbers::TEXT, old, new);
         let mut out = Vec::new();
         Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
         out
@@ -168,6 +169,7 @@ mod tests {
             bytes.extend_from_slice(b"tail 1 2 3");
             expected.extend_from_slice(b"tail 1 2 3");
             assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
+            let x_at = Places::List(x_at);
             let mut columns = Column::of_points((&x_at, None), Numbers::TEXT, &old, &new);
             let places = Places::List(z_at);
             let form = Form::Text(Precision::Double);
@@ -192,7 +194,7 @@ mod tests {
         let z_new: Vec<f64> = (0..count).map(|v| f64::from(v % 3)).collect();
         let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
         let bytes = [b"head", &rows[..], b"tail"].concat();
-        let x_at: Vec<usize> = (0..old.len()).map(|v| 4 + 20 * v).collect();
+        let x_at = Places::Regular { start: 4, stride: 20 };
         let mut columns = Column::of_points(
             (&x_at, None),
             Numbers::adjacent(order, Precision::Double),

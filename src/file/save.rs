@@ -12,7 +12,7 @@ use crate::file::packed::Packing;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
 use crate::file::sink::{Home, Stored};
-use crate::file::triangle::Names;
+use crate::file::triangle_names::Names;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 

@@ -7,6 +7,7 @@ use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::numbers::{Form, Numbers, Places};
+use crate::file::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
 use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
@@ -70,7 +71,12 @@ impl Walk for Selafin {
         sink.expect_nodes(points as usize);
         let number = |bytes: &[u8]| order.real(precision, bytes);
         let size = precision.bytes();
-        for (index, (x, y)) in xs.chunks_exact(size).zip(ys.chunks_exact(size)).enumerate() {
+        let count = points as usize;
+        let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), (size, size), order));
+        let tags = Tags::From(1);
+        let taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+        let each = xs.chunks_exact(size).zip(ys.chunks_exact(size)).enumerate().skip(taken);
+        for (index, (x, y)) in each {
             let (at, tag) = ([number(x), number(y)], index as u64 + 1);
             if !at.iter().all(|x| x.is_finite()) {
                 let problem = format!("a coordinate of point {tag} is not a finite number");
@@ -81,7 +87,19 @@ impl Walk for Selafin {
         }
         sink.end_nodes(cursor)?;
         sink.expect_elements(triangles as usize);
-        for (index, corners) in connectivity.chunks_exact(4 * kind.nodes()).enumerate() {
+        let taken = match kind {
+            Kind::Triangle => sink.triangle_records(&TriangleRecords {
+                count: triangles as usize,
+                corners: Field::new(Some(connectivity), (12, 4), order),
+                first: 0,
+                below: u64::MAX,
+                regions: [Region::Same(0); 2],
+                expected: &[],
+            }),
+            _ => 0,
+        };
+        let each = connectivity.chunks_exact(4 * kind.nodes()).enumerate().skip(taken);
+        for (index, corners) in each {
             let mut nodes = [0; 4];
             for (node, number) in nodes.iter_mut().zip(integers(corners, order)) {
                 *node = u64::try_from(number).unwrap_or(0);

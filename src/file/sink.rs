@@ -5,6 +5,7 @@ use crate::file::format::Format;
 use crate::file::label::Label;
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::parallel_rows::take_rows;
+use crate::file::records::{NodeRecords, TriangleRecords};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 
@@ -112,6 +113,11 @@ pub(crate) trait Sink {
     /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
     /// where the file says so; else 2.
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    /// Takes nodes of a list in binary, from the first one on, and returns how many. The others are to be handed to
+    /// [`node`](Self::node).
+    fn node_records(&mut self, _records: &NodeRecords<'_>) -> usize {
+        0
+    }
     /// Ends the list of nodes.
     fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
         Ok(())
@@ -120,6 +126,11 @@ pub(crate) trait Sink {
     fn expect_elements(&mut self, _count: usize) {}
     /// Takes an element that was just read.
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
+    /// Takes triangles of a list in binary, from the first one on, and returns how many. The others are to be handed to
+    /// [`element`](Self::element).
+    fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {
+        0
+    }
     /// Takes a polygon of more than four corners, which stay fixed.
     fn polygon(
         &mut self,

@@ -2,8 +2,9 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::packed::{self, Packed, Unpackable};
-use std::fs;
-use std::io::ErrorKind;
+use crate::parallel::map_parts;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// A file as it was read.
@@ -18,7 +19,7 @@ pub(crate) struct Source {
 
 impl Source {
     pub(crate) fn load(path: &Path) -> Result<Source, ReadError> {
-        match fs::read(path) {
+        match content(path) {
             Ok(bytes) => Source::new(path, bytes),
             Err(source) => {
                 let remedy = match source.kind() {
@@ -76,6 +77,34 @@ impl Source {
     /// The last part of the path, for messages.
     pub(crate) fn name(&self) -> String {
         file_name(&self.path)
+    }
+}
+
+/// How many bytes one thread reads at a time.
+const CHUNK: usize = 1 << 22;
+
+/// The content of a file. A long one is read on all threads, each at places of its own: a single one takes most of its time to
+/// have memory made by the system.
+fn content(path: &Path) -> io::Result<Vec<u8>> {
+    let about = fs::metadata(path)?;
+    match usize::try_from(about.len()) {
+        Ok(length) if about.is_file() && length >= 2 * CHUNK => {
+            // Where there is not so much memory, this is an error, and the line after it an end without a message.
+            Vec::<u8>::new().try_reserve_exact(length)?;
+            let mut bytes = vec![0; length];
+            let each = bytes.chunks_mut(CHUNK);
+            let read = map_parts(each, |index, chunk| {
+                let mut file = File::open(path)?;
+                file.seek(SeekFrom::Start((index * CHUNK) as u64))?;
+                file.read_exact(chunk)
+            });
+            let has_changed = fs::metadata(path)?.len() != about.len();
+            match read.iter().all(io::Result::is_ok) && !has_changed {
+                true => Ok(bytes),
+                false => fs::read(path),
+            }
+        }
+        _ => fs::read(path),
     }
 }
 

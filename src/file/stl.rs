@@ -15,7 +15,7 @@ use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::quoted;
 use crate::mesh::Precision;
-use rayon::slice::ParallelSliceMut;
+use std::collections::HashMap;
 
 pub(crate) struct Stl;
 
@@ -201,15 +201,10 @@ impl Soup<'_> {
 
 /// For each corner the first one at the same place.
 fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
+    let mut first = HashMap::new();
     // Zeros of either sign are one place.
-    let key = |corner: u32| corners[corner as usize].map(|x| (x + 0.0).to_bits());
-    let mut order: Vec<u32> = (0..corners.len() as u32).collect();
-    order.par_sort_unstable_by_key(|&corner| (key(corner), corner));
-    let mut first = vec![0; corners.len()];
-    for equal in order.chunk_by(|&a, &b| key(a) == key(b)) {
-        equal.iter().for_each(|&corner| first[corner as usize] = equal[0]);
-    }
-    first
+    let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
+    (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
 }
 
 /// Joins corners at the same place, and hands on vertices in the order in which the file first has them, and triangles. Returns

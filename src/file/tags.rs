@@ -61,6 +61,64 @@ impl TagMap {
     }
 }
 
+/// Tags as they are found. They take memory only once one is not the next after the one before.
+#[derive(Default)]
+pub(crate) struct FoundTags {
+    first: u64,
+    count: u64,
+    /// All of them, if they are not consecutive.
+    list: Vec<u64>,
+    /// About how many there will be.
+    expected: usize,
+}
+
+impl FoundTags {
+    pub(crate) fn expect(&mut self, more: usize) {
+        self.expected = self.count as usize + more;
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, tag: u64) {
+        self.extend(tag, 1);
+    }
+
+    /// Adds so many consecutive tags.
+    #[inline]
+    pub(crate) fn extend(&mut self, first: u64, count: u64) {
+        if self.count == 0 {
+            self.first = first;
+        } else if !self.list.is_empty() || first.checked_sub(self.first) != Some(self.count) {
+            self.extend_list(first, count);
+        }
+        self.count += count;
+    }
+
+    #[inline(never)]
+    fn extend_list(&mut self, first: u64, count: u64) {
+        if self.list.is_empty() {
+            self.list.reserve_exact(self.expected.max((self.count + count) as usize));
+            self.list.extend((0..self.count).map(|position| self.first + position));
+        }
+        self.list.extend((0..count).map(|position| first + position));
+    }
+
+    /// The tag at this position.
+    pub(crate) fn of(&self, position: usize) -> u64 {
+        match self.list.is_empty() {
+            true => self.first + position as u64,
+            false => self.list[position],
+        }
+    }
+
+    /// Maps them as [`TagMap::new`] does.
+    pub(crate) fn map(&self) -> Result<TagMap, usize> {
+        match self.list.is_empty() {
+            true => Ok(TagMap::Run { first: self.first, count: self.count }),
+            false => TagMap::new(&self.list),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,6 +140,36 @@ mod tests {
             }
             for absent in [2, 3, 8, 10, 1 << 40] {
                 assert_eq!(map.index(absent), None, "{tags:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn found_tags_are_those_that_were_added() {
+        type Run = (u64, u64);
+        let cases: [(&[Run], bool); 5] = [
+            (&[], true),
+            (&[(5, 1), (6, 1), (7, 4), (11, 1)], true),
+            (&[(u64::MAX - 1, 2), (0, 1)], false),
+            (&[(5, 3), (7, 1), (8, 2)], false),
+            (&[(5, 1), (5, 1)], false),
+        ];
+        for (runs, is_run) in cases {
+            let mut found = FoundTags::default();
+            runs.iter().for_each(|&(first, count)| found.extend(first, count));
+            let expected: Vec<u64> = runs
+                .iter()
+                .flat_map(|&(first, count)| (0..count).map(move |n| first + n))
+                .collect();
+            let all: Vec<u64> = (0..expected.len()).map(|position| found.of(position)).collect();
+            assert_eq!(all, expected, "{runs:?}");
+            assert_eq!(found.list.is_empty(), is_run, "{runs:?}");
+            match (found.map(), TagMap::new(&expected)) {
+                (Ok(map), Ok(other)) => {
+                    let of = |map: &TagMap| [0, 5, 6, 7, 12, u64::MAX].map(|tag| map.index(tag));
+                    assert_eq!(of(&map), of(&other), "{runs:?}");
+                }
+                (found, expected) => assert_eq!(found.err(), expected.err(), "{runs:?}"),
             }
         }
     }

@@ -66,7 +66,17 @@ impl<'a> Cursor<'a> {
     /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
     /// from its own first.
     pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
-        let mut at = self.next_line();
+        self.parts_after(None, size, count)
+    }
+
+    /// Splits the lines that follow a part in the same way; those that follow this cursor if it is none.
+    pub(crate) fn parts_after(
+        &self,
+        part: Option<&Cursor<'_>>,
+        size: usize,
+        count: usize,
+    ) -> Vec<Cursor<'a>> {
+        let mut at = part.map_or_else(|| self.next_line(), |part| part.bytes.len());
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
             let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
@@ -112,6 +122,13 @@ impl<'a> Cursor<'a> {
         let taken = self.bytes[start..].get(..count)?;
         self.at += count;
         Some(taken)
+    }
+
+    /// The bytes of so many items that [`take`](Self::take) would take next, and where they start. None if there are fewer.
+    pub(crate) fn ahead(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
+        let start = self.next_line();
+        let length = usize::try_from(count).ok()?.checked_mul(size)?;
+        Some((self.bytes[start..].get(..length)?, start))
     }
 
     /// Moves to a byte of the whole file, for messages, and there counts the line it stands on. Quick where it moves forward.
@@ -272,6 +289,20 @@ impl<'a> Cursor<'a> {
     /// Reads a number that may be negative, called `what` in messages.
     #[inline]
     pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
+        let bytes = self.bytes;
+        let start = skip_blanks(bytes, self.at);
+        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
+        let mut at = first;
+        let mut number = 0_i64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=18).contains(&(at - first)) && token_end(bytes, at) == at {
+            self.at = at;
+            return Ok(if first > start { -number } else { number });
+        }
         let token = self.token();
         let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
         number.ok_or_else(|| self.unusable(token, what, SIGNED))

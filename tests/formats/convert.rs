@@ -19,10 +19,12 @@ fn ending(format: Format) -> &'static str {
         Format::Xdmf => "xdmf",
         Format::Su2 => "su2",
         Format::Medit => "mesh",
+        Format::MeditBinary => "meshb",
         Format::Obj => "obj",
         Format::Off => "off",
         Format::Ply => "ply",
         Format::Sms2dm => "2dm",
+        Format::Exodus => "e",
         _ => "gr3",
     }
 }
@@ -43,13 +45,20 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         let back = folder.read(&out);
         assert_eq!(back.format(), format);
         assert_eq!(back.mesh().points, file.mesh().points, "{name}");
-        assert_eq!(back.mesh().triangles, file.mesh().triangles, "{name}");
+        let (mut triangles, mut own) =
+            (back.mesh().triangles.clone(), file.mesh().triangles.clone());
+        if conversion.lost().iter().any(|lost| lost.starts_with("the order of triangles")) {
+            triangles.sort_unstable();
+            own.sort_unstable();
+        }
+        assert_eq!(triangles, own, "{name}");
         // All that was written is read: it gives the same file again, and nothing of it is lost.
         let again = Conversion::new(&back, format).unwrap().unwrap();
         let [again_text, text] = [&again, &conversion].map(|c| c.text().unwrap_or_default());
         let differ = again_text.lines().zip(text.lines()).find(|(again, first)| again != first);
         assert_eq!(differ, None, "{name}");
         assert_eq!(again_text.len(), text.len(), "{name}");
+        assert!(again.bytes() == conversion.bytes(), "{name}");
         assert_eq!(again.lost(), [""; 0], "{name}");
         if !conversion.lost().is_empty() {
             continue;

@@ -1,7 +1,7 @@
 //! Files of other programs that are cut off, damaged, or announce more than they hold.
 
 use super::Folder;
-use super::damage::{damaged, random};
+use super::damage::{self, damaged, random};
 use super::made::{Made, all, base};
 use super::others::{folder, for_each};
 use gpu_smooth::{Format, Location, MeshFile};
@@ -109,7 +109,7 @@ fn wrong_counts_are_errors() {
 /// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
 #[test]
 fn damaged_files_of_other_programs_never_panic() {
-    const ROUNDS: usize = 2000;
+    let rounds = damage::rounds(2000);
     let all = all(&base());
     let mut random = random(17);
     for format in Format::ALL {
@@ -119,7 +119,7 @@ fn damaged_files_of_other_programs_never_panic() {
         }
         let folders: Vec<_> = samples.iter().map(|made| folder(made, &[])).collect();
         let mut read = 0;
-        for round in 0..ROUNDS {
+        for round in 0..rounds {
             let (made, folder) = (samples[round % samples.len()], &folders[round % samples.len()]);
             let content = damaged(&made.bytes, &mut random);
             fs::write(folder.path(made.name), &content).unwrap();
@@ -133,7 +133,7 @@ fn damaged_files_of_other_programs_never_panic() {
             }
             assert!(start.elapsed().as_secs() < 10, "{} takes forever", made.what);
         }
-        let few = ROUNDS / 50;
-        assert!((few..ROUNDS - few).contains(&read), "{format}: {read} of {ROUNDS} were read");
+        let few = rounds / 50;
+        assert!((few..rounds - few).contains(&read), "{format}: {read} of {rounds} were read");
     }
 }

@@ -1,7 +1,7 @@
 //! STL, which repeats the coordinates of a vertex in every triangle.
 
 use super::Folder;
-use super::damage::{damaged, random};
+use super::damage::{damaged, random, rounds};
 use super::made::base;
 use super::spoiled::mesh_or_error;
 use super::support::{Binary, check};
@@ -209,10 +209,12 @@ fn files_cut_off_or_damaged_never_panic() {
             assert_eq!(read.is_ok(), is_whole, "the first {cut} bytes");
         }
         let mut read = 0;
-        for _ in 0..2000 {
+        let rounds = rounds(2000);
+        for _ in 0..rounds {
             fs::write(folder.path("a.stl"), damaged(&bytes, &mut random)).unwrap();
             read += usize::from(mesh_or_error(&folder, "a.stl").is_ok());
         }
-        assert!((40..1960).contains(&read), "{format}: {read} of 2000 were read");
+        let few = rounds / 50;
+        assert!((few..rounds - few).contains(&read), "{format}: {read} of {rounds} were read");
     }
 }

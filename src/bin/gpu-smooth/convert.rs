@@ -28,11 +28,11 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
         tell::note(show.quiet, &format!("lost: {what}"));
     }
     if is_standard(&args.output) {
-        let Some(text) = conversion.text() else {
+        let Some(content) = conversion.bytes() else {
             return Err("a Triangle mesh is of several files: name OUT".into());
         };
         let mut out = std::io::stdout();
-        let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        let written = out.write_all(&content).and_then(|()| out.flush());
         return written.map_err(|error| format!("standard output: {error}"));
     }
     let written = conversion.destinations(&args.output);

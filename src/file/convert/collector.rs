@@ -69,6 +69,11 @@ impl Collector {
             let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
             group.name = of(Some(group.dimension)).or_else(|| of(None));
         }
+        for (group, _) in &mut content.vertex_groups {
+            let Label::Tag(tag) = group.label else { continue };
+            let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
+            group.name = of(Some(0)).or_else(|| of(None));
+        }
         let first = content.heights.first().copied();
         if content.heights.iter().all(|&z| Some(z) == first) {
             content.height = first.unwrap_or(0.0);

@@ -11,7 +11,7 @@ use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
 use crate::file::packed::Packing;
 use crate::file::replace::{self, Job as Replacement};
-use crate::file::triangle::Names;
+use crate::file::triangle_names::Names;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -77,7 +77,7 @@ impl Conversion {
     /// The files that [`write`](Self::write) to `path` writes.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         match self.target.write {
-            Write::One(_) => vec![path.to_owned()],
+            Write::One(_) | Write::Binary(_) => vec![path.to_owned()],
             Write::Several(_) => {
                 let Names { node, ele, poly } = Names::of(path);
                 vec![node, ele, poly]
@@ -91,7 +91,7 @@ impl Conversion {
     /// [`WriteError`] if the system refuses, or if several files are to be written under a compressed name.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
-        let texts = self.texts();
+        let contents = self.contents();
         let packs = Packing::of(path);
         let refused = |problem: String, remedy: &str| {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
@@ -101,7 +101,7 @@ impl Conversion {
             let problem = "a Triangle mesh is of several files, which are not written compressed";
             return refused(problem.into(), "End the name in .node");
         }
-        if let Some(left) = destinations.get(texts.len()).filter(|left| left.exists()) {
+        if let Some(left) = destinations.get(contents.len()).filter(|left| left.exists()) {
             let problem = format!(
                 "{} of another mesh is there, and would be read with this one",
                 left.display()
@@ -110,27 +110,40 @@ impl Conversion {
         }
         destinations.iter().try_for_each(|path| replace::check(path))?;
         let mut jobs: Vec<Replacement<'_>> = Vec::new();
-        for (path, text) in destinations.into_iter().zip(&texts) {
-            jobs.push((path, Box::new(move |out| put(text.as_bytes(), packs, out))));
+        for (path, content) in destinations.into_iter().zip(&contents) {
+            jobs.push((path, Box::new(move |out| put(content, packs, out))));
         }
         replace::replace_all(&jobs)
     }
 
-    /// The content of the file; none for a Triangle mesh, which is of several.
+    /// The content of the file, if it is text; none for a Triangle mesh, which is of several files.
     pub fn text(&self) -> Option<String> {
-        let mut texts = self.texts();
         match self.target.write {
-            Write::One(_) => texts.pop(),
+            Write::One(write) => Some(write(&self.job())),
+            Write::Binary(_) | Write::Several(_) => None,
+        }
+    }
+
+    /// The content of the file, be it text or not; none for a Triangle mesh, which is of several files.
+    pub fn bytes(&self) -> Option<Vec<u8>> {
+        match self.target.write {
+            Write::One(_) | Write::Binary(_) => self.contents().pop(),
             Write::Several(_) => None,
         }
     }
 
-    fn texts(&self) -> Vec<String> {
-        let job = Job::new(&self.content, self.target.holds);
+    fn contents(&self) -> Vec<Vec<u8>> {
         match self.target.write {
-            Write::One(write) => vec![write(&job)],
-            Write::Several(write) => write(&job),
+            Write::One(write) => vec![write(&self.job()).into_bytes()],
+            Write::Binary(write) => vec![write(&self.job())],
+            Write::Several(write) => {
+                write(&self.job()).into_iter().map(String::into_bytes).collect()
+            }
         }
+    }
+
+    fn job(&self) -> Job<'_> {
+        Job::new(&self.content, self.target.holds)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What formats hold, and what of a mesh is lost in one of them.
 
 use super::content::{Content, Data, Group};
+use super::sides;
 use super::tags::{Tags, decides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
@@ -50,6 +51,8 @@ pub(crate) enum Groups {
     PhysicalAndEntity,
     /// One group of each kind of groups.
     Each,
+    /// A block that it stands in, with all elements of one kind and group; of lines a side set, too.
+    Blocks,
 }
 
 /// Which data a format holds.
@@ -95,6 +98,16 @@ impl Holds {
             lost.push("the vertices' own numbers, which are not consecutive".into());
         }
         self.lost_groups(content, &mut lost);
+        if self.groups == Groups::Blocks {
+            sides::lost_in_blocks(content, &mut lost);
+        } else {
+            let names: Vec<_> = content.vertex_groups.iter().map(|(group, _)| group).collect();
+            let names: Vec<_> = names.into_iter().filter(|group| group.name().is_some()).collect();
+            if self.vertex_groups && !names.is_empty() {
+                let names = listed(names.into_iter());
+                lost.push(format!("names of groups of vertices, which become numbers: {names}"));
+            }
+        }
         let is_negative = |group: &&Group| matches!(group.label, Label::Tag(..0));
         if !self.negative && content.groups.iter().any(|group| is_negative(&group)) {
             let groups = listed(content.groups.iter().filter(is_negative));
@@ -177,6 +190,9 @@ impl Holds {
                     *what != main && *what != "entity" && !decides(content, dimension, main, what)
                 }
                 Groups::Each => false,
+                Groups::Blocks => {
+                    *what != main && *what != "block" && !decides(content, dimension, main, what)
+                }
             };
             let one = |what: &str| {
                 let groups = content.groups.iter();

@@ -13,12 +13,15 @@ mod content;
 mod conversion;
 #[cfg(test)]
 mod documented;
+mod exodus;
 mod gmsh;
 mod grids;
 mod holds;
 mod job;
 mod medit;
+mod netcdf;
 mod ply;
+mod sides;
 mod su2;
 mod surface;
 #[cfg(test)]

@@ -31,9 +31,13 @@ pub(crate) fn targets() -> String {
             yes(holds.labels),
             groups(holds.groups),
             names(holds),
-            if holds.vertex_groups { "one a vertex" } else { "–" },
-            numbers(holds.point_data),
-            numbers(holds.cell_data),
+            match (holds.vertex_groups, holds.groups) {
+                (true, Groups::Blocks) => "node sets, with names",
+                (true, _) => "one a vertex",
+                (false, _) => "–",
+            },
+            numbers(holds.point_data, "a vertex"),
+            numbers(holds.cell_data, "an element"),
         )
         .unwrap();
     }
@@ -66,6 +70,7 @@ fn groups(groups: Groups) -> &'static str {
         Groups::OneOfLines => "one a line",
         Groups::PhysicalAndEntity => "a physical group and an entity",
         Groups::Each => "one of every kind of groups",
+        Groups::Blocks => "a block an element, side sets",
     }
 }
 
@@ -79,12 +84,12 @@ fn names(holds: &Holds) -> String {
     }
 }
 
-fn numbers(numbers: Numbers) -> String {
+fn numbers(numbers: Numbers, owner: &str) -> String {
     match numbers {
         Numbers::None => "–".into(),
         Numbers::All => "all".into(),
-        Numbers::Scalars => "one number a vertex".into(),
-        Numbers::Unnamed => "one number a vertex, without names".into(),
+        Numbers::Scalars => format!("one number {owner}"),
+        Numbers::Unnamed => format!("one number {owner}, without names"),
         Numbers::Only(name) => format!("`{name}`"),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
-use super::{gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
+use super::{exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
 
 /// A format that meshes of others are written in: a row of [`TARGETS`].
@@ -16,8 +16,10 @@ pub(crate) struct Target {
 
 /// How a mesh is written.
 pub(crate) enum Write {
-    /// To one file.
+    /// To one file of text.
     One(fn(&Job<'_>) -> String),
+    /// To one file in binary.
+    Binary(fn(&Job<'_>) -> Vec<u8>),
     /// To several files.
     Several(fn(&Job<'_>) -> Vec<String>),
 }
@@ -48,8 +50,19 @@ const VTK: Holds = Holds {
     ..Holds::TRIANGLES
 };
 
+const MEDIT: Holds = Holds {
+    points: Elements::OfGroups,
+    lines: Elements::All,
+    quadrilaterals: true,
+    heights: true,
+    groups: Groups::One,
+    own: "list",
+    vertex_groups: true,
+    ..Holds::TRIANGLES
+};
+
 /// Each format, of those that files end the same way for the usual one first.
-pub(crate) static TARGETS: [Target; 14] = [
+pub(crate) static TARGETS: [Target; 16] = [
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
@@ -66,6 +79,24 @@ pub(crate) static TARGETS: [Target; 14] = [
     Target { format: Format::Xdmf, name: "xdmf", holds: VTK, write: Write::One(xdmf::write_xdmf) },
     Target { format: Format::Vtk, name: "vtk", holds: VTK, write: Write::One(vtk::write_legacy) },
     Target {
+        format: Format::Exodus,
+        name: "exodus",
+        holds: Holds {
+            points: Elements::All,
+            lines: Elements::All,
+            quadrilaterals: true,
+            heights: true,
+            groups: Groups::Blocks,
+            names: [true; 3],
+            negative: false,
+            vertex_groups: true,
+            point_data: Numbers::Scalars,
+            cell_data: Numbers::Scalars,
+            ..Holds::TRIANGLES
+        },
+        write: Write::Binary(exodus::write_exodus),
+    },
+    Target {
         format: Format::Su2,
         name: "su2",
         holds: Holds {
@@ -80,17 +111,14 @@ pub(crate) static TARGETS: [Target; 14] = [
     Target {
         format: Format::Medit,
         name: "medit",
-        holds: Holds {
-            points: Elements::OfGroups,
-            lines: Elements::All,
-            quadrilaterals: true,
-            heights: true,
-            groups: Groups::One,
-            own: "list",
-            vertex_groups: true,
-            ..Holds::TRIANGLES
-        },
+        holds: MEDIT,
         write: Write::One(medit::write_medit),
+    },
+    Target {
+        format: Format::MeditBinary,
+        name: "meshb",
+        holds: MEDIT,
+        write: Write::Binary(medit::write_meshb),
     },
     Target {
         format: Format::Triangle,

@@ -4,6 +4,7 @@ use super::File;
 use super::netcdf::{Number, Variable};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::records::{Field, Region, TriangleRecords};
 use crate::file::sink::{Element, Kind, Sink, volume};
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::quoted;
@@ -52,10 +53,20 @@ impl File<'_> {
             {
                 sink.name("block", None, id, name);
             }
+            let mut taken = 0;
             if block.kind == Kind::Triangle {
                 sink.expect_elements(block.count as usize);
+                let bytes = self.source.bytes.get(block.start..);
+                taken = sink.triangle_records(&TriangleRecords {
+                    count: block.count as usize,
+                    corners: Field::new(bytes, (3 * block.width, block.width), Order::Big),
+                    first: 0,
+                    below: u64::MAX,
+                    regions: [Region::Same(id), Region::Same(0)],
+                    expected: &[],
+                });
             }
-            for place in 0..block.count {
+            for place in taken as u64..block.count {
                 let (nodes, at) = block.element(&self.source.bytes, place);
                 let (tag, kind) = (before + place + 1, block.kind);
                 let cursor = &Cursor::at_byte_of(self.source, at);

@@ -106,7 +106,6 @@ impl File<'_> {
         let starts_so =
             |name: &str| self.header.variables.iter().any(|v| v.name.starts_with(name.as_bytes()));
         for (name, what) in [
-            ("time_whole", "times of time steps"),
             ("vals_glo_var", "global variables"),
             ("vals_sset_var", "variables of side sets"),
             ("vals_nset_var", "variables of node sets"),
@@ -117,6 +116,15 @@ impl File<'_> {
             if starts_so(name) {
                 sink.leaves_out(what);
             }
+        }
+        // A single step at the time zero is what data without a time stand in.
+        let has_times = self.header.variable("time_whole").is_some_and(|times| {
+            let mut steps = self.steps(times);
+            steps.len() > 1
+                || steps.any(|step| self.reals(times.number, step).iter().any(|&t| t != 0.0))
+        });
+        if has_times {
+            sink.leaves_out("times of time steps");
         }
         let numbered = |name: &str| {
             let map = self.ids(name);

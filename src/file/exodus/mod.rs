@@ -14,6 +14,7 @@ use crate::file::format::Format;
 use crate::file::heights::Heights;
 use crate::file::label::Label;
 use crate::file::numbers::{Form, Numbers};
+use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Column, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
@@ -73,7 +74,10 @@ impl File<'_> {
             return Err(start.error(problem, "Write the mesh again"));
         };
         sink.expect_nodes(self.nodes);
-        for index in 0..self.nodes {
+        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
+        let (count, x_at, tags) = (self.nodes, x.start, Tags::From(1));
+        let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
+        for index in sink.node_records(&records)..self.nodes {
             let x_at = x.start + index * size;
             let place = &Cursor::at_byte_of(self.source, x_at);
             let (tag, at) = (index as u64 + 1, [number(x_at), number(x_at + y_after)]);
@@ -86,7 +90,7 @@ impl File<'_> {
         sink.end_nodes(&Cursor::at_byte_of(self.source, x.start))?;
         if let Some(z) = axes.get(2) {
             let mut heights = Heights::new(sink);
-            z.clone().step_by(size).for_each(|at| heights.see((at, number(at))));
+            heights.see_all(field(z), z.len() / size, z.start);
             heights.send("z", Form::Binary(order, precision), sink);
         }
         Ok(Numbers::Binary { order, precision, y_after })

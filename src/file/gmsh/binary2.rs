@@ -8,7 +8,8 @@ use super::{block_fits, row};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::heights::Heights;
-use crate::file::sink::{Element, Sink};
+use crate::file::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::file::sink::{Element, Kind, Sink};
 use crate::file::text::Cursor;
 
 /// Reads `$Nodes` after its first line, or `$ParametricNodes`. Returns their number.
@@ -23,7 +24,19 @@ pub(super) fn nodes(
     row(cursor, 0, 1, "counts")?;
     let count = cursor.vertex_count()?;
     sink.expect_nodes(cursor.capacity(count, NODE));
-    for done in 0..count {
+    let mut taken = 0;
+    if let (false, Some((bytes, start))) = (parametric, cursor.ahead(count, NODE)) {
+        let field = |at: usize, width| Field::new(bytes.get(at..), (NODE, width), order);
+        let [x, y, z] = [0, 8, 16].map(|axis| field(TAG + axis, 8));
+        let (tags, x_at) = (Tags::Listed(field(0, 4)), start + TAG);
+        let count = count as usize;
+        if z.all_real(count, f64::is_finite) {
+            taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+            heights.see_all(z, taken, start + TAG + 16);
+            cursor.take(taken * NODE);
+        }
+    }
+    for done in taken as u64..count {
         let progress = (done, count, "nodes");
         let words = &mut Words::take(cursor, order, NODE, progress)?;
         let tag = words.natural(cursor, "a node tag")?;
@@ -64,7 +77,24 @@ pub(super) fn elements(
         block_fits(cursor, size, count - done, "elements")?;
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
-        for at in 0..size {
+        let mut taken = 0;
+        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.ahead(size, bytes)) {
+            let field = |at: usize| Field::new(block.get(4 * at..), (bytes, 4), order);
+            let region = |column: usize| match column < groups {
+                true => Region::Field(field(1 + column)),
+                false => Region::Same(0),
+            };
+            taken = sink.triangle_records(&TriangleRecords {
+                count: size as usize,
+                corners: field(1 + groups),
+                first: 0,
+                below: u64::MAX,
+                regions: [region(0), region(1)],
+                expected: &[(field(0), Expected::Natural)],
+            });
+            cursor.take(taken * bytes);
+        }
+        for at in taken as u64..size {
             let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;
             let tag = words.natural(cursor, "an element tag")?;
             let mut region = [0; 2];

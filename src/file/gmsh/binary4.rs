@@ -8,7 +8,8 @@ use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::heights::Heights;
 use crate::file::numbers::Places;
-use crate::file::sink::{Element, PointNumbers, Sink, Stored};
+use crate::file::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::file::sink::{Element, Kind, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 
 /// The bytes of a block's header: three `int` and a `size_t`, or an `unsigned long` in 4.0.
@@ -37,9 +38,22 @@ pub(super) fn nodes(
         let tags = &mut Words::take(cursor, order, (size as usize).saturating_mul(8), progress)?;
         let parameters = if parametric { dimension.min(3) as usize } else { 0 };
         let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
-        for at in 0..size {
+        let record = 8 * (3 + parameters);
+        let mut taken = 0;
+        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.ahead(size, record)) {
+            let [x, y, z] = [0, 8, 16].map(|at| Field::new(bytes.get(at..), (record, 8), order));
+            let count = size as usize;
+            if z.all_real(count, f64::is_finite) {
+                let tags = Tags::Listed(Field::new(Some(tags.left()), (8, 8), order));
+                taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+                heights.see_all(z, taken, x_at + 16);
+            }
+            tags.skip(8 * taken);
+            cursor.take(taken * record);
+        }
+        for at in taken as u64..size {
             let progress = (done + at, count, "nodes");
-            let words = &mut Words::take(cursor, order, 8 * (3 + parameters), progress)?;
+            let words = &mut Words::take(cursor, order, record, progress)?;
             let tag = tags.size();
             let [x, y, z] = words.point(cursor, tag)?;
             sink.node(cursor, tag, dimension, cursor.taken(), [x, y]);
@@ -84,7 +98,21 @@ pub(super) fn elements(
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
         let row = tag_bytes * (1 + kind.nodes());
-        for at in 0..size {
+        let mut taken = 0;
+        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.ahead(size, row)) {
+            let field = |at: usize| Field::new(bytes.get(at..), (row, tag_bytes), order);
+            let natural = [(field(0), Expected::Natural)];
+            taken = sink.triangle_records(&TriangleRecords {
+                count: size as usize,
+                corners: field(tag_bytes),
+                first: 0,
+                below: u64::MAX,
+                regions: region.map(Region::Same),
+                expected: if version == Version::V40 { &natural } else { &[] },
+            });
+            cursor.take(taken * row);
+        }
+        for at in taken as u64..size {
             let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
             let mut nodes = [0; 4];
             let tag = if version == Version::V40 {

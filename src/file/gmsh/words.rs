@@ -41,6 +41,11 @@ impl<'a> Words<'a> {
         *next
     }
 
+    /// What was not read yet.
+    pub(super) fn left(&self) -> &'a [u8] {
+        self.bytes
+    }
+
     pub(super) fn skip(&mut self, size: usize) {
         self.bytes = &self.bytes[size..];
     }

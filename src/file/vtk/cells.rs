@@ -1,10 +1,14 @@
 //! Cells of VTK by their types.
 
 use crate::error::ReadError;
+use crate::file::records::{Expected, Field, LONG, Region, TriangleRecords};
 use crate::file::sink::{Element, Kind, Sink, volume};
 use crate::file::text::{CORRECT, Cursor};
+use crate::file::whole::Whole;
+use std::ops::Range;
 
 /// A cell, as VTK's formats have it.
+#[derive(Clone, Copy)]
 pub(in crate::file) struct Cell<'a> {
     /// Its position.
     pub(in crate::file) tag: u64,
@@ -37,6 +41,69 @@ impl Cell<'_> {
                 sink.element(cursor, &Element { tag, kind, region, nodes })
             }),
         }
+    }
+}
+
+/// Cells from a triangle on, of which as many are handed on at once as are triangles.
+pub(in crate::file) struct Triangles<'a> {
+    /// How many cells there are from there on.
+    pub(in crate::file) count: usize,
+    /// The points of all cells, and where those of the triangle stand.
+    pub(in crate::file) numbers: &'a Whole<'a>,
+    pub(in crate::file) own: Range<usize>,
+    /// Where the points of the triangle and those after it end. If none, the number of its points stands before each cell.
+    pub(in crate::file) ends: Option<Field<'a>>,
+    /// The types of the triangle and of those after it, if they are not all polygons.
+    pub(in crate::file) types: Option<Field<'a>>,
+    /// What is added to the number of a point, which has to be less than the second number before.
+    pub(in crate::file) points: (u64, u64),
+    pub(in crate::file) regions: [Region<'a>; 2],
+}
+
+impl Triangles<'_> {
+    /// Hands on triangles. Returns how many the sink has taken, and where the points of the last one end.
+    pub(in crate::file) fn send(self, sink: &mut dyn Sink) -> (usize, usize) {
+        let Triangles { count, numbers, own, ends, types, points, regions } = self;
+        let (stride, counts) = match ends {
+            Some(ends) => (3, (ends, Expected::Steps { first: own.end as u64, step: 3 })),
+            None => match own.start.checked_sub(1) {
+                Some(before) => (4, (numbers.field(before, 4), Expected::Is(3))),
+                None => return (0, own.end),
+            },
+        };
+        let triangles = types.map(|types| (types, Expected::Is(5)));
+        let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
+        let corners = numbers.field(own.start, stride);
+        let (first, below) = points;
+        let taken = sink.triangle_records(&TriangleRecords {
+            count,
+            corners,
+            first,
+            below,
+            regions,
+            expected: &expected,
+        });
+        (taken, own.start + 3 + taken.saturating_sub(1) * stride)
+    }
+}
+
+/// When to hand on many triangles at once: not too often where they are few among others.
+pub(in crate::file) struct Tries {
+    left: usize,
+    next: usize,
+}
+
+impl Tries {
+    pub(in crate::file) const NEW: Tries = Tries { left: 10, next: 0 };
+
+    pub(in crate::file) fn is_due(&self, cell: usize) -> bool {
+        self.left > 0 && cell >= self.next
+    }
+
+    /// Takes notice of a try at a cell, and of how many were handed on.
+    pub(in crate::file) fn done(&mut self, cell: usize, taken: usize) {
+        self.left -= 1;
+        self.next = cell + taken + LONG;
     }
 }
 

@@ -10,6 +10,7 @@ use crate::file::sink::{Home, PointNumbers, Stored};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::file::token::quoted;
+use crate::file::whole::Whole;
 use crate::mesh::Precision;
 use std::ops::Range;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ impl File<'_> {
     pub(super) fn unwrap(
         &self,
         array: &Array,
-    ) -> Result<(Wrapping, Unwrapped, Range<usize>), ReadError> {
+    ) -> Result<(Wrapping, Unwrapped<'_>, Range<usize>), ReadError> {
         let Document { order, header, compressor, appended, .. } = self.document;
         let wrapping = |base64| Wrapping { order, header, compressor, base64 };
         let (wrapping, start, end) = match (&array.offset, appended) {
@@ -73,13 +74,18 @@ impl File<'_> {
     }
 
     /// The whole numbers of an array.
-    pub(super) fn integers(&self, array: &Array) -> Result<Vec<u64>, ReadError> {
+    pub(super) fn integers(&self, array: &Array) -> Result<Whole<'_>, ReadError> {
         if array.format == Coding::Ascii {
-            return self.words(array, |cursor| cursor.integer("a number"));
+            let mut numbers = Whole::with_capacity(array.content.len() / 8);
+            let cursor = &mut Cursor::within(self.source, array.content.clone());
+            while cursor.next_word() {
+                numbers.push(cursor.integer("a number")?);
+            }
+            return Ok(numbers);
         }
         let (wrapping, found, _) = self.unwrap(array)?;
         let size = self.size_of_integer(array)?;
-        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.whole(number)).collect())
+        Ok(Whole::binary(found.bytes, size, wrapping.order))
     }
 
     /// The same with their signs.
@@ -88,7 +94,8 @@ impl File<'_> {
             return self.words(array, |cursor| cursor.signed("a number"));
         }
         if array.number.starts_with('U') {
-            return Ok(self.integers(array)?.into_iter().map(u64::cast_signed).collect());
+            let numbers = self.integers(array)?;
+            return Ok(numbers.range(0..numbers.len()).map(u64::cast_signed).collect());
         }
         let (wrapping, found, _) = self.unwrap(array)?;
         let size = self.size_of_integer(array)?;
@@ -110,7 +117,10 @@ impl File<'_> {
         }
         let Some(precision) = precision else {
             let numbers: Vec<f64> = match array.number.starts_with('U') {
-                true => self.integers(array)?.into_iter().map(|number| number as f64).collect(),
+                true => {
+                    let numbers = self.integers(array)?;
+                    numbers.range(0..numbers.len()).map(|number| number as f64).collect()
+                }
                 false => {
                     self.signed_integers(array)?.into_iter().map(|number| number as f64).collect()
                 }

@@ -6,6 +6,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::read::{ZlibDecoder, ZlibEncoder};
+use std::borrow::Cow;
 use std::io::Read;
 
 /// How blocks are compressed.
@@ -26,8 +27,9 @@ pub(super) struct Wrapping {
 }
 
 /// An array that was unwrapped.
-pub(super) struct Unwrapped {
-    pub(super) bytes: Vec<u8>,
+pub(super) struct Unwrapped<'a> {
+    /// Those of the file itself, if it has them as they are.
+    pub(super) bytes: Cow<'a, [u8]>,
     /// How many bytes of the file it took.
     pub(super) taken: usize,
     /// The size of a block before compression; 0 if there is none.
@@ -36,22 +38,30 @@ pub(super) struct Unwrapped {
     header_apart: bool,
 }
 
+impl<'a> Unwrapped<'a> {
+    /// The bytes, and all else without them.
+    pub(super) fn split(self) -> (Cow<'a, [u8]>, Unwrapped<'static>) {
+        let Unwrapped { bytes, taken, block, header_apart } = self;
+        (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
+    }
+}
+
 /// The most bytes that a compressed one may stand for. More is no compressor's work; counts that say so are wrong.
 const MOST: usize = 1100;
 
 impl Wrapping {
     /// The bytes of the array that starts `input`. None if they are damaged or end too early.
-    pub(super) fn unwrap(&self, input: &[u8]) -> Option<Unwrapped> {
+    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
         match self.compressor {
             None => self.unwrap_plain(input),
             Some(compressor) => self.unwrap_compressed(compressor, input),
         }
     }
 
-    fn unwrap_plain(&self, input: &[u8]) -> Option<Unwrapped> {
+    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
         if !self.base64 {
             let length = self.number(input.get(..self.header)?)?;
-            let bytes = input.get(self.header..)?.get(..length)?.to_vec();
+            let bytes = input.get(self.header..)?.get(..length)?.into();
             let taken = self.header + length;
             return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
         }
@@ -69,10 +79,14 @@ impl Wrapping {
             }
         };
         bytes.truncate(length);
-        Some(Unwrapped { bytes, taken, block: 0, header_apart })
+        Some(Unwrapped { bytes: bytes.into(), taken, block: 0, header_apart })
     }
 
-    fn unwrap_compressed(&self, compressor: Compressor, input: &[u8]) -> Option<Unwrapped> {
+    fn unwrap_compressed(
+        &self,
+        compressor: Compressor,
+        input: &[u8],
+    ) -> Option<Unwrapped<'static>> {
         let counts = self.numbers(input, 3)?;
         let [blocks, size, last] = [counts[0], counts[1], counts[2]];
         // As many numbers follow as there are blocks.
@@ -82,11 +96,11 @@ impl Wrapping {
         let (content, taken) = match self.base64 {
             false => {
                 let content = input.get(header..)?.get(..compressed)?;
-                (content.to_vec(), header + compressed)
+                (Cow::Borrowed(content), header + compressed)
             }
             true => {
                 let content = input.get(encoded(header)..)?.get(..encoded(compressed))?;
-                (decode(content)?, encoded(header) + encoded(compressed))
+                (decode(content)?.into(), encoded(header) + encoded(compressed))
             }
         };
         let mut left = content.get(..compressed)?;
@@ -105,11 +119,11 @@ impl Wrapping {
             (bytes.len() == expected).then_some(bytes)
         });
         let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
-        Some(Unwrapped { bytes, taken, block: size, header_apart: true })
+        Some(Unwrapped { bytes: bytes.into(), taken, block: size, header_apart: true })
     }
 
     /// Wraps new bytes as those of `old` were wrapped.
-    pub(super) fn wrap(&self, old: &Unwrapped, bytes: &[u8]) -> Vec<u8> {
+    pub(super) fn wrap(&self, old: &Unwrapped<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
             return match (self.base64, old.header_apart) {
@@ -204,7 +218,7 @@ mod tests {
                         for header_apart in [false, true] {
                             let wrapping = Wrapping { order, header, compressor, base64 };
                             let old = Unwrapped {
-                                bytes: Vec::new(),
+                                bytes: Cow::default(),
                                 taken: 0,
                                 block: 1000,
                                 header_apart,

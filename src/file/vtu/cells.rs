@@ -3,19 +3,28 @@
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
 use crate::error::ReadError;
+use crate::file::records::Region;
 use crate::file::sink::{Column, Sink};
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::vtk;
+use crate::file::whole::Whole;
 
 /// How many arrays tell regions at most.
 const MOST: usize = 2;
 
+/// The types of the cells of a list.
+enum Types<'a> {
+    /// The same for all.
+    Same(u64),
+    Listed(Whole<'a>),
+}
+
 /// A list of cells of a piece.
-struct List {
-    connectivity: Vec<u64>,
-    offsets: Vec<u64>,
-    /// The types of the cells.
-    types: Vec<u64>,
+struct List<'a> {
+    connectivity: Whole<'a>,
+    /// Where the points of each cell end.
+    offsets: Whole<'a>,
+    types: Types<'a>,
     /// Where it stands, for messages.
     at: usize,
 }
@@ -40,10 +49,45 @@ impl File<'_> {
             let mut points: Vec<u64> = Vec::new();
             for List { connectivity, offsets, types, at } in &lists {
                 let cursor = &Cursor::standing_at(self.source, *at);
-                let mut start = 0;
-                for (&end, &cell_type) in offsets.iter().zip(types) {
+                let (mut start, mut own) = (0, 0);
+                let mut tries = vtk::Tries::NEW;
+                while own < offsets.len() {
+                    let end = offsets.at(own) as usize;
+                    let of_triangles = match types {
+                        Types::Same(7) => Some(None),
+                        Types::Same(_) => None,
+                        Types::Listed(types) => Some(Some(types.field(own, 1))),
+                    };
+                    if end - start == 3
+                        && tries.is_due(own)
+                        && let Some(types) = of_triangles
+                    {
+                        let mut of = [Region::Same(0); MOST];
+                        for (region, regions) in of.iter_mut().zip(&of_cells) {
+                            *region = Region::List(regions.get(index..).unwrap_or_default());
+                        }
+                        let triangles = vtk::Triangles {
+                            count: offsets.len() - own,
+                            numbers: connectivity,
+                            own: start..end,
+                            ends: Some(offsets.field(own, 1)),
+                            types,
+                            points: (first_point, announced.points),
+                            regions: of,
+                        };
+                        let (taken, last) = triangles.send(sink);
+                        tries.done(own, taken);
+                        if taken > 0 {
+                            (own, index, start) = (own + taken, index + taken, last);
+                            continue;
+                        }
+                    }
+                    let cell_type = match types {
+                        &Types::Same(cell_type) => cell_type,
+                        Types::Listed(types) => types.at(own),
+                    };
                     points.clear();
-                    for &point in &connectivity[start..end as usize] {
+                    for point in connectivity.range(start..end) {
                         if point >= announced.points {
                             let cell = first_cell + index as u64;
                             let problem =
@@ -52,7 +96,7 @@ impl File<'_> {
                         }
                         points.push(first_point + point);
                     }
-                    start = end as usize;
+                    (start, own) = (end, own + 1);
                     let mut region = [0; MOST];
                     for (number, regions) in region.iter_mut().zip(&of_cells) {
                         *number = regions.get(index).copied().unwrap_or(0);
@@ -69,7 +113,7 @@ impl File<'_> {
     }
 
     /// The lists of cells of a piece.
-    fn lists(&self, piece: usize) -> Result<Vec<List>, ReadError> {
+    fn lists(&self, piece: usize) -> Result<Vec<List<'_>>, ReadError> {
         let announced = &self.document.pieces[piece];
         let sections: &[(&str, Option<u64>)] = match self.document.content {
             Content::Grid => &[("Cells", None)],
@@ -87,18 +131,25 @@ impl File<'_> {
             let connectivity = self.integers(list)?;
             let offsets = self.integers(self.array(piece, section, Some("offsets"))?)?;
             let types = match cell_type {
-                Some(cell_type) => vec![cell_type; offsets.len()],
-                None => self.integers(self.array(piece, section, Some("types"))?)?,
+                Some(cell_type) => Types::Same(cell_type),
+                None => {
+                    Types::Listed(self.integers(self.array(piece, section, Some("types"))?)?)
+                }
             };
             let cursor = &Cursor::standing_at(self.source, list.at);
-            let counts = [offsets.len(), types.len()].map(|count| count as u64);
+            let types_count = match &types {
+                Types::Same(_) => offsets.len(),
+                Types::Listed(types) => types.len(),
+            };
+            let counts = [offsets.len(), types_count].map(|count| count as u64);
             if counts != [cells; 2] {
                 let [offsets, types] = counts;
                 let problem = format!("{offsets} offsets and {types} types for {cells} cells");
                 return Err(cursor.error(problem, CORRECT));
             }
             let most = connectivity.len() as u64;
-            if !offsets.is_sorted() || offsets.last().is_some_and(|&last| last > most) {
+            let last = offsets.len().checked_sub(1).map(|last| offsets.at(last));
+            if !offsets.is_sorted() || last.is_some_and(|last| last > most) {
                 return Err(cursor.error("the offsets do not fit the connectivity", CORRECT));
             }
             lists.push(List { connectivity, offsets, types, at: list.at });

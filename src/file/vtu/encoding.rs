@@ -16,7 +16,7 @@ pub(super) struct Encoding {
 struct Part {
     wrapping: Wrapping,
     /// How it was wrapped, without its bytes.
-    old: Unwrapped,
+    old: Unwrapped<'static>,
     /// Where it stands in the file.
     range: Range<usize>,
     /// Its bytes among those of all.
@@ -25,16 +25,16 @@ struct Part {
 
 impl Encoding {
     pub(super) fn new(
-        arrays: Vec<(Wrapping, Unwrapped, Range<usize>)>,
+        arrays: Vec<(Wrapping, Unwrapped<'_>, Range<usize>)>,
         offsets: Arc<[Offset]>,
     ) -> Encoding {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
-        for (wrapping, mut old, range) in arrays {
+        for (wrapping, old, range) in arrays {
             let start = bytes.len();
-            let own = std::mem::take(&mut old.bytes);
+            let (own, old) = old.split();
             match bytes.is_empty() {
-                true => bytes = own,
+                true => bytes = own.into_owned(),
                 false => bytes.extend_from_slice(&own),
             }
             parts.push(Part { wrapping, old, range, own: start..bytes.len() });

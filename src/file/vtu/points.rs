@@ -7,6 +7,7 @@ use super::encoding::Encoding;
 use crate::error::ReadError;
 use crate::file::heights::Heights;
 use crate::file::numbers::{Encoded, Numbers};
+use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Home, Sink};
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::quoted;
@@ -21,12 +22,12 @@ pub(super) struct Stored {
 }
 
 /// The arrays of points read so far.
-struct Points<'s> {
+struct Points<'s, 'f> {
     sink: &'s mut dyn Sink,
     heights: Heights,
     /// How the numbers stand: the same in all pieces.
     numbers: Option<(Numbers, bool)>,
-    encoded: Vec<(Wrapping, Unwrapped, Range<usize>)>,
+    encoded: Vec<(Wrapping, Unwrapped<'f>, Range<usize>)>,
     /// How many bytes the encoded arrays have.
     bytes: usize,
     /// How many points were read.
@@ -59,8 +60,8 @@ pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadE
     Ok(Stored { numbers, encoded })
 }
 
-impl Points<'_> {
-    fn read(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
+impl<'f> Points<'_, 'f> {
+    fn read(&mut self, file: &'f File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
         let cursor = &mut Cursor::standing_at(file.source, points.at);
         cursor.check_vertex_count(self.count.saturating_add(count))?;
         if points.components != 3 {
@@ -98,7 +99,7 @@ impl Points<'_> {
     /// Hands on points in binary. Returns where they start, how they stand, and whether they are encoded.
     fn binary(
         &mut self,
-        file: &File<'_>,
+        file: &'f File<'_>,
         points: &Array,
         count: u64,
         precision: Precision,
@@ -114,7 +115,13 @@ impl Points<'_> {
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
         self.sink.expect_nodes(old.bytes.len() / (3 * wide));
-        for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate() {
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| Field::new(old.bytes.get(axis * wide..), (3 * wide, wide), wrapping.order));
+        let (tags, nodes) = (Tags::From(self.count), count as usize);
+        let records = NodeRecords { count: nodes, x, y, x_at: start, tags };
+        let taken = self.sink.node_records(&records);
+        self.heights.see_all(z, taken, start + 2 * wide);
+        for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate().skip(taken) {
             let number = |axis: usize| {
                 let bytes = &point[axis * wide..][..wide];
                 wrapping.order.real(precision, bytes)

@@ -7,6 +7,7 @@ mod grids;
 mod ply;
 mod text;
 mod vtk;
+pub(crate) mod vtu;
 mod xdmf;
 
 use super::regions::interfaces;

@@ -15,6 +15,8 @@ use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::quoted;
 use crate::mesh::Precision;
 
+mod plain;
+
 pub(crate) struct Ply;
 
 /// The type of a number.
@@ -72,7 +74,7 @@ impl Walk for Ply {
                 }
                 _ => {
                     sink.leaves_out("elements that are neither vertices, faces nor edges");
-                    items.each(cursor, list, |_, _, _| Ok(()))?;
+                    items.each(cursor, list, 0, |_, _, _| Ok(()))?;
                 }
             }
         }
@@ -217,16 +219,17 @@ impl Items {
         }
     }
 
-    /// Hands all numbers of each item to `take`, with the places of the first number of each property.
+    /// Hands all numbers of each item, from one of them on, to `take`, with the places of the first number of each property.
     fn each<'a>(
         self,
         cursor: &mut Cursor<'a>,
         list: &List<'_>,
+        from: u64,
         mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); list.properties.len()];
         let mut places = vec![0; list.properties.len()];
-        for done in 0..list.count {
+        for done in from..list.count {
             if self.order.is_none() {
                 cursor.row(done, list.count, "items")?;
             }
@@ -307,8 +310,8 @@ impl Items {
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
         let mut heights = Heights::new(sink);
         let mut data = Data::new(list, z, sink);
-        let mut tag = 0;
-        self.each(cursor, list, |place, values, places| {
+        let mut tag = self.plain_vertices(cursor, list, x, z, &mut heights, sink);
+        self.each(cursor, list, tag, |place, values, places| {
             data.see(values, places);
             if let Some(z) = z {
                 heights.see((places[z], values[z][0]));
@@ -341,12 +344,12 @@ impl Items {
         names: &[&[u8]],
         sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
-        let mut tag = 0;
         let properties = &list.properties;
         if properties.iter().any(|property| !names.contains(&property.name)) {
             sink.leaves_out("properties of faces or edges");
         }
-        self.each(cursor, list, |place, values, _| {
+        let mut tag = self.plain_triangles(cursor, list, names, sink);
+        self.each(cursor, list, tag, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
             // No vertex has a number that is negative, or not whole.

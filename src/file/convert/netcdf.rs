@@ -1,0 +1,166 @@
+//! Writes netCDF's classic format with 64-bit offsets.
+//!
+//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers have their highest byte
+//! first. Variables of the record dimension come last; there is one record at most.
+
+/// A file under construction.
+#[derive(Default)]
+pub(super) struct NetCdf {
+    dimensions: Vec<(String, usize)>,
+    attributes: Vec<(&'static str, Values)>,
+    variables: Vec<Variable>,
+}
+
+struct Variable {
+    name: String,
+    /// The places of its dimensions. That of records is the first of all.
+    dimensions: Vec<usize>,
+    attributes: Vec<(&'static str, Values)>,
+    values: Values,
+}
+
+/// Numbers or letters.
+pub(super) enum Values {
+    Text(Vec<u8>),
+    Whole(Vec<i32>),
+    Single(f32),
+    Real(Vec<f64>),
+}
+
+impl Values {
+    /// Names, each filled up with zeros to so many letters.
+    pub(super) fn names<'n>(names: impl IntoIterator<Item = &'n str>, width: usize) -> Values {
+        let mut text = Vec::new();
+        for name in names {
+            let end = text.len() + width;
+            text.extend_from_slice(name.as_bytes());
+            text.resize(end, 0);
+        }
+        Values::Text(text)
+    }
+
+    /// The number of the type, how many there are, and the bytes.
+    fn encoded(&self) -> (u32, usize, Vec<u8>) {
+        match self {
+            Values::Text(text) => (2, text.len(), text.clone()),
+            Values::Whole(numbers) => {
+                (4, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+            }
+            Values::Single(number) => (5, 1, number.to_be_bytes().to_vec()),
+            Values::Real(numbers) => {
+                (6, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+            }
+        }
+    }
+}
+
+/// The record dimension of every file.
+pub(super) const RECORDS: &str = "time_step";
+
+impl NetCdf {
+    pub(super) fn new() -> NetCdf {
+        NetCdf { dimensions: vec![(RECORDS.into(), 0)], ..NetCdf::default() }
+    }
+
+    pub(super) fn attribute(&mut self, name: &'static str, values: Values) {
+        self.attributes.push((name, values));
+    }
+
+    /// Adds a dimension, which must not be of length zero.
+    pub(super) fn dimension(&mut self, name: impl Into<String>, length: usize) {
+        self.dimensions.push((name.into(), length));
+    }
+
+    /// Adds a variable of these dimensions, with an attribute of text if it has one.
+    pub(super) fn variable(
+        &mut self,
+        name: impl Into<String>,
+        dimensions: &[&str],
+        attribute: Option<(&'static str, &str)>,
+        values: Values,
+    ) {
+        let place = |name: &&str| self.dimensions.iter().position(|(own, _)| own == name);
+        let dimensions = dimensions.iter().filter_map(place).collect();
+        let text = |(name, text): (_, &str)| (name, Values::Text(text.as_bytes().to_vec()));
+        let attributes = attribute.map(text).into_iter().collect();
+        self.variables.push(Variable { name: name.into(), dimensions, attributes, values });
+    }
+
+    /// The bytes of the file.
+    pub(super) fn bytes(mut self) -> Vec<u8> {
+        // Records stand behind all else.
+        self.variables.sort_by_key(Variable::is_record);
+        let has_records =
+            self.variables.iter().any(|v| v.is_record() && !v.values.encoded().2.is_empty());
+        let contents: Vec<Vec<u8>> = self.variables.iter().map(Variable::content).collect();
+        let header = self.header(has_records, &contents, 0).len();
+        let mut bytes = self.header(has_records, &contents, header);
+        contents.iter().for_each(|content| bytes.extend_from_slice(content));
+        bytes
+    }
+
+    /// The header, for contents that start at this byte.
+    fn header(&self, has_records: bool, contents: &[Vec<u8>], mut start: usize) -> Vec<u8> {
+        let mut out = b"CDF\x02".to_vec();
+        word(&mut out, usize::from(has_records));
+        list(&mut out, 10, self.dimensions.len());
+        for (dimension, length) in &self.dimensions {
+            name(&mut out, dimension);
+            word(&mut out, *length);
+        }
+        attributes(&mut out, &self.attributes);
+        list(&mut out, 11, self.variables.len());
+        for (variable, content) in self.variables.iter().zip(contents) {
+            name(&mut out, &variable.name);
+            word(&mut out, variable.dimensions.len());
+            variable.dimensions.iter().for_each(|&dimension| word(&mut out, dimension));
+            attributes(&mut out, &variable.attributes);
+            out.extend_from_slice(&variable.values.encoded().0.to_be_bytes());
+            word(&mut out, content.len());
+            out.extend_from_slice(&(start as u64).to_be_bytes());
+            start += content.len();
+        }
+        out
+    }
+}
+
+impl Variable {
+    fn is_record(&self) -> bool {
+        self.dimensions.first() == Some(&0)
+    }
+
+    /// Its bytes, filled up to a multiple of four.
+    fn content(&self) -> Vec<u8> {
+        let mut content = self.values.encoded().2;
+        content.resize(content.len().next_multiple_of(4), 0);
+        content
+    }
+}
+
+/// Appends a number of four bytes. What is greater is not what readers go by.
+fn word(out: &mut Vec<u8>, number: usize) {
+    out.extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_be_bytes());
+}
+
+fn list(out: &mut Vec<u8>, tag: usize, count: usize) {
+    word(out, if count == 0 { 0 } else { tag });
+    word(out, count);
+}
+
+fn name(out: &mut Vec<u8>, name: &str) {
+    word(out, name.len());
+    out.extend_from_slice(name.as_bytes());
+    out.resize(out.len().next_multiple_of(4), 0);
+}
+
+fn attributes(out: &mut Vec<u8>, attributes: &[(&'static str, Values)]) {
+    list(out, 12, attributes.len());
+    for (own, values) in attributes {
+        name(out, own);
+        let (number, count, bytes) = values.encoded();
+        out.extend_from_slice(&number.to_be_bytes());
+        word(out, count);
+        out.extend_from_slice(&bytes);
+        out.resize(out.len().next_multiple_of(4), 0);
+    }
+}

@@ -1,0 +1,314 @@
+//! Lists of records in binary, all of one size, read on all threads.
+//!
+//! They are read in chunks, as far as these are plain. A reader hands on what is left one by one, and is the only one that
+//! returns errors.
+
+use crate::file::binary::Order;
+use crate::file::numbers::FoundPlaces;
+use crate::file::tags::{FoundTags, TagMap};
+use crate::mesh::Precision;
+use crate::parallel::{map_parts, map_ranges};
+use std::ops::Range;
+
+/// How many records one thread reads at a time.
+const CHUNK: usize = 1 << 13;
+/// Lists of fewer records are read as fast on one thread.
+pub(crate) const LONG: usize = 1 << 14;
+
+/// A number, or several side by side, that each record of a list has at the same place.
+#[derive(Clone, Copy)]
+pub(crate) struct Field<'a> {
+    /// From the number of the first record on.
+    bytes: &'a [u8],
+    /// How many bytes after the number of one record that of the next stands.
+    stride: usize,
+    /// How many bytes a number has.
+    width: usize,
+    order: Order,
+}
+
+impl<'a> Field<'a> {
+    /// `bytes` are those from the number of the first record on; none if there is none.
+    pub(crate) fn new(
+        bytes: Option<&'a [u8]>,
+        (stride, width): (usize, usize),
+        order: Order,
+    ) -> Field<'a> {
+        Field { bytes: bytes.unwrap_or_default(), stride, width, order }
+    }
+
+    pub(crate) fn stride(self) -> usize {
+        self.stride
+    }
+
+    /// Whether so many records have so many of these numbers.
+    fn holds(self, records: usize, numbers: usize) -> bool {
+        let last = records.saturating_sub(1).checked_mul(self.stride);
+        let end = last.and_then(|last| last.checked_add(numbers * self.width));
+        self.stride > 0 && self.width > 0 && end.is_some_and(|end| end <= self.bytes.len())
+    }
+
+    /// The bytes from the number on, of some of the records. There have to be so many.
+    fn of(self, records: Range<usize>) -> impl Iterator<Item = &'a [u8]> {
+        self.bytes[records.start * self.stride..].chunks(self.stride).take(records.len())
+    }
+
+    /// The whole numbers of some of the records.
+    fn whole(self, records: Range<usize>) -> impl Iterator<Item = u64> {
+        self.of(records).map(move |bytes| self.order.whole(&bytes[..self.width]))
+    }
+
+    /// The real numbers of some of the records. There have to be so many.
+    pub(crate) fn real(self, records: Range<usize>) -> impl Iterator<Item = f64> {
+        let precision = if self.width == 4 { Precision::Single } else { Precision::Double };
+        self.of(records).map(move |bytes| self.order.real(precision, &bytes[..self.width]))
+    }
+
+    /// Whether this holds for the real numbers of all records, of which there are so many.
+    pub(crate) fn all_real(self, records: usize, holds: impl Fn(f64) -> bool + Sync) -> bool {
+        let fits = matches!(self.width, 4 | 8) && self.holds(records, 1);
+        let each = |records| self.real(records).all(&holds);
+        fits && map_ranges(records, CHUNK, each).into_iter().all(|all| all)
+    }
+
+    /// The greatest number that has no sign in a field of this width. What is greater is left to the reader.
+    fn most(self) -> u64 {
+        u64::MAX >> (65 - 8 * self.width.clamp(1, 8))
+    }
+}
+
+/// The tags of the nodes of a list.
+#[derive(Clone, Copy)]
+pub(crate) enum Tags<'a> {
+    /// Consecutive ones from this one on.
+    From(u64),
+    Listed(Field<'a>),
+}
+
+/// A list of nodes.
+pub(crate) struct NodeRecords<'a> {
+    pub(crate) count: usize,
+    /// The coordinates: `float` or `double` by their width.
+    pub(crate) x: Field<'a>,
+    pub(crate) y: Field<'a>,
+    /// Where the x of the first node starts in the bytes that are written again.
+    pub(crate) x_at: usize,
+    pub(crate) tags: Tags<'a>,
+}
+
+impl NodeRecords<'_> {
+    /// Reads nodes from the first one on, as far as they are plain. Returns how many.
+    pub(crate) fn read(
+        &self,
+        points: &mut Vec<[f64; 2]>,
+        tags: &mut FoundTags,
+        places: &mut FoundPlaces,
+    ) -> usize {
+        let &NodeRecords { count, x, y, .. } = self;
+        let fits =
+            x.holds(count, 1) && y.holds(count, 1) && matches!((x.width, y.width), (4, 4) | (8, 8));
+        let has_tags = match self.tags {
+            Tags::From(_) => true,
+            Tags::Listed(field) => field.holds(count, 1),
+        };
+        if count < LONG || !fits || !has_tags {
+            return 0;
+        }
+        let (taken, _) = append(points, count, |records, points| {
+            let coordinates = x.real(records.clone()).zip(y.real(records.clone()));
+            let mut is_finite = true;
+            for (point, (x, y)) in points.iter_mut().zip(coordinates) {
+                is_finite &= x.is_finite() && y.is_finite();
+                *point = [x, y];
+            }
+            let is_plain = match self.tags {
+                Tags::From(_) => true,
+                Tags::Listed(field) => field.whole(records).all(|tag| tag <= field.most()),
+            };
+            (is_finite && is_plain).then_some(())
+        });
+        places.extend(self.x_at, x.stride, taken);
+        match self.tags {
+            Tags::From(first) => tags.extend(first, taken as u64),
+            Tags::Listed(field) => add_tags(field, taken, tags),
+        }
+        taken
+    }
+}
+
+fn add_tags(field: Field<'_>, count: usize, tags: &mut FoundTags) {
+    let first = field.whole(0..count.min(1)).next().unwrap_or(0);
+    let are_consecutive = |records: Range<usize>| {
+        let expected = records.clone().map(|record| first.checked_add(record as u64));
+        field.whole(records).map(Some).eq(expected)
+    };
+    match map_ranges(count, CHUNK, are_consecutive).into_iter().all(|are| are) {
+        true => tags.extend(first, count as u64),
+        false => field.whole(0..count).for_each(|tag| tags.push(tag)),
+    }
+}
+
+/// What whole numbers of records have to be.
+#[derive(Clone, Copy)]
+pub(crate) enum Expected {
+    /// Not negative.
+    Natural,
+    /// This number.
+    Is(u64),
+    /// So much more than that of the record before, from `first` on.
+    Steps { first: u64, step: u64 },
+}
+
+/// One of the numbers that name the region of a triangle.
+#[derive(Clone, Copy)]
+pub(crate) enum Region<'a> {
+    /// The same for all.
+    Same(i64),
+    Field(Field<'a>),
+    /// One for each triangle; zero for those beyond its end.
+    List(&'a [i64]),
+}
+
+impl Region<'_> {
+    fn of(self, record: usize) -> i64 {
+        match self {
+            Region::Same(region) => region,
+            Region::Field(field) => {
+                field.order.signed(&field.bytes[record * field.stride..][..field.width])
+            }
+            Region::List(list) => list.get(record).copied().unwrap_or(0),
+        }
+    }
+}
+
+/// A list of triangles.
+pub(crate) struct TriangleRecords<'a> {
+    pub(crate) count: usize,
+    /// The tags of three nodes.
+    pub(crate) corners: Field<'a>,
+    /// What is added to a tag, which has to be less than the second number before.
+    pub(crate) first: u64,
+    pub(crate) below: u64,
+    pub(crate) regions: [Region<'a>; 2],
+    /// What else has to hold for a record to be that of a triangle.
+    pub(crate) expected: &'a [(Field<'a>, Expected)],
+}
+
+impl TriangleRecords<'_> {
+    /// Reads triangles from the first one on, as far as they are plain. Hands the region of each to `region`. Returns how
+    /// many there are.
+    pub(crate) fn read(
+        &self,
+        map: &TagMap,
+        triangles: &mut Vec<[u32; 3]>,
+        mut region: impl FnMut([i64; 2], usize),
+    ) -> usize {
+        let &TriangleRecords { count, corners, .. } = self;
+        let mut fields = self.expected.iter().map(|&(field, _)| field);
+        let has_regions = self.regions.iter().all(|region| match region {
+            Region::Field(field) => field.holds(count, 1),
+            _ => true,
+        });
+        let fits = corners.holds(count, 3) && fields.all(|field| field.holds(count, 1));
+        // The first chunk tells whether it is worth while to try more.
+        if count < LONG || !fits || !has_regions || !self.is_expected(0..CHUNK) {
+            return 0;
+        }
+        let (taken, same) = append(triangles, count, |records, triangles| {
+            let is_plain = match *map {
+                TagMap::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
+                    tag.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
+                }),
+                _ => self.fill(records.clone(), triangles, |tag| map.index(tag)),
+            };
+            (is_plain && self.is_expected(records.clone())).then(|| self.same_region(records))
+        });
+        for (records, same) in same {
+            match same {
+                Some(same) => region(same, records.len()),
+                None => records.for_each(|record| {
+                    region(self.regions.map(|region| region.of(record)), 1);
+                }),
+            }
+        }
+        taken
+    }
+
+    /// Puts the indices of the corners of some triangles in place. Whether each has three.
+    fn fill(
+        &self,
+        records: Range<usize>,
+        triangles: &mut [[u32; 3]],
+        index: impl Fn(u64) -> Option<u32>,
+    ) -> bool {
+        let (most, width) =
+            (self.corners.most().min(self.below.saturating_sub(1)), self.corners.width);
+        for (triangle, bytes) in triangles.iter_mut().zip(self.corners.of(records)) {
+            for (corner, bytes) in triangle.iter_mut().zip(bytes.chunks_exact(width)) {
+                let tag = self.corners.order.whole(bytes);
+                if tag > most {
+                    return false;
+                }
+                let Some(index) = tag.checked_add(self.first).and_then(&index) else {
+                    return false;
+                };
+                *corner = index;
+            }
+            let [a, b, c] = *triangle;
+            if a == b || b == c || c == a {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn is_expected(&self, records: Range<usize>) -> bool {
+        self.expected.iter().all(|&(field, expected)| {
+            let mut numbers = field.whole(records.clone());
+            match expected {
+                Expected::Natural => numbers.all(|number| number <= field.most()),
+                Expected::Is(one) => numbers.all(|number| number == one),
+                Expected::Steps { first, step } => {
+                    let more = |record: usize| first.checked_add(step.checked_mul(record as u64)?);
+                    numbers.map(Some).eq(records.clone().map(more))
+                }
+            }
+        })
+    }
+
+    /// The region of some triangles, if it is the same for all.
+    fn same_region(&self, mut records: Range<usize>) -> Option<[i64; 2]> {
+        let of = |record| self.regions.map(|region| region.of(record));
+        let first = of(records.start);
+        let is_same = self.regions.iter().all(|region| matches!(region, Region::Same(_)))
+            || records.all(|record| of(record) == first);
+        is_same.then_some(first)
+    }
+}
+
+/// Appends so many items to a list, which `fill` puts in place in chunks on all threads, up to the first chunk where it returns
+/// none. Returns how many there are, and what it returned, with the range of each.
+fn append<T: Copy + Default + Send, R: Send, const N: usize>(
+    list: &mut Vec<[T; N]>,
+    count: usize,
+    fill: impl Fn(Range<usize>, &mut [[T; N]]) -> Option<R> + Sync,
+) -> (usize, Vec<(Range<usize>, R)>) {
+    let before = list.len();
+    match before {
+        // Memory that the system has filled with zeros need not be touched twice.
+        0 => {
+            *list = vec![[T::default(); N]; list.capacity().max(count)];
+            list.truncate(count);
+        }
+        _ => list.resize(before + count, [T::default(); N]),
+    }
+    let filled = map_parts(list[before..].chunks_mut(CHUNK), |index, chunk| {
+        let start = index * CHUNK;
+        let records = start..start + chunk.len();
+        fill(records.clone(), chunk).map(|made| (records, made))
+    });
+    let plain: Vec<_> = filled.into_iter().map_while(|made| made).collect();
+    let taken = plain.last().map_or(0, |(records, _)| records.end);
+    list.truncate(before + taken);
+    (taken, plain)
+}

@@ -1,0 +1,112 @@
+//! Lists of whole numbers, kept as they stand in a binary file.
+
+use crate::file::binary::Order;
+use crate::file::records::Field;
+use crate::parallel::map_ranges;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// How many numbers one thread compares at a time.
+const CHUNK: usize = 1 << 14;
+
+/// Whole numbers without signs. Those that were text take as little memory as those that were not.
+pub(crate) struct Whole<'a> {
+    bytes: Cow<'a, [u8]>,
+    /// How many bytes a number has.
+    size: usize,
+    order: Order,
+}
+
+impl<'a> Whole<'a> {
+    /// Numbers in binary, of so many bytes each. What is left at the end is no number.
+    pub(crate) fn binary(bytes: Cow<'a, [u8]>, size: usize, order: Order) -> Whole<'a> {
+        Whole { bytes, size, order }
+    }
+
+    /// An empty list with room for so many numbers.
+    pub(crate) fn with_capacity(count: usize) -> Whole<'a> {
+        Whole { bytes: Cow::Owned(Vec::with_capacity(4 * count)), size: 4, order: Order::Little }
+    }
+
+    /// Appends a number to a list made by [`with_capacity`](Self::with_capacity).
+    #[inline]
+    pub(crate) fn push(&mut self, number: u64) {
+        if self.size == 4 && number > u64::from(u32::MAX) {
+            self.widen();
+        }
+        let bytes = number.to_le_bytes();
+        self.bytes.to_mut().extend_from_slice(&bytes[..self.size]);
+    }
+
+    #[cold]
+    fn widen(&mut self) {
+        let numbers = self.range(0..self.len());
+        self.bytes = Cow::Owned(numbers.flat_map(u64::to_le_bytes).collect());
+        self.size = 8;
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.bytes.len() / self.size
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number at this place. There has to be one.
+    #[inline]
+    pub(crate) fn at(&self, index: usize) -> u64 {
+        self.order.whole(&self.bytes[index * self.size..][..self.size])
+    }
+
+    /// The numbers at some places. There have to be so many.
+    pub(crate) fn range(&self, places: Range<usize>) -> impl Iterator<Item = u64> {
+        let bytes = &self.bytes[places.start * self.size..places.end * self.size];
+        bytes.chunks_exact(self.size).map(|number| self.order.whole(number))
+    }
+
+    pub(crate) fn is_sorted(&self) -> bool {
+        let pairs = self.len().saturating_sub(1);
+        let each = |pairs: Range<usize>| self.range(pairs.start..pairs.end + 1).is_sorted();
+        map_ranges(pairs, CHUNK, each).into_iter().all(|is| is)
+    }
+
+    /// One number of every `step`, from this place on, as those of records.
+    pub(crate) fn field(&self, from: usize, step: usize) -> Field<'_> {
+        let bytes = from.checked_mul(self.size).and_then(|at| self.bytes.get(at..));
+        Field::new(bytes, (step * self.size, self.size), self.order)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_text_are_kept_whatever_their_size() {
+        let numbers = [3, 0, u64::from(u32::MAX), 7, 1 << 40, u64::MAX, 1];
+        let mut whole = Whole::with_capacity(2);
+        for (count, &number) in numbers.iter().enumerate() {
+            whole.push(number);
+            let all: Vec<u64> = whole.range(0..whole.len()).collect();
+            assert_eq!(all, numbers[..=count]);
+            assert_eq!(whole.at(count), number);
+        }
+    }
+
+    #[test]
+    fn a_list_is_sorted_if_no_number_is_less_than_the_one_before() {
+        for count in [0, 1, 2, CHUNK, CHUNK + 1, 3 * CHUNK] {
+            let bytes: Vec<u8> = (1..=count as u32).flat_map(u32::to_be_bytes).collect();
+            let is_sorted = |bytes: &[u8]| Whole::binary(bytes.into(), 4, Order::Big).is_sorted();
+            assert!(is_sorted(&bytes), "{count}");
+            for wrong in [1, CHUNK - 1, CHUNK, count / 2, count.saturating_sub(1)] {
+                if (1..count).contains(&wrong) {
+                    let mut bytes = bytes.clone();
+                    bytes[4 * wrong..][..4].fill(0);
+                    assert!(!is_sorted(&bytes), "{wrong} of {count}");
+                }
+            }
+        }
+    }
+}
