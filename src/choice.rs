@@ -133,7 +133,9 @@ fn gpu_updates(kind: &str) -> Option<f64> {
 
 /// The work that a run is likely to take, in sweeps, corrections included.
 fn expected_sweeps(options: &Options) -> f64 {
-    let usual = if options.is_multilevel() { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
+    // By EDGE, which is not smooth, corrected runs take as long as others.
+    let is_short = options.is_multilevel() && options.scheme.base().is_smooth();
+    let usual = if is_short { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
     usual.min(options.max_sweeps.into())
 }
 
