@@ -97,7 +97,7 @@ impl MeshFile {
     fn coordinates(&self) -> Vec<Range<usize>> {
         let x_at = self.x_at();
         // As many as vertices, or as the places that these are repeated in.
-        let count = self.owners().map_or(self.mesh().points.len(), <[u32]>::len);
+        let count = self.owners().map_or(self.original().points.len(), <[u32]>::len);
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
         match self.numbers() {

@@ -80,7 +80,7 @@ impl MeshFile {
             None => {
                 let places = triangle::vertex_places(
                     source,
-                    (0..self.mesh().points.len()).map(|vertex| self.x_at().at(vertex)),
+                    (0..self.original().points.len()).map(|vertex| self.x_at().at(vertex)),
                 );
                 Ok(places.into_iter().map(|(_, label)| label).collect())
             }

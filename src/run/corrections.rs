@@ -284,8 +284,6 @@ impl<'a> Corrections<'a> {
             self.attempts += 1;
             self.begin_correcting(done, 1.0);
             self.lowered.extend(self.metric().is_smooth().then_some(f));
-            // These levels are not fitted to where the mesh is now: the vertices have gone far.
-            drop(engine.take_hierarchy());
         }
         Ok(objectives)
     }
@@ -297,12 +295,18 @@ impl<'a> Corrections<'a> {
         engine.objectives().await
     }
 
-    /// Builds the levels, or fits those that the engine has to the present stiffness, and hands them to the engine. Returns
+    /// Builds the levels, or fits them to the present stiffness if `proposed` is not 0, and hands them to the engine. Returns
     /// whether it has room for them.
-    async fn build_levels(&mut self, engine: &mut impl Engine) -> Result<bool, GpuError> {
+    async fn build_levels(
+        &mut self,
+        engine: &mut impl Engine,
+        proposed: u32,
+    ) -> Result<bool, GpuError> {
         yield_now().await;
+        // Levels that are not used again are freed before new ones are built.
+        let before = engine.take_hierarchy().filter(|_| proposed > 0);
         let roots = engine.stiffness_roots(self.sharpness).await?;
-        let hierarchy = match engine.take_hierarchy() {
+        let hierarchy = match before {
             Some(before) => before.fitted_to(self.problem, roots),
             None => Hierarchy::new(self.problem, roots),
         };
@@ -327,7 +331,7 @@ impl<'a> Corrections<'a> {
         let built = self.excess(history, since);
         let lost = built - self.excess(history, done - 1);
         if (proposed == 0 || proposed == RESIZE_AFTER && lost > RESIZE_IF * built)
-            && !self.build_levels(engine).await?
+            && !self.build_levels(engine, proposed).await?
         {
             self.stage = Stage::Without { since: done };
             return self.sweep_without(engine).await;

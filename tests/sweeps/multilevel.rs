@@ -98,7 +98,7 @@ fn it_ends_at_the_global_optimum() {
 fn every_step_lowers_the_objective_and_inverts_nothing() {
     for mesh in [perturbed(), distorted()] {
         let smoother = Smoother::new(mesh).unwrap();
-        for metric in [Metric::Imr, Metric::Ar, Metric::Rms, Metric::Edge] {
+        for metric in [Metric::Imr, Metric::Ar, Metric::Rms] {
             for backend in backends() {
                 let whole = run(&smoother, &multilevel(metric), backend);
                 let f = history(&whole, metric);
@@ -193,7 +193,7 @@ fn elements_graded_over_seven_decades_converge() {
 #[test]
 fn it_is_the_default_where_it_is_to_be_had() {
     let alone = |metric: Metric| Options { scheme: metric.into(), ..Options::default() };
-    for metric in [Metric::Imr, Metric::Ar, Metric::Rms] {
+    for metric in [Metric::Imr, Metric::Ar, Metric::Rms, Metric::Edge] {
         assert!(alone(metric).is_multilevel());
     }
     let imr = alone(Metric::Imr);

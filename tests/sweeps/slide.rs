@@ -84,7 +84,9 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     for metric in [Metric::Imr, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = run(&smoother, &options, &Backend::Cpu);
-        assert_eq!(outcome.stop, Stop::Converged, "{metric}");
+        // The shape guard of rms holds some vertices in the end.
+        let stop = if metric == Metric::Rms { Stop::HeldBack } else { Stop::Converged };
+        assert_eq!(outcome.stop, stop, "{metric}");
         let slid = outcome.slid.unwrap();
         assert!(count > 50 && slid.vertices == count && slid.moved > count / 2, "{slid:?}");
         assert!(slid.off > 0.0 && slid.off < 0.02 && slid.area.abs() < 1e-2, "{slid:?}");

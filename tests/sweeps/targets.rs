@@ -45,7 +45,8 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
     let plain = Smoother::new(&mesh).unwrap();
     let targets = Targets::tensors(&vec![tensor(matrix); mesh.points.len()]).unwrap();
     let smoother = with_targets(&stretched, &targets);
-    for &metric in Metric::ALL.iter().filter(|&&metric| corrected(metric)) {
+    // EDGE has many minima, and rounding decides in which a run ends.
+    for &metric in Metric::ALL.iter().filter(|&&m| corrected(m) && m.is_smooth()) {
         let options = Options { scheme: metric.into(), ..Options::default() };
         for backend in backends() {
             let (one, other) = (run(&plain, &options, backend), run(&smoother, &options, backend));

@@ -292,9 +292,10 @@ impl Levels {
 
         let mut left_out = Vec::new();
         if guard < NO_GUARD as f32 {
-            let kept = listing.vector(free as usize);
-            let find = LevelOp { out: kept, shape_guard: guard, ..fine };
-            let leave = LevelOp { x: kept, ..fine };
+            // Between cycles nothing in these vectors is needed any more.
+            listing.vectors = listing.vectors.max(free);
+            let find = LevelOp { out: 0, shape_guard: guard, ..fine };
+            let leave = LevelOp { x: 0, ..fine };
             let bound = Bound::Fine { part: 0 };
             by_rings(&mut listing, &mut left_out, Kernel::FindBroken, find)?;
             let kernel = Kernel::LeaveOutBroken;
