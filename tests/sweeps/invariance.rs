@@ -115,7 +115,10 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
     let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.8, 9);
     let smoother = Smoother::new(&mesh).unwrap();
     for &metric in Metric::ALL {
-        let options = Options { scheme: metric.into(), max_sweeps: 400, ..Options::default() };
+        // EDGE has many minima, and with corrections rounding decides in which a run ends.
+        let method = if metric.is_smooth() { Method::Auto } else { Method::Sweeps };
+        let options = Options { method, max_sweeps: 400, ..Options::default() };
+        let options = Options { scheme: metric.into(), ..options };
         let [cpu, gpu] = backends().each_ref().map(|backend| {
             let outcome = run(&smoother, &options, backend);
             let after = crate::with_points(&mesh, &outcome.points);
