@@ -118,7 +118,8 @@ fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
     let to: Vec<[f32; 2]> = scene.places(vertices)?.iter().map(|&[x, y]| [x + 0.5, y]).collect();
     scene.write(vertices, &to);
     let mut told = Told { least_share: 1.0, ..Told::default() };
-    while told.frames < 500 && (told.frames == 0 || told.worst_imr.is_infinite()) {
+    told.add(scene.look()?);
+    while told.frames < 500 && told.worst_imr.is_infinite() {
         told.add(scene.frame(None)?);
     }
     Ok(told)

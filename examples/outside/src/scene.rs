@@ -127,6 +127,19 @@ impl Scene {
         Ok(Seen { sweeps, values, share: if drag.is_some() { share } else { 1.0 } })
     }
 
+    /// How the mesh is with the vertices as the application has them, before any sweep.
+    pub(crate) fn look(&mut self) -> Result<Seen> {
+        let (device, queue) = (self.gpu.device(), self.gpu.queue());
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.bound.encode_import(&mut encoder);
+        self.objective.encode_objective(&mut encoder);
+        self.values.encode_readback(&mut encoder);
+        queue.submit([encoder.finish()]);
+        let _ = device.poll(wgpu::PollType::wait_indefinitely());
+        let values = self.values.latest()?.map_or_else(Default::default, |values| values[0]);
+        Ok(Seen { sweeps: 0, values, share: 1.0 })
+    }
+
     /// Writes vertices of the application: they go there whatever becomes of the triangles.
     pub(crate) fn write(&self, vertices: &[u32], to: &[[f32; 2]]) {
         for (&v, place) in vertices.iter().zip(to) {
