@@ -1,0 +1,79 @@
+//! What decides how a corrected run goes on, as words of a checkpoint.
+
+use super::{Corrections, ESTIMATES, Stage, exponents};
+
+impl Corrections<'_> {
+    /// All that decides how the run goes on, as numbers that [`restore`](Self::restore) understands.
+    pub(crate) fn save(&self) -> Vec<u64> {
+        let (stage, at, length, proposed, refused) = match self.stage {
+            Stage::Before { until } => (0, until, 0.0, 0, 0),
+            Stage::Correcting { since, length, proposed, refused } => {
+                (1, since, length, proposed, refused)
+            }
+            Stage::Without { since } => (2, since, 0.0, 0, 0),
+        };
+        let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
+        let flags = [self.settled, self.accelerated, self.is_left_out()].map(u64::from);
+        let slope = [self.slope.is_some().into(), self.slope.unwrap_or(0.0).to_bits()];
+        let mut words = vec![stage, at as u64, length.to_bits()];
+        words.extend(counts.into_iter().chain(flags).chain(slope));
+        words.extend(self.estimates.map(f64::to_bits));
+        words.push(self.sharpness.into());
+        words.extend(self.lowered.iter().map(|f| f.to_bits()));
+        words
+    }
+
+    /// Takes on what [`save`](Self::save) gave after `evaluations`. Without levels, they are built before the next correction.
+    /// Returns whether the words make sense.
+    pub(crate) fn restore(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> bool {
+        let Some(([stage, at, length, attempts, taken, proposed, refused], rest)) =
+            words.split_first_chunk()
+        else {
+            return false;
+        };
+        let Some((
+            &[settled, accelerated, left_out, has_slope, slope, ref estimates @ .., sharpness],
+            lowered,
+        )) = rest.split_first_chunk::<{ 6 + ESTIMATES }>()
+        else {
+            return false;
+        };
+        let sharpness = u32::try_from(sharpness).ok();
+        let Some(sharpness) = sharpness.filter(|k| exponents(self.plan).contains(k)) else {
+            return false;
+        };
+        let estimates: [u64; ESTIMATES] = *estimates;
+        self.sharpness = sharpness;
+        self.lowered = lowered.iter().map(|&f| f64::from_bits(f)).collect();
+        if self.lowered.len() > evaluations || !self.lowered.iter().all(|f| f.is_finite()) {
+            return false;
+        }
+        // Nothing can have happened more often than there were sweeps.
+        let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
+        let (Some(attempts), Some(taken), Some(proposed), Some(refused), Some(at)) = (
+            small(attempts),
+            small(taken),
+            small(proposed),
+            small(refused),
+            u32::try_from(*at).ok(),
+        ) else {
+            return false;
+        };
+        let (since, length) = (at as usize, f64::from_bits(*length));
+        self.stage = match stage {
+            0 if length == 0.0 => Stage::Before { until: since },
+            1 if since < evaluations && length > 0.0 && length.is_finite() => {
+                let proposed = if has_levels { proposed } else { 0 };
+                Stage::Correcting { since, length, proposed, refused }
+            }
+            2 if since < evaluations => Stage::Without { since },
+            _ => return false,
+        };
+        (self.attempts, self.taken) = (attempts, taken);
+        (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
+        self.was_left_out = left_out != 0;
+        self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
+        self.estimates = estimates.map(f64::from_bits);
+        true
+    }
+}
