@@ -39,10 +39,15 @@ impl Scheme {
         &self.0
     }
 
+    /// Whether there is another metric than the base.
+    pub fn alternates(&self) -> bool {
+        self.0.iter().any(|&metric| metric != self.base())
+    }
+
     /// Whether every sweep lowers the base objective, so that the last state is the best: true for
     /// a single metric that is smooth.
     pub fn is_monotone(&self) -> bool {
-        self.0.iter().all(|&m| m == self.base()) && self.base().is_smooth()
+        !self.alternates() && self.base().is_smooth()
     }
 }
 

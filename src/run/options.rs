@@ -16,8 +16,9 @@ pub enum Method {
     #[default]
     Auto,
     /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels.
-    /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Requires a
-    /// scheme of one metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
+    /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Metrics that alternate do so in
+    /// the sweeps alone; those with corrections are by the base metric, so that the run ends at its optimum. Requires a
+    /// base metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
@@ -124,9 +125,7 @@ impl Options {
     /// The reason why these options rule out corrections, if they do.
     fn only_sweeps(&self) -> Option<&'static str> {
         let metric = self.scheme.base();
-        if self.scheme.period() > 1 {
-            Some("metrics that alternate have no correction: give one metric")
-        } else if !metric.properties().is_corrected {
+        if !metric.properties().is_corrected {
             Some("this metric has no correction: take another, imr, say")
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")
@@ -221,7 +220,8 @@ impl Options {
 
     /// The plan of a run by these options, which ends when the base objective is below `target`, if there is one.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
-        let usual = match self.is_multilevel() {
+        // Sweeps by EDGE that another metric judges are few, and by no p-norm that grows.
+        let usual = match self.is_multilevel() && !self.scheme.base().is_smooth() {
             true => Sharpness::CONTINUED,
             false => Sharpness::FIXED,
         };
@@ -229,8 +229,8 @@ impl Options {
     }
 
     fn plan_with(&self, target: Option<f64>, sharpness: Sharpness) -> Plan {
-        let alternates = self.scheme.metrics().iter().any(|&m| m != self.scheme.base());
-        let own = |metric: Metric| if alternates { 1.0 } else { metric.properties().omega };
+        let own =
+            |metric: Metric| if self.scheme.alternates() { 1.0 } else { metric.properties().omega };
         let mut by_metric = [1.0; Metric::ALL.len()];
         for (slot, metric) in by_metric.iter_mut().zip(Metric::ALL) {
             *slot = self.omega.unwrap_or(own(*metric));

@@ -63,7 +63,8 @@ impl Plan {
         self.step_with(self.scheme.base(), omega, self.sharpness.largest())
     }
 
-    fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
+    /// A step of `metric` with over-relaxation `omega` and log2 `sharpness` of EDGE's exponent.
+    pub(crate) fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
         let of_metric = match metric.properties().shape_guard {
             own if own.is_finite() => self.shape_guard.min(own),
             own => own,

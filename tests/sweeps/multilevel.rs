@@ -199,7 +199,7 @@ fn it_is_the_default_where_it_is_to_be_had() {
     let imr = alone(Metric::Imr);
     let others = [
         alone(Metric::Area),
-        Options { scheme: scheme("rms+imr"), ..imr.clone() },
+        Options { scheme: scheme("area+imr"), ..imr.clone() },
         Options { omega: Some(1.5), ..imr.clone() },
         Options { inner: 2, ..imr.clone() },
         Options { derivatives: Derivatives::FiniteDifference, ..imr.clone() },
@@ -215,6 +215,34 @@ fn it_is_the_default_where_it_is_to_be_had() {
             Err(SmoothError::Option { option: "method", .. }) => assert!(!asked.is_multilevel()),
             Ok(outcome) => assert!(asked.is_multilevel() && outcome.corrections > 0),
             Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+/// Sweeps alone end above it, at a compromise of both metrics, after 50 sweeps or more.
+#[test]
+fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
+    let mesh = support::perturb_random(&plate(500), 1.0, 1);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for (names, base) in
+        [("imr+rms", Metric::Imr), ("imr+edge+edge", Metric::Imr), ("ar+area", Metric::Ar)]
+    {
+        let limit = last(&run(&smoother, &multilevel(base), &backends()[0]), base);
+        for backend in backends() {
+            let options = Options { scheme: scheme(names), ..Options::default() };
+            let outcome = run(&smoother, &options, backend);
+            let label = format!("{names} on the {}", name(backend));
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            assert!(outcome.sweeps <= 16, "{label}: {} sweeps", outcome.sweeps);
+            let left = last(&outcome, base) / limit - 1.0;
+            assert!(left.abs() < 2e-6, "{label}: {left:e} left");
+            // The state after the last correction is the one that is returned.
+            let returned = with_points(&mesh, &outcome.points);
+            let measure = Options { max_sweeps: 0, ..multilevel(base) };
+            let returned = Smoother::new(&returned).unwrap();
+            let returned = last(&run(&returned, &measure, &Backend::Cpu), base);
+            let told = last(&outcome, base);
+            assert!((returned / told - 1.0).abs() < 1e-6, "{label}: {returned} for {told}");
         }
     }
 }

@@ -22,6 +22,9 @@ const SWEEPS_PAY: f64 = 0.1;
 /// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
 /// perturbed and smoothly distorted meshes of 2,000 to a million vertices.
 const OMEGA_BEFORE: f64 = 1.5;
+/// Over-relaxation of sweeps before corrections begin where metrics alternate: each would have to undo the overshoot of the
+/// one before.
+const OMEGA_ALTERNATING: f64 = 1.0;
 /// Over-relaxation of sweeps that are followed by corrections. Chosen by the same measurements as [`OMEGA_BEFORE`].
 const OMEGA_BETWEEN: f64 = 1.3;
 /// Number of corrections tried after which the levels are fitted to the sizes of elements again, if these have changed.
@@ -92,17 +95,18 @@ pub(crate) struct Corrections<'a> {
 /// The stage of a run. `since` and `until` are indices in the history.
 #[derive(Clone, Copy)]
 enum Stage {
-    /// Sweeps alone, at least up to `until`, and then as long as they pay.
+    /// Sweeps alone, at least up to `until`, and then as long as they pay: by the metrics of the scheme in turn, by the base metric
+    /// once corrections have been tried.
     Before { until: usize },
-    /// Each sweep is followed by a correction. `length` is the last one taken, `proposed` the number of corrections
+    /// Each sweep, by the base metric, is followed by a correction. `length` is the last one taken, `proposed` the number of corrections
     /// tried in this stage, `refused` how many of the latest were refused in a row.
     Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
-    /// Sweeps alone to the end, as corrections do not help or the engine has no room for the levels.
+    /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the levels.
     Without { since: usize },
 }
 
 impl<'a> Corrections<'a> {
-    /// The start of a run. All sweeps of `plan` are by its base metric.
+    /// The start of a run.
     pub(crate) fn new(problem: &'a Problem, plan: &'a Plan) -> Self {
         Self {
             problem,
@@ -123,10 +127,16 @@ impl<'a> Corrections<'a> {
 
     /// All distinct steps that a run can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
-        let own = plan.scheme.base().properties().omega;
-        let omegas = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, own];
-        let of_exponent =
-            |sharpness| omegas.map(|omega| Step { sharpness, ..plan.base_step(omega) });
+        let base = plan.scheme.base();
+        let by_base = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, base.properties().omega];
+        let by_base = by_base.map(|omega| (base, omega));
+        let others = plan.scheme.metrics().iter().filter(|&&metric| metric != base);
+        let others = others.map(|&metric| (metric, OMEGA_ALTERNATING));
+        let kinds: Vec<_> = by_base.into_iter().chain(others).collect();
+        let of_exponent = |sharpness| {
+            let step = move |&(metric, omega)| plan.step_with(metric, omega, sharpness);
+            kinds.iter().map(step)
+        };
         exponents(plan).flat_map(of_exponent).collect()
     }
 
@@ -179,7 +189,24 @@ impl<'a> Corrections<'a> {
 
     /// A step of the base metric, with the present exponent.
     fn step(&self, omega: f64) -> Step {
-        Step { sharpness: self.sharpness, ..self.plan.base_step(omega) }
+        self.plan.step_with(self.metric(), omega, self.sharpness)
+    }
+
+    /// The metrics of sweeps alone, in turn. They alternate until corrections have begun once.
+    fn turns(&self) -> &[Metric] {
+        let metrics = self.plan.scheme.metrics();
+        if self.attempts == 0 { metrics } else { &metrics[..1] }
+    }
+
+    /// The step of a sweep alone, of which `done` were done.
+    fn step_before(&self, done: usize) -> Step {
+        let turns = self.turns();
+        let omega = match done {
+            0 => 1.0,
+            _ if self.attempts == 0 && self.plan.scheme.alternates() => OMEGA_ALTERNATING,
+            _ => OMEGA_BEFORE,
+        };
+        self.plan.step_with(turns[done % turns.len()], omega, self.sharpness)
     }
 
     /// Whether the exponent is not going to double any more.
@@ -203,12 +230,15 @@ impl<'a> Corrections<'a> {
         until: usize,
     ) -> Result<Objectives, GpuError> {
         let done = history.f().len();
-        let omega = if done == 1 { 1.0 } else { OMEGA_BEFORE };
-        engine.sweep(&self.step(omega)).await?;
+        engine.sweep(&self.step_before(done - 1)).await?;
         let objectives = engine.objectives().await?;
-        let last = self.excess(history, done - 1);
+        // Compared with the last sweep by the same metric, where metrics alternate.
+        let period = self.turns().len();
+        let last = self.excess(history, done.saturating_sub(period));
         let f = objectives.of(self.metric()).unwrap_or(f64::NAN);
-        if done >= until && last - (f - self.metric().ideal_squared()) < SWEEPS_PAY * last {
+        let pays = 1.0 - (1.0 - SWEEPS_PAY).powi(period as i32);
+        let gain = last - (f - self.metric().ideal_squared());
+        if done >= until.max(period) && gain < pays * last {
             self.attempts += 1;
             self.begin_correcting(done, 1.0);
             self.lowered.extend(self.metric().is_smooth().then_some(f));
@@ -308,7 +338,8 @@ impl<'a> Corrections<'a> {
             _ => Stage::Correcting { since, length, proposed: proposed + 1, refused },
         };
         self.lowered.push(ideal + excess);
-        if self.plan.track_all || !self.metric().is_smooth() {
+        // Where f may rise, the engine keeps the best state as it evaluates the objectives.
+        if self.plan.track_all || !self.plan.is_monotone() {
             return engine.objectives().await;
         }
         let mut objectives = Objectives::untracked();
