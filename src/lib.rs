@@ -89,27 +89,21 @@
 //! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
 //! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
 
-mod altitude;
-mod attempt;
 mod chart;
 mod choice;
 mod cpu;
 mod error;
 mod file;
 pub mod gpu;
-mod holding;
 mod interpolate;
 mod layout;
-mod limit;
 mod measure;
 mod mesh;
 mod metric;
 mod outcome;
 mod parallel;
-mod places;
 mod quality;
 mod resume;
-mod rounds;
 mod run;
 pub mod select;
 mod slide;
@@ -117,6 +111,7 @@ mod smoother;
 mod targets;
 mod topology;
 mod untangle;
+mod whole;
 
 /// Exact checks for inverted and flat triangles.
 pub mod validity {

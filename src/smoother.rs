@@ -6,22 +6,17 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
-use crate::altitude;
-use crate::attempt::Attempt;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::layout::Problem;
 use crate::layout::prepare;
-use crate::limit::Limit;
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::metric::Scheme;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
-use crate::places::Places;
 use crate::quality::Quality;
 use crate::resume;
-use crate::rounds::Rounds;
 use crate::run::{
     Checkpoint, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives, Observer,
     Options, Phase, ROUNDING, Sharpness, Stop,
@@ -29,6 +24,11 @@ use crate::run::{
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
+use crate::whole::Attempt;
+use crate::whole::Limit;
+use crate::whole::Places;
+use crate::whole::Rounds;
+use crate::whole::altitude;
 
 /// The processor that does the sweeps.
 pub enum Backend {

@@ -3,18 +3,18 @@
 
 use glam::DVec2;
 
-use crate::attempt::{Attempt, Ended};
 use crate::error::SmoothError;
-use crate::holding::Holding;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::{Mesh, Precision};
-use crate::rounds::{Rounds, is_sound, objectives};
 use crate::run::{
     Keeper, Keeping, Observer, Options, Plan, Step, Stop, StopRule, line_search, set_guards,
 };
 use crate::slide::{Fan, Patch};
 use crate::topology::Topology;
+use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::holding::Holding;
+use crate::whole::rounds::{Rounds, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 3;

@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 
-use crate::attempt::{Attempt, Ended};
 use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::mesh::Mesh;
-use crate::rounds::{Rounds, is_sound, objectives};
 use crate::run::{Keeper, Keeping, NOISE, Objectives, Observer, Options, Plan, Stop, set_guards};
 use crate::targets::TargetField;
+use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::rounds::{Rounds, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 5;

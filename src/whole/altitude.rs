@@ -5,14 +5,14 @@ use std::cmp::Ordering;
 
 use glam::DVec2;
 
-use crate::attempt::{Attempt, Ended};
 use crate::error::SmoothError;
-use crate::holding::Holding;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
-use crate::rounds::{Rounds, objectives};
 use crate::run::{Keeper, Keeping, Observer, Options, Stop};
 use crate::topology::Topology;
+use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::holding::Holding;
+use crate::whole::rounds::{Rounds, objectives};
 
 /// Number of sweeps in a round, until there is one after which no vertex goes back.
 const SWEEPS: u32 = 2;

@@ -3,7 +3,6 @@
 
 use glam::DVec2;
 
-use crate::attempt::{Attempt, Ended};
 use crate::cpu::mean_excess;
 use crate::error::SmoothError;
 use crate::layout::Problem;
@@ -17,6 +16,7 @@ use crate::run::{
 use crate::slide::{Acceleration, Params, Sliding};
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
+use crate::whole::attempt::{Attempt, Ended};
 
 /// Number of sweeps in a round. With two a run takes as many sweeps and more rounds, with four more sweeps.
 const SWEEPS: u32 = 3;
