@@ -1,4 +1,4 @@
-// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it.
+// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it; zero at one that is held.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_gradient(
@@ -6,10 +6,14 @@ fn find_gradient(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let vertex = op.first + index;
+    if (ring_start[vertex] & HELD) != 0u {
+        gradient[vertex] = vec2(0.0);
+        return;
+    }
     sharpness = op.sharpness;
     let p = patch_of(vertex);
     var sum = derivatives_around(p).gradient;

@@ -11,7 +11,7 @@ fn smooth_gradient(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let v = op.first + index;

@@ -19,6 +19,9 @@ pub enum Method {
     /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Requires a
     /// scheme of one metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
+    ///
+    /// [`Sweeps`](crate::Sweeps) that an application encodes are corrected if it is this, each of them from the first on;
+    /// not by [`Auto`](Self::Auto), and by edge not at all.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
     Sweeps,

@@ -10,7 +10,7 @@ use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
-use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, WORKGROUP};
+use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, SEARCH_STATE, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
@@ -70,7 +70,7 @@ enum Bound {
 /// The place of the four totals in `vectors`: the start, from where they are read back.
 const TOTALS: u32 = 0;
 /// The place of the partial sums in `vectors`. The vectors of the coarse levels follow.
-const SUMS: u32 = 4;
+const SUMS: u32 = SEARCH_STATE;
 
 /// The content of the kernels' arrays, collected while the dispatches are listed.
 struct Listing<'g> {
@@ -293,9 +293,9 @@ impl Levels {
         let mut left_out = Vec::new();
         if guard < NO_GUARD as f32 {
             // Between cycles nothing in these vectors is needed any more.
-            listing.vectors = listing.vectors.max(free);
-            let find = LevelOp { out: 0, shape_guard: guard, ..fine };
-            let leave = LevelOp { x: 0, ..fine };
+            listing.vectors = listing.vectors.max(SUMS + free);
+            let find = LevelOp { out: SUMS, shape_guard: guard, ..fine };
+            let leave = LevelOp { x: SUMS, ..fine };
             let bound = Bound::Fine { part: 0 };
             by_rings(&mut listing, &mut left_out, Kernel::FindBroken, find)?;
             let kernel = Kernel::LeaveOutBroken;
