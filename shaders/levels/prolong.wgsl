@@ -28,5 +28,5 @@ fn prolong_solution(
         return;
     }
     let share = SMOOTHING * values[op.diagonal + v] * root(v);
-    direction[v] = value_at(v) * (1.0 - SMOOTHING) + sum_over_neighbors(v) * share;
+    direction[v] = fit(v) * (value_at(v) * (1.0 - SMOOTHING) + sum_over_neighbors(v) * share);
 }

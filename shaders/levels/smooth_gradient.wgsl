@@ -2,7 +2,7 @@
 // yet.
 
 fn carried(k: u32) -> vec2<f32> {
-    return gradient[k] * (values[op.diagonal + k] * root(k));
+    return gradient[k] * (fit(k) * values[op.diagonal + k] * root(k));
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -15,5 +15,5 @@ fn smooth_gradient(
         return;
     }
     let v = op.first + index;
-    direction[v] = gradient[v] * (1.0 - SMOOTHING) + sum_over_neighbors(v) * (SMOOTHING * root(v));
+    direction[v] = gradient[v] * (fit(v) * (1.0 - SMOOTHING)) + sum_over_neighbors(v) * (SMOOTHING * root(v));
 }

@@ -294,3 +294,22 @@ fn frames_take_no_memory() {
     }
     assert!(made[10..].windows(2).all(|pair| pair[0] == pair[1]), "{made:?}");
 }
+
+#[test]
+fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
+    // As it is uploaded, elements at one end are a nineteenth as wide as at the other.
+    let mesh = distorted();
+    let graded = |&[x, y]: &[f64; 2]| [x * (0.1 + 0.3 * x), y];
+    let uploaded = Mesh { points: mesh.points.iter().map(graded).collect(), ..mesh.clone() };
+    let app = App::new();
+    let device_mesh = app.mesh(&uploaded);
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let vertices = Vertices::usual(&app, &mesh);
+    let bound = vertices.bind(&device_mesh);
+    app.submit(|encoder| {
+        bound.encode_import(encoder);
+        sweeps.encode_sweeps(encoder, 15);
+    });
+    let left = f64::from(app.objective(&sweeps).of(Metric::Imr)) / limit(&mesh, Metric::Imr) - 1.0;
+    assert!(left < 1e-5, "{left}");
+}

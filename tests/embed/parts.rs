@@ -227,7 +227,8 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
 
 #[test]
 fn encoded_corrections_are_the_same_part_by_part() {
-    let mesh = mesh();
+    // Of `mesh` the vectors of the levels are more than the small device binds.
+    let mesh = bad_plate(1500);
     let points = devices(&mesh).each_ref().map(|app| {
         let device_mesh = app.mesh(&mesh);
         let options = Options { method: Method::Multilevel, ..Options::default() };

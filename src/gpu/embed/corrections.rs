@@ -7,7 +7,7 @@ use crate::gpu::encode::Passes;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::kernels::uniforms::{LevelOp, SEARCH_TRIALS};
-use crate::gpu::run::{Dispatches, Levels, stiffness};
+use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
 use crate::run::multilevel::Hierarchy;
 
@@ -34,7 +34,7 @@ impl EncodedCorrections {
         let op = LevelOp { free: problem.free_count() as u32, ..LevelOp::default() };
         let roots = stiffness::roots(gpu, buffers, dispatches, op, waiting).await?;
         let hierarchy = Hierarchy::new(problem, roots);
-        let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy)?;
+        let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
         let whole = Positions::Whole;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
         let (begin, judge) = (pipeline(Kernel::BeginSearch)?, pipeline(Kernel::JudgeTrial)?);

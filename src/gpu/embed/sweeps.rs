@@ -51,8 +51,8 @@ impl Sweeps {
     /// default, [`Method::Auto`], is sweeps alone here. A correction is taken only if it lowers f, inverts no triangle and
     /// breaks no shape guard; while a triangle is inverted, there is none. EDGE has corrections in whole runs only.
     /// The levels are built for the mesh as it is on the device when the call is made, which waits for all that was submitted
-    /// before, and they stay. Where vertices were dragged far since, corrections are as safe, but gain less; sweeps made anew have levels that fit.
-    /// Levels take some 60 bytes on the device for each vertex.
+    /// before. Their aggregates stay; each correction fits them to the present sizes of elements. Levels take some 70 bytes on the
+    /// device for each vertex.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] does so beforehand.
     ///

@@ -44,6 +44,14 @@ pub(crate) struct Levels {
     pub(crate) direction: wgpu::Buffer,
 }
 
+/// When the levels are fitted to the present stiffness of the mesh.
+pub(crate) enum Fitting {
+    /// When the host hands others over.
+    ByHost,
+    /// In each correction, by a factor at each free vertex.
+    EachTime,
+}
+
 struct Dispatch {
     pipeline: Pipeline,
     op: LevelOp,
@@ -239,6 +247,7 @@ impl Levels {
         mesh: &MeshBuffers,
         dispatches: &Dispatches,
         hierarchy: &Hierarchy,
+        fitting: Fitting,
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
@@ -262,7 +271,11 @@ impl Levels {
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
-        let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
+        let step = match fitting {
+            Fitting::ByHost => NONE,
+            Fitting::EachTime => listing.vector(problem.free_count()),
+        };
+        let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::default() };
         // Lists a step on the free vertices, a dispatch for each part of the one-rings.
         let by_rings =
             |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {

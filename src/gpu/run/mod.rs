@@ -9,4 +9,4 @@ pub(crate) mod stiffness;
 
 pub(crate) use dispatches::Dispatches;
 pub(crate) use engine::GpuEngine;
-pub(crate) use levels::Levels;
+pub(crate) use levels::{Fitting, Levels};
