@@ -26,6 +26,7 @@ fn kernels() -> Vec<Kernel> {
     kernels.extend([Kernel::MultiplyCorrection, Kernel::OpenSecant]);
     kernels.extend([Kernel::FindShare, Kernel::MoveVertices, Kernel::Reopen, Kernel::Resume]);
     kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
+    kernels.extend([Kernel::BeginSearch, Kernel::JudgeTrial]);
     kernels.extend([Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle]);
     for &metric in Metric::ALL {
         kernels.extend([Kernel::Gradient(metric), Kernel::ObjectiveAlongCorrection(metric)]);
@@ -62,7 +63,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    assert_eq!(modules().count(), 3 * (27 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
+    assert_eq!(modules().count(), 3 * (29 + 5 * Metric::ALL.len() + 2 * (Metric::ALL.len() + 1)));
 }
 
 #[test]
@@ -95,6 +96,7 @@ fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
             Kernel::FindShare => 256,
             // They look at a few counts.
             Kernel::Reopen | Kernel::Resume | Kernel::Regularize => 1,
+            Kernel::BeginSearch | Kernel::JudgeTrial => 1,
             // One for each metric, one for the inverted and one for the worst.
             Kernel::Publish => Metric::ALL.len() as u32 + 2,
             _ => 64,

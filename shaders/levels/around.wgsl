@@ -1,3 +1,13 @@
+// The root of the stiffness at a vertex: of the mean absolute eigenvalue of the Hessian of the sum of q² with respect to it, over the
+// number of its neighbors.
+fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
+    let mean = 0.5 * (hessian.x + hessian.z);
+    let half = 0.5 * (hessian.x - hessian.z);
+    // The eigenvalues are the mean plus and minus the radius.
+    let radius = sqrt(half * half + hessian.y * hessian.y);
+    return sqrt(max(abs(mean), radius) / f32(p.end - p.start)) * p.unit;
+}
+
 // The sum of the metric's derivatives over the triangles of a patch, in the patch's unit.
 
 fn derivatives_around(p: Patch) -> Derivatives {

@@ -3,7 +3,7 @@
 @compute @workgroup_size(WORKGROUP)
 fn coarsest_solve(@builtin(global_invocation_id) id: vec3<u32>) {
     let row = id.x;
-    if row >= op.rows {
+    if row >= op.rows || rests() {
         return;
     }
     var sum = vec2(0.0);

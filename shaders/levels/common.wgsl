@@ -22,7 +22,8 @@ struct LevelOp {
     x: u32,
     // Place in `vectors` of the right-hand side.
     right: u32,
-    // Place in `vectors` of the last step.
+    // Place in `vectors` of the last step; of kernels on the free vertices, that of the present roots of the stiffness, which the levels
+    // are then fitted to, or NONE.
     step: u32,
     // Place in `vectors` of the result.
     out: u32,

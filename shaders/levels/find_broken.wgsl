@@ -7,7 +7,7 @@ fn find_broken(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let vertex = op.first + index;

@@ -1,4 +1,5 @@
-// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it.
+// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it; zero at one that is held.
+// Where the levels are to be fitted, the root of the stiffness comes along.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_gradient(
@@ -6,15 +7,25 @@ fn find_gradient(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let vertex = op.first + index;
+    if (ring_start[vertex] & HELD) != 0u {
+        gradient[vertex] = vec2(0.0);
+        if op.step != NONE {
+            vectors[op.step + vertex] = vec2(0.0);
+        }
+        return;
+    }
     sharpness = op.sharpness;
     let p = patch_of(vertex);
-    var sum = derivatives_around(p).gradient;
+    var sum = derivatives_around(p);
     if MAPPED {
-        sum = mapped(inverse_of(shape_of(vertex)), sum);
+        sum = pulled_back(sum, inverse_of(shape_of(vertex)));
     }
-    gradient[vertex] = sum * p.unit;
+    gradient[vertex] = sum.gradient * p.unit;
+    if op.step != NONE {
+        vectors[op.step + vertex] = vec2(root_of_stiffness(p, sum.hessian), 0.0);
+    }
 }

@@ -6,7 +6,7 @@ fn leave_out_broken(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let vertex = invocation(id, groups);
-    if vertex >= op.rows {
+    if vertex >= op.rows || rests() {
         return;
     }
     let kept = vectors[op.x + vertex];

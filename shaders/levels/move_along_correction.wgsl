@@ -9,5 +9,8 @@ fn move_along_correction(
     if v >= op.rows {
         return;
     }
-    set_position(v, advanced(position(v), move_of(v)));
+    let d = move_of(v);
+    if any(d != vec2(0.0)) {
+        set_position(v, advanced(position(v), d));
+    }
 }

@@ -1,5 +1,5 @@
 // The objective, of which EDGE is replaced by its p-norm, here and with the vertices moved a times along the correction, the number of triangles that are broken
-// there, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
+// there, or here already, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
 // which sum_along_correction.wgsl adds up. Further parts of the triangles continue the sums of the parts before.
 
 @compute @workgroup_size(WORKGROUP)
@@ -7,6 +7,9 @@ fn objective_along_correction(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
+    if rests() {
+        return;
+    }
     let stride = groups.x * WORKGROUP;
     sharpness = op.sharpness;
     var sums: array<vec2<f32>, 4>;
@@ -34,7 +37,7 @@ fn objective_along_correction(
         );
         let there = shown(moved, map);
         sums[0] = pair_accumulate(sums[0], metric_model(here));
-        if is_broken(here, there) {
+        if !is_positive(doubled_area(here)) || is_broken(here, there) {
             sums[2].x += 1.0;
         } else {
             sums[1] = pair_accumulate(sums[1], metric_model(there));

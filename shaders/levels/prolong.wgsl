@@ -19,10 +19,14 @@ fn prolong_solution(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let v = op.first + index;
+    if (ring_start[v] & HELD) != 0u {
+        direction[v] = vec2(0.0);
+        return;
+    }
     let share = SMOOTHING * values[op.diagonal + v] * root(v);
-    direction[v] = value_at(v) * (1.0 - SMOOTHING) + sum_over_neighbors(v) * share;
+    direction[v] = fit(v) * (value_at(v) * (1.0 - SMOOTHING) + sum_over_neighbors(v) * share);
 }

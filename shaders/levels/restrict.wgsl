@@ -6,7 +6,7 @@ fn restrict_gradient(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let row = invocation(id, groups);
-    if row >= op.rows {
+    if row >= op.rows || rests() {
         return;
     }
     var sum = vec2(0.0);

@@ -2,7 +2,7 @@
 // yet.
 
 fn carried(k: u32) -> vec2<f32> {
-    return gradient[k] * (values[op.diagonal + k] * root(k));
+    return gradient[k] * (fit(k) * values[op.diagonal + k] * root(k));
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -11,9 +11,9 @@ fn smooth_gradient(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let index = invocation(id, groups);
-    if index >= op.rows {
+    if index >= op.rows || rests() {
         return;
     }
     let v = op.first + index;
-    direction[v] = gradient[v] * (1.0 - SMOOTHING) + sum_over_neighbors(v) * (SMOOTHING * root(v));
+    direction[v] = gradient[v] * (fit(v) * (1.0 - SMOOTHING)) + sum_over_neighbors(v) * (SMOOTHING * root(v));
 }

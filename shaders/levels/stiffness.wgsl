@@ -1,5 +1,4 @@
-// The root of the stiffness at each free vertex, in both components of `gradient`: of the mean absolute eigenvalue of the
-// Hessian of the sum of q² with respect to the vertex, as the shape of its target map shows it, over the number of its neighbors.
+// The root of the stiffness at each free vertex, as the shape of its target map shows it, in both components of `gradient`.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_stiffness(
@@ -14,10 +13,5 @@ fn find_stiffness(
     sharpness = op.sharpness;
     let p = patch_of(vertex);
     let sum = pulled_back(derivatives_around(p), inverse_of(shape_of(vertex))).hessian;
-    let mean = 0.5 * (sum.x + sum.z);
-    let half = 0.5 * (sum.x - sum.z);
-    // The eigenvalues are the mean plus and minus the radius.
-    let radius = sqrt(half * half + sum.y * sum.y);
-    let root = sqrt(max(abs(mean), radius) / f32(p.end - p.start));
-    gradient[vertex] = vec2(root * p.unit);
+    gradient[vertex] = vec2(root_of_stiffness(p, sum));
 }

@@ -4,9 +4,10 @@ var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
 @compute @workgroup_size(FINISH_WORKGROUP)
 fn sum_along_correction(@builtin(local_invocation_index) local: u32) {
+    let rows = select(op.rows, 0u, rests());
     for (var i = 0u; i < 4u; i++) {
         var sum = vec2(0.0);
-        for (var k = local; k < op.rows; k += FINISH_WORKGROUP) {
+        for (var k = local; k < rows; k += FINISH_WORKGROUP) {
             sum = pair_add(sum, vectors[op.x + i * op.rows + k]);
         }
         totals[local] = sum;

@@ -13,3 +13,13 @@
 fn root(v: u32) -> f32 {
     return values[op.entries + v];
 }
+
+// What fits the levels to a vertex whose stiffness is another one now: the matrix of the free vertices is R M R with R the diagonal
+// matrix of the roots, so that its inverse is fitted to other roots by a factor on either side. 1 where the levels fit.
+fn fit(v: u32) -> f32 {
+    if op.step == NONE {
+        return 1.0;
+    }
+    let factor = root(v) / vectors[op.step + v].x;
+    return select(1.0, factor, is_positive(factor));
+}

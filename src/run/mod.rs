@@ -24,6 +24,7 @@ mod yielding;
 
 pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
+pub(crate) use corrections::OMEGA_BETWEEN;
 pub(crate) use drive::{Course, DriveError, End, Strategy, drive};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};

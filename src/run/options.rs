@@ -20,6 +20,9 @@ pub enum Method {
     /// the sweeps alone; those with corrections are by the base metric, so that the run ends at its optimum. Requires a
     /// base metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
+    ///
+    /// [`Sweeps`](crate::Sweeps) that an application encodes are corrected if it is this, each of them from the first on;
+    /// not by [`Auto`](Self::Auto), and not by edge or metrics that alternate.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
     Sweeps,

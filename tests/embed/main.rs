@@ -9,6 +9,7 @@ mod support;
 mod app;
 mod budget;
 mod clamped;
+mod corrected;
 #[cfg(target_os = "linux")]
 mod drivers;
 mod exchange;

@@ -224,3 +224,17 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
     let error = Smoother::new(&mesh).unwrap().run(&asked, &backend, observe).unwrap_err();
     assert!(matches!(gpu_error(error), GpuError::Limit { available: BOUND, .. }));
 }
+
+#[test]
+fn encoded_corrections_are_the_same_part_by_part() {
+    // Of `mesh` the vectors of the levels are more than the small device binds.
+    let mesh = bad_plate(1500);
+    let points = devices(&mesh).each_ref().map(|app| {
+        let device_mesh = app.mesh(&mesh);
+        let options = Options { method: Method::Multilevel, ..Options::default() };
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
+        app.points(&device_mesh)
+    });
+    assert!(points[0] == points[1] && points[0] != mesh.points);
+}

@@ -2,7 +2,7 @@
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
-    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, GpuError, Mesh,
+    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, GpuError, Mesh, Method,
     ObjectiveValues, Options, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 
@@ -41,9 +41,10 @@ pub(crate) struct Seen {
     pub(crate) share: f32,
 }
 
-/// How the mesh is smoothed.
+/// How the mesh is smoothed: each sweep is followed by a correction from coarser levels, so that a frame has fewer of them, but a mesh
+/// that was dragged is at rest again after a few.
 pub(crate) fn options() -> Options {
-    Options { tolerance: 1e-4, ..Options::default() }
+    Options { method: Method::Multilevel, tolerance: 1e-4, ..Options::default() }
 }
 
 impl Scene {

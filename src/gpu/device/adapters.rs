@@ -1,5 +1,6 @@
 //! The adapters of this machine.
 
+use crate::error::GpuError;
 use crate::gpu::device::blocking::blocking;
 
 /// What an adapter is called and how wgpu drives it.
@@ -49,7 +50,7 @@ pub fn adapters() -> Vec<AdapterSummary> {
 /// Adapters that can compute, fastest kind first. OpenGL's are listed only where there are no others: they are the same
 /// devices again, and the driver is slow to start.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
-    blocking(async { Ok(ranked_adapters_async().await) }).unwrap_or_default()
+    blocking(async { Ok::<_, GpuError>(ranked_adapters_async().await) }).unwrap_or_default()
 }
 
 /// As [`ranked_adapters`], without blocking.

@@ -2,6 +2,7 @@
 
 mod budget;
 mod clamped_move;
+mod corrections;
 mod exchange;
 mod last_valid;
 mod mesh;

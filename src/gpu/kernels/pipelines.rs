@@ -74,6 +74,7 @@ fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
             ReadWrite,
         ],
         Interface::Coarse => &[UNIFORM, Uniform { dynamic: true }, ReadOnly, ReadOnly, ReadWrite],
+        Interface::Search => &[UNIFORM, ReadOnly, ReadWrite],
         Interface::Secants => &[
             UNIFORM,
             Uniform { dynamic: true },

@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SLOTS, WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS, SLOTS,
+    WORKGROUP, WORST,
 };
 use crate::metric::Metric;
-use crate::run::multilevel::{NONE, SMOOTHING};
+use crate::run::multilevel::{CLOSE, LEAST_FIRST, MOST_FIRST, NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
 use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};
@@ -74,6 +75,11 @@ const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
 const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
 const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
 
+const SEARCH_PLACES: &str = include_str!("../../../shaders/search/places.wgsl");
+const SEARCH: &str = include_str!("../../../shaders/search/common.wgsl");
+const BEGIN_SEARCH: &str = include_str!("../../../shaders/search/begin_search.wgsl");
+const JUDGE_TRIAL: &str = include_str!("../../../shaders/search/judge_trial.wgsl");
+
 const SECANTS: &str = include_str!("../../../shaders/secants/common.wgsl");
 const CLOSE_SECANT: &str = include_str!("../../../shaders/secants/close.wgsl");
 const SUM_SECANTS: &str = include_str!("../../../shaders/secants/sum_secants.wgsl");
@@ -108,9 +114,10 @@ impl Kernel {
             Interface::Restore => (&[CONTROL, PAIRS], Some((1, 5))),
             Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
             Interface::Untangle => (&[PARAMS, TANGLE, PAIRS, PATCH], Some((2, 9))),
-            Interface::Fine => (&[PARAMS, LEVELS, FINE, PAIRS, PATCH], Some((2, 9))),
-            Interface::Transfer => (&[PARAMS, LEVELS, TRANSFER, PAIRS], None),
-            Interface::Coarse => (&[PARAMS, LEVELS, COARSE, PAIRS], None),
+            Interface::Fine => (&[PARAMS, LEVELS, SEARCH_PLACES, FINE, PAIRS, PATCH], Some((2, 9))),
+            Interface::Transfer => (&[PARAMS, LEVELS, SEARCH_PLACES, TRANSFER, PAIRS], None),
+            Interface::Coarse => (&[PARAMS, LEVELS, SEARCH_PLACES, COARSE, PAIRS], None),
+            Interface::Search => (&[PARAMS, CONTROL, SEARCH_PLACES, SEARCH, PAIRS], None),
             Interface::Secants => (&[PARAMS, PAIRS, PATCH, SECANTS], Some((2, 9))),
             Interface::Arithmetic => (&[PARAMS, PAIRS, PATCH], None),
         };
@@ -177,6 +184,8 @@ impl Kernel {
                 };
                 parts.iter().for_each(|part| source.push_str(part));
             }
+            Kernel::BeginSearch => source.push_str(BEGIN_SEARCH),
+            Kernel::JudgeTrial => source.push_str(JUDGE_TRIAL),
             Kernel::CloseSecant => source.push_str(CLOSE_SECANT),
             Kernel::SumSecants => source.push_str(SUM_SECANTS),
             Kernel::BendGradient => source.push_str(BEND_GRADIENT),
@@ -220,6 +229,7 @@ fn constants() -> String {
         ("NONE", NONE),
         ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
         ("TRIALS", line_search::TRIALS),
+        ("SEARCH_TRIALS", SEARCH_TRIALS),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     }
@@ -241,6 +251,9 @@ fn constants() -> String {
         ("SMOOTHING", SMOOTHING.into()),
         ("LEAST_CURVATURE", LEAST_CURVATURE),
         ("NO_GUARD", NO_GUARD),
+        ("LEAST_FIRST", LEAST_FIRST),
+        ("MOST_FIRST", MOST_FIRST),
+        ("CLOSE", CLOSE),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
     }

@@ -62,6 +62,10 @@ pub enum Kernel {
     FindBroken,
     /// Leaves what [`FindBroken`](Self::FindBroken) has found out of the correction.
     LeaveOutBroken,
+    /// Begins the line search of a correction that an application encodes.
+    BeginSearch,
+    /// Judges a trial of that line search and chooses the next length.
+    JudgeTrial,
     /// The root of the stiffness at the free vertices, from which the coarser levels are built.
     Stiffness(Metric),
     /// Closes the open secant pair, with partial sums of its products.
@@ -103,6 +107,8 @@ pub enum Interface {
     Transfer,
     /// The coarse levels: `shaders/levels/coarse.wgsl`.
     Coarse,
+    /// The control of an application's sweeps, and the state of a line search: `shaders/search/common.wgsl`.
+    Search,
     /// Secant pairs of a mesh: `shaders/secants/common.wgsl`.
     Secants,
     /// Inputs and results of [`Kernel::CheckArithmetic`]: `shaders/check_arithmetic.wgsl`.
@@ -110,7 +116,7 @@ pub enum Interface {
 }
 
 impl Interface {
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 14] = [
         Interface::Run,
         Interface::Exchange,
         Interface::Publish,
@@ -122,6 +128,7 @@ impl Interface {
         Interface::Fine,
         Interface::Transfer,
         Interface::Coarse,
+        Interface::Search,
         Interface::Secants,
         Interface::Arithmetic,
     ];
@@ -142,6 +149,7 @@ impl Interface {
             | Interface::Mask
             | Interface::Transfer
             | Interface::Coarse
+            | Interface::Search
             | Interface::Arithmetic => Positions::Whole,
         }
     }
@@ -238,6 +246,8 @@ impl Kernel {
             Kernel::MoveAlongCorrection,
             Kernel::FindBroken,
             Kernel::LeaveOutBroken,
+            Kernel::BeginSearch,
+            Kernel::JudgeTrial,
             Kernel::CloseSecant,
             Kernel::SumSecants,
             Kernel::BendGradient,
@@ -278,6 +288,8 @@ impl Kernel {
             Kernel::MoveAlongCorrection => "move_along_correction",
             Kernel::FindBroken => "find_broken",
             Kernel::LeaveOutBroken => "leave_out_broken",
+            Kernel::BeginSearch => "begin_search",
+            Kernel::JudgeTrial => "judge_trial",
             Kernel::Stiffness(_) => "find_stiffness",
             Kernel::CloseSecant => "close_secant",
             Kernel::SumSecants => "sum_secants",
@@ -302,6 +314,7 @@ impl Kernel {
             Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
                 Interface::Run
             }
+            Kernel::BeginSearch | Kernel::JudgeTrial => Interface::Search,
             Kernel::CloseSecant
             | Kernel::SumSecants
             | Kernel::BendGradient

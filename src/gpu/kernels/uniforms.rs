@@ -7,8 +7,8 @@ use crate::metric::Metric;
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction`, `publish`, `reopen` and
-/// `resume`.
+/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction`, `publish`, and those that look at a
+/// few numbers: `reopen`, `resume`, `regularize`, `begin_search` and `judge_trial`.
 pub(crate) const WORKGROUP: u32 = 64;
 /// Invocations of the `finish`, `find_share` and `sum_along_correction` kernels.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
@@ -26,6 +26,12 @@ pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
 pub(crate) const HELD: u32 = 1 << 31;
 /// The guard of steps that have none. Larger than any inverse mean ratio, and a number in single precision.
 pub(crate) const NO_GUARD: f64 = 1e38;
+
+/// Number of lengths tried along each correction that an application encodes.
+pub(crate) const SEARCH_TRIALS: u32 = 3;
+/// Vectors in front of the partial sums in those of the levels: totals, and the state of a line search on the device, as in
+/// shaders/search/places.wgsl.
+pub(crate) const SEARCH_STATE: u32 = 7;
 
 /// `Params` in shaders/params.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

@@ -13,7 +13,7 @@ use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, LevelOp, SLOTS, join, split, unpair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::dispatches::Dispatches;
-use crate::gpu::run::levels::Levels;
+use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
@@ -223,7 +223,8 @@ impl Engine for GpuEngine<'_> {
         // The old levels go first: both at once would take more memory than the mesh itself.
         (self.secants, self.levels) = (None, None);
         let Self { gpu, problem, mesh, dispatches, .. } = self;
-        self.levels = Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy)?);
+        self.levels =
+            Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost)?);
         self.hierarchy = Some(hierarchy);
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
-use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, WORKGROUP};
+use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, SEARCH_STATE, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
@@ -44,6 +44,14 @@ pub(crate) struct Levels {
     pub(crate) direction: wgpu::Buffer,
 }
 
+/// When the levels are fitted to the present stiffness of the mesh.
+pub(crate) enum Fitting {
+    /// When the host hands others over.
+    ByHost,
+    /// In each correction, by a factor at each free vertex.
+    EachTime,
+}
+
 struct Dispatch {
     pipeline: Pipeline,
     op: LevelOp,
@@ -70,7 +78,7 @@ enum Bound {
 /// The place of the four totals in `vectors`: the start, from where they are read back.
 const TOTALS: u32 = 0;
 /// The place of the partial sums in `vectors`. The vectors of the coarse levels follow.
-const SUMS: u32 = 4;
+const SUMS: u32 = SEARCH_STATE;
 
 /// The content of the kernels' arrays, collected while the dispatches are listed.
 struct Listing<'g> {
@@ -239,6 +247,7 @@ impl Levels {
         mesh: &MeshBuffers,
         dispatches: &Dispatches,
         hierarchy: &Hierarchy,
+        fitting: Fitting,
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
@@ -262,7 +271,11 @@ impl Levels {
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
-        let fine = LevelOp { rows: free, free, entries, diagonal, ..LevelOp::default() };
+        let step = match fitting {
+            Fitting::ByHost => NONE,
+            Fitting::EachTime => listing.vector(problem.free_count()),
+        };
+        let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::default() };
         // Lists a step on the free vertices, a dispatch for each part of the one-rings.
         let by_rings =
             |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
@@ -293,9 +306,9 @@ impl Levels {
         let mut left_out = Vec::new();
         if guard < NO_GUARD as f32 {
             // Between cycles nothing in these vectors is needed any more.
-            listing.vectors = listing.vectors.max(free);
-            let find = LevelOp { out: 0, shape_guard: guard, ..fine };
-            let leave = LevelOp { x: 0, ..fine };
+            listing.vectors = listing.vectors.max(SUMS + free);
+            let find = LevelOp { out: SUMS, shape_guard: guard, ..fine };
+            let leave = LevelOp { x: SUMS, ..fine };
             let bound = Bound::Fine { part: 0 };
             by_rings(&mut listing, &mut left_out, Kernel::FindBroken, find)?;
             let kernel = Kernel::LeaveOutBroken;

@@ -5,7 +5,8 @@ mod engine;
 mod levels;
 mod pages;
 mod secants;
-mod stiffness;
+pub(crate) mod stiffness;
 
 pub(crate) use dispatches::Dispatches;
 pub(crate) use engine::GpuEngine;
+pub(crate) use levels::{Fitting, Levels};

@@ -9,7 +9,7 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
 use crate::run::history::History;
-use crate::run::multilevel::{Hierarchy, Search};
+use crate::run::multilevel::{Hierarchy, LEAST_FIRST, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::step::{Sharpness, Step};
@@ -26,7 +26,7 @@ const OMEGA_BEFORE: f64 = 1.5;
 /// one before.
 const OMEGA_ALTERNATING: f64 = 1.0;
 /// Over-relaxation of sweeps that are followed by corrections. Chosen by the same measurements as [`OMEGA_BEFORE`].
-const OMEGA_BETWEEN: f64 = 1.3;
+pub(crate) const OMEGA_BETWEEN: f64 = 1.3;
 /// Number of corrections tried after which the levels are fitted to the sizes of elements again, if these have changed.
 const RESIZE_AFTER: u32 = 2;
 /// Sizes of elements are taken to have changed if the excess of f has dropped by more than this share since corrections
@@ -36,8 +36,7 @@ const RESIZE_IF: f64 = 0.15;
 /// are a tenth of what they are otherwise, as its p-norm is stiffer across its kinks than the levels know.
 const SHORT: f64 = 0.05;
 const SHORT_FOR_EDGE: f64 = 0.005;
-/// The first length tried of a correction is at least this, as a single nearly flat triangle may have shortened the last one.
-const LEAST_FIRST: f64 = 0.6;
+/// As [`LEAST_FIRST`], for EDGE.
 const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
 /// After this many refused corrections in a row, the run goes back to sweeps alone.
 const MOST_REFUSED: u32 = 2;

@@ -18,5 +18,5 @@ mod sparse;
 
 pub(crate) use aggregate::NONE;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
-pub(crate) use search::Search;
+pub(crate) use search::{CLOSE, LEAST_FIRST, MOST_FIRST, Search};
 pub(crate) use sparse::Sparse;

@@ -6,7 +6,12 @@ const TRIALS: u32 = 8;
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// The first length tried is good enough if the minimum of the fitted parabola differs from it by no more than this
 /// share.
-const CLOSE: f64 = 0.2;
+pub(crate) const CLOSE: f64 = 0.2;
+
+/// The least length that is tried first along a correction by a smooth metric, as a single nearly flat triangle may have shortened
+/// the last one; and the most.
+pub(crate) const LEAST_FIRST: f64 = 0.6;
+pub(crate) const MOST_FIRST: f64 = 3.0;
 
 /// A line search that proposes lengths. The caller evaluates the objective at them.
 pub(crate) struct Search {
@@ -19,7 +24,7 @@ pub(crate) struct Search {
 impl Search {
     /// The first length to try, given the last one taken and the least that is tried first.
     pub(crate) fn first_length(last_taken: f64, least: f64) -> f64 {
-        last_taken.clamp(least, 3.0)
+        last_taken.clamp(least, MOST_FIRST)
     }
 
     /// Starts a search from the objective `here` with the derivative `slope`, which is negative.

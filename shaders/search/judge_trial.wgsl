@@ -1,0 +1,59 @@
+// Judges a trial and chooses the next length, by the rules of Search in src/run/multilevel/search.rs. After the last trial, or once a
+// length is good enough, the best one stays for the movement: 0 if none lowers the objective without breaking a triangle.
+
+// Ends the search. The next one starts from the length that was taken; from a longer one where that was short, as what was in the way
+// may be gone, and from a shorter one if none was taken.
+fn settle_on(length: f32, last_tried: f32) {
+    var first = length;
+    if length == 0.0 {
+        first = max(0.5 * last_tried, LEAST_FIRST / 64.0);
+    } else if length < LEAST_FIRST {
+        first = min(4.0 * length, LEAST_FIRST);
+    }
+    vectors[LENGTHS] = vec2(length, min(first, MOST_FIRST));
+    vectors[PROGRESS] = vec2(1.0, 0.0);
+}
+
+@compute @workgroup_size(1)
+fn judge_trial() {
+    if rests() {
+        return;
+    }
+    let trial = vectors[PROGRESS].y + 1.0;
+    let lengths = vectors[LENGTHS];
+    let length = lengths.x;
+    let here = vectors[TOTALS];
+    let slope = vectors[TOTALS + 3u].x + vectors[TOTALS + 3u].y;
+    // Less than this share of the objective is lost in rounding.
+    let scale = max(here.x + params.ideal_sum, LEAST_SCALE * f32(params.triangles));
+    if !is_positive(-slope - NOISE * scale) {
+        vectors[LENGTHS] = vec2(0.0, lengths.y);
+        vectors[PROGRESS] = vec2(1.0, trial);
+        return;
+    }
+    let change = pair_difference(vectors[TOTALS + 1u], here);
+    let sound = vectors[TOTALS + 2u].x == 0.0 && is_finite(change);
+    var best = vectors[BEST];
+    var next = 0.0;
+    if sound {
+        let enough = change <= SUFFICIENT_DECREASE * length * slope;
+        if enough && change < best.y {
+            best = vec2(length, change);
+            vectors[BEST] = best;
+        }
+        let bend = change - slope * length;
+        let least = select(3.0 * length, -0.5 * slope * length * length / bend, bend > 0.0);
+        let close = abs(least - length) <= CLOSE * length;
+        if !(enough && (trial > 1.0 || close)) {
+            next = clamp(least, 0.1 * length, 3.0 * length);
+        }
+    } else if best.x == 0.0 {
+        next = 0.5 * length;
+    }
+    if next == 0.0 || trial >= f32(SEARCH_TRIALS) {
+        settle_on(best.x, length);
+        return;
+    }
+    vectors[LENGTHS] = vec2(next, lengths.y);
+    vectors[PROGRESS] = vec2(0.0, trial);
+}

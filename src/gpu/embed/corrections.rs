@@ -1,0 +1,67 @@
+//! Corrections from coarser levels, for sweeps that an application encodes: the device searches along them by itself.
+
+use crate::error::GpuError;
+use crate::gpu::device::readback::Waiting;
+use crate::gpu::embed::DeviceMesh;
+use crate::gpu::encode::Passes;
+use crate::gpu::kernels::pipelines::Pipeline;
+use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::uniforms::{LevelOp, SEARCH_TRIALS};
+use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
+use crate::gpu::scope::scoped;
+use crate::run::multilevel::Hierarchy;
+
+/// Coarser levels of a mesh on the device, and a line search along what they propose that reads nothing back: a fixed number of
+/// lengths is tried, and those after the last that is needed do nothing.
+pub(crate) struct EncodedCorrections {
+    levels: Levels,
+    begin: Pipeline,
+    judge: Pipeline,
+    bind_group: wgpu::BindGroup,
+}
+
+impl EncodedCorrections {
+    /// Builds the levels for the positions that the device has now, once all is done that was submitted before.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the levels are too large for the device, or what it refuses.
+    pub(crate) async fn new(
+        mesh: &DeviceMesh,
+        dispatches: &Dispatches,
+        waiting: Waiting,
+    ) -> Result<Self, GpuError> {
+        let DeviceMesh { gpu, problem, buffers, .. } = mesh;
+        let op = LevelOp { free: problem.free_count() as u32, ..LevelOp::default() };
+        let roots = stiffness::roots(gpu, buffers, dispatches, op, waiting).await?;
+        let hierarchy = Hierarchy::new(problem, roots);
+        let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
+        let whole = Positions::Whole;
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
+        let (begin, judge) = (pipeline(Kernel::BeginSearch)?, pipeline(Kernel::JudgeTrial)?);
+        let resources = [&dispatches.params, &dispatches.control, &levels.vectors];
+        let resources = resources.map(wgpu::Buffer::as_entire_binding);
+        let bind_group = scoped(&gpu.device, || {
+            gpu.pipelines.bind(&gpu.device, Interface::Search, whole, &resources)
+        })?;
+        Ok(Self { levels, begin, judge, bind_group })
+    }
+
+    /// Encodes one correction. It does nothing if the sweeps have ended by themselves.
+    pub(crate) fn encode(&self, passes: &mut Passes<'_>) {
+        self.run(passes, &self.begin);
+        self.levels.encode_gradient(passes);
+        self.levels.encode_cycle(passes);
+        for _ in 0..SEARCH_TRIALS {
+            self.levels.encode_objective(passes);
+            self.run(passes, &self.judge);
+        }
+        self.levels.encode_movement(passes);
+    }
+
+    fn run(&self, passes: &mut Passes<'_>, pipeline: &Pipeline) {
+        passes.run(pipeline, None, |pass| {
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+    }
+}

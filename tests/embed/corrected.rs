@@ -1,0 +1,315 @@
+//! Encoded sweeps that are corrected from coarser levels, with a line search on the device.
+
+use std::ops::ControlFlow;
+
+use gpu_smooth::{
+    Backend, DeviceMesh, Mesh, Method, Metric, ObjectiveValues, Options, SmoothError, Smoother,
+    Sweeps, Targets, wgpu,
+};
+use wgpu::BufferUsages as Usage;
+
+use crate::app::{App, Vertices, bad_plate, interior, plate};
+use crate::support::{distort_smooth, lattice, orientations};
+
+fn corrected(metric: Metric) -> Options {
+    Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
+}
+
+/// Sweeps that step as corrected ones do, without corrections.
+fn alone() -> Options {
+    let method = Method::Sweeps;
+    Options { method, omega: Some(1.3), plain_sweeps: 0, ..Options::default() }
+}
+
+/// A mesh of smooth errors, which sweeps alone take long for.
+fn distorted() -> Mesh {
+    distort_smooth(&plate(1200), 0.5)
+}
+
+/// f after each of so many sweeps of one frame each, and the mesh in the end.
+fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let app = App::new();
+    let device_mesh = app.mesh(mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, options).unwrap();
+    let mut f = Vec::new();
+    for _ in 0..count {
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 1));
+        let values = app.objective(&sweeps);
+        assert_eq!(values.inverted, 0);
+        f.push(values.of(options.scheme.base()).into());
+    }
+    (f, app.points(&device_mesh))
+}
+
+/// The least f.
+fn limit(mesh: &Mesh, metric: Metric) -> f64 {
+    let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
+    let run = Smoother::new(mesh).unwrap();
+    let run = run.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+    run.history.last().and_then(|f| f.of(metric)).unwrap()
+}
+
+#[test]
+fn corrected_sweeps_are_near_the_limit_after_a_dozen_and_never_raise_f() {
+    let mesh = distorted();
+    for metric in [Metric::Imr, Metric::Rms, Metric::ShapeSize] {
+        let (f, points) = frames(&mesh, &corrected(metric), 15);
+        let limit = limit(&mesh, metric);
+        let left = f[14] / limit - 1.0;
+        assert!(left < 1e-5, "{metric}: {left} left of {limit}: {f:?}");
+        // By as much as single precision tells.
+        assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{metric}: {f:?}");
+        let end = Mesh { points, ..mesh.clone() };
+        assert!(orientations(&end).iter().all(|&sign| sign == 1));
+        let plain = Options { method: Method::Sweeps, ..corrected(metric) };
+        let (f, _) = frames(&mesh, &plain, 15);
+        assert!(f[14] / limit - 1.0 > 10.0 * left.max(1e-7), "{metric}: {f:?}");
+    }
+}
+
+#[test]
+fn a_badly_perturbed_mesh_is_corrected_too() {
+    let mesh = bad_plate(1200);
+    let (f, _) = frames(&mesh, &corrected(Metric::Imr), 40);
+    assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{f:?}");
+    assert!(f[39] / limit(&mesh, Metric::Imr) - 1.0 < 1e-5, "{f:?}");
+}
+
+#[test]
+fn a_tangled_mesh_is_swept_as_without_corrections() {
+    let mesh = distorted();
+    let mut ends = Vec::new();
+    for options in [corrected(Metric::Imr), alone()] {
+        let app = App::new();
+        let device_mesh = app.mesh(&mesh);
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let vertices = Vertices::usual(&app, &mesh);
+        let bound = vertices.bind(&device_mesh);
+        let v = interior(&mesh)[200];
+        let [x, y] = mesh.points[v as usize];
+        vertices.put(&app, v, [x + 0.6, y]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            sweeps.encode_sweeps(encoder, 5);
+        });
+        assert!(app.objective(&sweeps).inverted > 0);
+        ends.push(app.points(&device_mesh));
+        // Home again, it is corrected.
+        vertices.put(&app, v, [x, y]);
+        app.submit(|encoder| {
+            bound.encode_import(encoder);
+            sweeps.encode_sweeps(encoder, 5);
+        });
+        assert_eq!(app.objective(&sweeps).inverted, 0);
+        ends.push(app.points(&device_mesh));
+    }
+    assert!(ends[0] == ends[2]);
+    assert!(ends[1] != ends[3]);
+}
+
+#[test]
+fn where_nothing_is_gained_every_bit_stays() {
+    // Equilateral, so that neither a sweep nor a correction has anything to gain.
+    let mesh = lattice(30, 30);
+    let (f, points) = frames(&mesh, &corrected(Metric::Imr), 3);
+    assert!((f[2] - 1.0).abs() < 1e-6);
+    let (_, before) = frames(&mesh, &alone(), 3);
+    assert!(points == before);
+}
+
+#[test]
+fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them() {
+    let mesh = distorted();
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let before = app.points(&device_mesh);
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let inside = interior(&mesh);
+    let pinned: Vec<u32> = inside.iter().copied().step_by(50).collect();
+    device_mesh.pin(&pinned).unwrap();
+    let mut words = vec![0u32; mesh.points.len()];
+    let masked: Vec<u32> = inside.iter().copied().skip(7).step_by(50).collect();
+    masked.iter().for_each(|&v| words[v as usize] = 1);
+    let buffer = app.buffer(4 * words.len() as u64, Usage::STORAGE | Usage::COPY_DST);
+    app.gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+    let mask = device_mesh.bind_mask(&buffer, 0).unwrap();
+    let first = app.objective(&sweeps).of(Metric::Imr);
+    app.submit(|encoder| {
+        mask.encode_mask(encoder);
+        sweeps.encode_sweeps(encoder, 1);
+    });
+    let after_one = app.objective(&sweeps).of(Metric::Imr);
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 14));
+    let held = app.points(&device_mesh);
+    for v in pinned.iter().chain(&masked).map(|&v| v as usize) {
+        assert_eq!(held[v], before[v], "vertex {v}");
+    }
+    let values = app.objective(&sweeps);
+    assert!(values.of(Metric::Imr) < after_one && after_one < first && values.inverted == 0);
+    // As low as sweeps alone get in the end, around the same vertices.
+    let mut alone = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    app.submit(|encoder| alone.encode_sweeps(encoder, 200));
+    let end = app.objective(&sweeps).of(Metric::Imr);
+    assert!(values.of(Metric::Imr) / end - 1.0 < 1e-4, "{values:?} {end}");
+    assert!(app.points(&device_mesh) != held);
+}
+
+#[test]
+fn judged_sweeps_with_corrections_end_sooner_and_then_leave_every_bit() {
+    let mesh = distorted();
+    let app = App::new();
+    let mut counts = Vec::new();
+    for method in [Method::Multilevel, Method::Sweeps] {
+        let device_mesh = app.mesh(&mesh);
+        let options = Options { method, tolerance: 1e-5, ..Options::default() };
+        let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 120));
+        let values = app.objective(&sweeps);
+        assert!(values.has_converged(), "{values:?}");
+        let settled = app.points(&device_mesh);
+        app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
+        assert_eq!(app.objective(&sweeps), values);
+        assert!(app.points(&device_mesh) == settled);
+        counts.push((values.sweeps, f64::from(values.of(Metric::Imr))));
+    }
+    assert!(counts[0].0 < counts[1].0, "{counts:?}");
+    let limit = limit(&mesh, Metric::Imr);
+    assert!(counts.iter().all(|(_, f)| f / limit - 1.0 < 1e-5), "{counts:?} {limit}");
+}
+
+#[test]
+fn meshes_in_one_encoder_and_in_a_pass_are_corrected_as_alone() {
+    let meshes = [distorted(), bad_plate(400)];
+    let options = corrected(Metric::Imr);
+    let expected = meshes.each_ref().map(|mesh| frames(mesh, &options, 4).1);
+    for in_a_pass in [false, true] {
+        let app = App::new();
+        let device_meshes = meshes.each_ref().map(|mesh| app.mesh(mesh));
+        let mut sweeps = device_meshes.each_ref().map(|mesh| Sweeps::new(mesh, &options).unwrap());
+        app.submit(|encoder| {
+            if in_a_pass {
+                let mut pass = encoder.begin_compute_pass(&Default::default());
+                for _ in 0..4 {
+                    sweeps.iter_mut().for_each(|sweeps| sweeps.encode_sweeps(&mut pass, 1));
+                }
+            } else {
+                sweeps.iter_mut().for_each(|sweeps| sweeps.encode_sweeps(encoder, 4));
+            }
+        });
+        let found = device_meshes.each_ref().map(|mesh| app.points(mesh));
+        assert!(found == expected);
+    }
+}
+
+#[test]
+fn a_mesh_with_targets_is_corrected_as_they_show_it() {
+    let mesh = distorted();
+    let stretched = vec![[4.0, 0.0, 1.0]; mesh.points.len()];
+    let targets = Targets::tensors(&stretched).unwrap();
+    let app = App::new();
+    let f = [Method::Multilevel, Method::Sweeps].map(|method| {
+        let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
+        let options = Options { method, ..Options::default() };
+        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let counts = if method == Method::Multilevel { [25, 275] } else { [25, 400] };
+        counts.map(|count| {
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, count));
+            f64::from(app.objective(&sweeps).of(Metric::Imr))
+        })
+    });
+    let end = f[0][1].min(f[1][1]);
+    assert!(f[0][0] / end - 1.0 < 0.1 * (f[1][0] / end - 1.0), "{f:?}");
+}
+
+#[test]
+fn meshes_without_coarser_levels_are_swept() {
+    let square = Mesh {
+        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.7, 0.4]],
+        triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+        fixed: vec![],
+    };
+    let (_, points) = frames(&square, &corrected(Metric::Imr), 20);
+    assert!(points[4].iter().all(|x| (x - 0.5).abs() < 1e-4), "{points:?}");
+    let (f, _) = frames(&bad_plate(102), &corrected(Metric::Imr), 10);
+    assert!(f[9] < f[0], "{f:?}");
+}
+
+#[test]
+fn what_cannot_be_corrected_is_refused_with_the_reason() {
+    let app = App::new();
+    let device_mesh = app.mesh(&plate(102));
+    let multilevel = |scheme: &str| Options {
+        scheme: scheme.parse().unwrap(),
+        method: Method::Multilevel,
+        ..Options::default()
+    };
+    for (options, reason) in [
+        (multilevel("edge"), "sweeps by edge that are encoded have none"),
+        (multilevel("imr+rms"), "metrics alternate in encoded sweeps without corrections"),
+        (multilevel("area"), "this metric has no correction"),
+        (Options { omega: Some(1.5), ..multilevel("imr") }, "over-relaxation is its own"),
+    ] {
+        let error = Sweeps::new(&device_mesh, &options).err().unwrap();
+        assert!(matches!(error, SmoothError::Option { option: "method", .. }), "{error:?}");
+        assert!(error.to_string().contains(reason), "{error}");
+    }
+}
+
+#[test]
+fn made_without_blocking_they_are_the_same() {
+    let mesh = distorted();
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let options = corrected(Metric::Imr);
+    let mut made = std::pin::pin!(Sweeps::new_async(&device_mesh, &options));
+    let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+    let mut sweeps = loop {
+        match made.as_mut().poll(&mut context) {
+            std::task::Poll::Ready(sweeps) => break sweeps.unwrap(),
+            std::task::Poll::Pending => {
+                app.device().poll(wgpu::PollType::Poll).unwrap();
+            }
+        }
+    };
+    app.submit(|encoder| sweeps.encode_sweeps(encoder, 4));
+    assert!(app.points(&device_mesh) == frames(&mesh, &options, 4).1);
+}
+
+#[test]
+fn frames_take_no_memory() {
+    let app = App::new();
+    let device_mesh = app.mesh(&plate(300));
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
+    let objective = sweeps.bind_objective(&buffer, 0).unwrap();
+    let mut made = Vec::new();
+    for _ in 0..40 {
+        app.submit(|encoder| {
+            sweeps.encode_sweeps(encoder, 2);
+            objective.encode_objective(encoder);
+        });
+        app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let report = app.device().generate_allocator_report().expect("a backend that reports");
+        made.push((report.allocations.len(), report.total_allocated_bytes));
+    }
+    assert!(made[10..].windows(2).all(|pair| pair[0] == pair[1]), "{made:?}");
+}
+
+#[test]
+fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
+    // As it is uploaded, elements at one end are a nineteenth as wide as at the other.
+    let mesh = distorted();
+    let graded = |&[x, y]: &[f64; 2]| [x * (0.1 + 0.3 * x), y];
+    let uploaded = Mesh { points: mesh.points.iter().map(graded).collect(), ..mesh.clone() };
+    let app = App::new();
+    let device_mesh = app.mesh(&uploaded);
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let vertices = Vertices::usual(&app, &mesh);
+    let bound = vertices.bind(&device_mesh);
+    app.submit(|encoder| {
+        bound.encode_import(encoder);
+        sweeps.encode_sweeps(encoder, 15);
+    });
+    let left = f64::from(app.objective(&sweeps).of(Metric::Imr)) / limit(&mesh, Metric::Imr) - 1.0;
+    assert!(left < 1e-5, "{left}");
+}
