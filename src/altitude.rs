@@ -33,6 +33,11 @@ fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
     triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
 }
 
+/// The least altitude of a triangle with the vertices where the problem has them, normalized.
+pub(crate) fn least_of(problem: &Problem) -> f64 {
+    least(problem.triangles(), |v| problem.positions()[v as usize])
+}
+
 /// Brings the vertices of triangles whose altitude is below `floor` back to where they were, half of the way as often as `halved` says and
 /// then all of it, until there is none but those that were so before. Returns the vertices that were brought back.
 fn bring_back(
@@ -104,7 +109,7 @@ pub(crate) async fn run<K: Keeper + ?Sized>(
     let (plan, base) = (options.plan_to(target), options.scheme.base());
     let mut holding = Holding::new(mesh, problem);
     let mut positions = problem.positions().to_vec();
-    let floor = least(problem.triangles(), |v| positions[v as usize]);
+    let floor = least_of(problem);
     let mut whole: Option<Ended> = None;
     let (mut round, mut is_clean) = (0, false);
     loop {

@@ -71,6 +71,11 @@ impl<'s> Limit<'s> {
         }
     }
 
+    /// How far each free vertex may be from where the run began, normalized.
+    pub(crate) fn bounds(&self) -> &[f64] {
+        &self.bounds
+    }
+
     /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
     pub(crate) async fn run<K: Keeper + ?Sized>(
         &mut self,

@@ -11,6 +11,7 @@ use crate::attempt::Attempt;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
+use crate::improving::Improving;
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::limit::Limit;
@@ -299,7 +300,11 @@ impl<'a> Smoother<'a> {
         let mut rounds = self.sliding.as_ref().map(Rounds::new);
         let mut places =
             self.field.as_ref().map(|field| Places::new(self.mesh, field, &self.problem));
-        let end = match (&mut rounds, &mut places, options.max_move) {
+        let mut limit = options.max_move.map(|most| {
+            let bound = (most, options.stored);
+            Limit::new(self.mesh, &self.topology, &self.problem, bound)
+        });
+        let mut end = match (&mut rounds, &mut places, &mut limit) {
             (_, Some(places), _) => {
                 keeping.about = None;
                 places.run(run, options, &mut keeping, observe).await?
@@ -309,10 +314,8 @@ impl<'a> Smoother<'a> {
                 keeping.about = None;
                 rounds.run(run, options, target, &mut keeping, observe).await?
             }
-            (_, _, Some(most)) => {
+            (_, _, Some(limit)) => {
                 keeping.about = None;
-                let bound = (most, options.stored);
-                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, bound);
                 limit.run(run, options, target, &mut keeping, observe).await?
             }
             _ if options.keep_altitude => {
@@ -331,6 +334,11 @@ impl<'a> Smoother<'a> {
             };
             (0..end.history.len()).fold(0, better)
         };
+        let swept = f(&end.history[best_sweep]);
+        let now = places.as_ref().map_or(&self.problem, |places| &places.problem);
+        let bounds = limit.as_ref().map(Limit::bounds);
+        let improving = Improving::after(end.stop, options, now, bounds, &mut end.positions);
+        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
         for (v, point) in rounds.iter().flat_map(|rounds| rounds.sliding.moved(&rounds.params)) {
             points[v as usize] = point;
@@ -345,7 +353,6 @@ impl<'a> Smoother<'a> {
         }
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
-        let swept = f(&end.history[best_sweep]);
         let judged = self.problem.normalized(&points, end.positions);
         let written = match &mut places {
             None => self.objective(base, &judged),
@@ -354,7 +361,9 @@ impl<'a> Smoother<'a> {
                 base.ideal_squared() + mean_excess(base, &places.problem, &judged)
             }
         };
-        let gains = initial - written > NOISE * initial + ROUNDING;
+        let now = places.as_ref().map_or(&self.problem, |places| &places.problem);
+        let gains = initial - written > NOISE * initial + ROUNDING
+            || improving.as_ref().is_some_and(|improving| improving.is_better(now, &judged));
         // Of a smaller gain, the errors of f on a device would be a share to speak of.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
@@ -366,6 +375,10 @@ impl<'a> Smoother<'a> {
         }
         let slid = rounds.map(|rounds| rounds.slid(self.mesh, &self.topology, gains, &points));
         let best = if gains { written } else { initial };
+        let improved = improving.map(|improving| {
+            let positions = if gains { &judged } else { self.problem.positions() };
+            improving.outcome(now, (positions, best), gains)
+        });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
             // 0 / 0: the initial objective was the desired one.
@@ -386,6 +399,7 @@ impl<'a> Smoother<'a> {
             goal,
             returned,
             slid,
+            improved,
             device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
@@ -410,6 +424,7 @@ impl<'a> Smoother<'a> {
             goal: None,
             returned: 0,
             slid: None,
+            improved: None,
             device_fault: None,
             smooth: start.elapsed(),
         }
