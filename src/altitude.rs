@@ -8,9 +8,9 @@ use glam::DVec2;
 use crate::attempt::{Attempt, Ended};
 use crate::error::SmoothError;
 use crate::holding::Holding;
+use crate::in_rounds::{self, objectives};
 use crate::layout::Problem;
 use crate::mesh::Mesh;
-use crate::rounds::{Rounds, objectives};
 use crate::run::{Keeper, Keeping, Observer, Options, Stop};
 use crate::topology::Topology;
 
@@ -95,7 +95,7 @@ pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothE
         let (value, remedy) = ("with a bound on moves".to_owned(), "set one of the two");
         return Err(SmoothError::Option { option, value, remedy });
     }
-    Rounds::check(option, options, is_continued)
+    in_rounds::check(option, options, is_continued)
 }
 
 /// Sweeps from the positions of the problem until a run ends in which no altitude is below the least there was.

@@ -99,6 +99,7 @@ mod file;
 pub mod gpu;
 mod holding;
 mod improving;
+mod in_rounds;
 mod interpolate;
 mod layout;
 mod limit;

@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use crate::attempt::{Attempt, Ended};
 use crate::error::{MeshError, SmoothError};
+use crate::in_rounds::{self, is_sound, objectives};
 use crate::layout::Problem;
 use crate::mesh::Mesh;
-use crate::rounds::{Rounds, is_sound, objectives};
 use crate::run::{Keeper, Keeping, NOISE, Objectives, Observer, Options, Plan, Stop, set_guards};
 use crate::targets::TargetField;
 
@@ -47,7 +47,7 @@ impl<'s> Places<'s> {
         if options.max_move.is_some() {
             return refuse("with a bound", "set one of the two, or targets of vertices");
         }
-        Rounds::check(option, options, is_continued)
+        in_rounds::check(option, options, is_continued)
     }
 
     /// Takes the targets of the places where the vertices are.

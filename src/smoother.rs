@@ -12,6 +12,7 @@ use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
 use crate::improving::Improving;
+use crate::in_rounds;
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::limit::Limit;
@@ -231,15 +232,10 @@ impl<'a> Smoother<'a> {
         let start = Instant::now();
         options.check_for(&self.problem)?;
         if self.sliding.is_some() {
-            Rounds::check("slide", options, from.is_some())?;
+            in_rounds::check("slide", options, from.is_some())?;
         }
-        if let Some(max_move) = options.max_move {
+        if options.max_move.is_some() {
             Limit::check(options, from.is_some())?;
-            if self.sliding.is_some() {
-                let value = max_move.to_string();
-                let remedy = "vertices that slide have no bound: set one of the two";
-                return Err(SmoothError::Option { option: "max move", value, remedy });
-            }
         }
         if self.field.is_some() {
             Places::check(options, from.is_some())?;
@@ -312,7 +308,8 @@ impl<'a> Smoother<'a> {
             (Some(rounds), ..) => {
                 // A checkpoint does not hold where vertices have slid.
                 keeping.about = None;
-                rounds.run(run, options, target, &mut keeping, observe).await?
+                let (goal, limit) = ((options, target), limit.as_mut());
+                rounds.run(run, goal, limit, &mut keeping, observe).await?
             }
             (_, _, Some(limit)) => {
                 keeping.about = None;

@@ -95,7 +95,6 @@ fn options_that_do_not_go_with_sliding_are_refused() {
         ("--slide --corner-angle 200", "from 0 to 180"),
         ("--slide --hausdorff 0", "above 0"),
         ("--hausdorff 1", "--slide"),
-        ("--slide --max-move 1", "--max-move does not go with --slide"),
         ("--max-move 0", "above 0"),
     ] {
         let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options}"));

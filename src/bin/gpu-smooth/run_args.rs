@@ -270,7 +270,6 @@ impl SmoothArgs {
         }
         if self.max_move.is_some() {
             let dropped = [
-                (self.sliding.slide, "--slide"),
                 (self.untangle, "--untangle"),
                 (self.checkpoint.is_some(), "--checkpoint"),
                 (self.continued.is_some(), "--continue"),
