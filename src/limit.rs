@@ -223,7 +223,7 @@ impl<'s> Limit<'s> {
         for v in (0..self.holding.held.len()).filter(|&v| self.holding.held[v]) {
             let here = positions[v];
             let fan = &self.fans[v];
-            let patch = Patch { problem: self.problem, positions, fan, step };
+            let patch = Patch { problem: self.problem, positions, fan, step, floor: 0.0 };
             let sum = patch.derivatives(here);
             let gradient = DVec2::from(sum.gradient);
             let [xx, xy, yy] = sum.hessian;

@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 
+use crate::altitude::Floor;
 use crate::attempt::{Attempt, Ended};
 use crate::error::SmoothError;
 use crate::in_rounds::{is_sound, objectives};
@@ -24,12 +25,38 @@ const SLIDES: u32 = 3;
 /// A run is over once as many estimates in a row say so, as the gains of accelerated rounds are irregular.
 const ESTIMATES: u32 = 2;
 
+/// How much rounding may take from an altitude, as a share.
+const ROUNDING: f64 = 1e-9;
+
+/// What holds in a run for all vertices.
+pub(crate) enum Bound<'b, 's> {
+    /// Nothing but what always does.
+    None,
+    /// How far each may move.
+    Moves(&'b mut Limit<'s>),
+    /// How low triangles may become.
+    Altitudes(&'b mut Floor<'s>),
+}
+
+impl Bound<'_, '_> {
+    /// Whether it holds where the vertices are.
+    fn holds_at(&self, positions: &[DVec2]) -> bool {
+        match self {
+            Self::None => true,
+            Self::Moves(limit) => limit.holds_at(positions),
+            Self::Altitudes(floor) => floor.holds_at(positions),
+        }
+    }
+}
+
 /// The vertices that slide, and where a run has brought them.
 pub(crate) struct Rounds<'s> {
     pub(crate) sliding: &'s Sliding,
     pub(crate) params: Params,
     /// How far each vertex may be from where it was given, in the unit of the mesh.
     reach: Params,
+    /// The least altitude that sliding may leave, normalized; 0 for any.
+    floor: f64,
     /// Number of rounds done.
     pub(crate) count: u32,
 }
@@ -37,7 +64,7 @@ pub(crate) struct Rounds<'s> {
 impl<'s> Rounds<'s> {
     pub(crate) fn new(sliding: &'s Sliding) -> Self {
         let reach = sliding.for_each_vertex(|_| f64::INFINITY);
-        Self { sliding, params: sliding.start(), reach, count: 0 }
+        Self { sliding, params: sliding.start(), reach, floor: 0.0, count: 0 }
     }
 
     /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
@@ -45,7 +72,7 @@ impl<'s> Rounds<'s> {
         &mut self,
         attempt: Attempt<'_>,
         (options, target): (&Options, Option<f64>),
-        mut limit: Option<&mut Limit<'_>>,
+        mut bound: Bound<'_, '_>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Ended, SmoothError> {
@@ -53,8 +80,10 @@ impl<'s> Rounds<'s> {
         let mut plan = options.plan_to(target);
         set_guards(&mut plan, options.guard, problem, problem.positions());
         let rule = StopRule { max_sweeps: u32::MAX, ..plan.stop };
-        if let Some(limit) = &limit {
-            self.reach = limit.reach(self.sliding);
+        match &bound {
+            Bound::None => {}
+            Bound::Moves(limit) => self.reach = limit.reach(self.sliding),
+            Bound::Altitudes(floor) => self.floor = floor.least * (1.0 + ROUNDING),
         }
         let mut positions = problem.positions().to_vec();
         let mut memory = Acceleration::default();
@@ -65,12 +94,17 @@ impl<'s> Rounds<'s> {
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
             let Attempt { device, phase, .. } = attempt;
             let attempt = Attempt { problem, device, phase, done };
-            let (next, is_settled) = match &mut limit {
-                Some(limit) => {
-                    let goal = (&part, &plan, target);
+            let goal = (&part, &plan, target);
+            let (next, is_settled) = match &mut bound {
+                Bound::Moves(limit) => {
                     limit.round(attempt, goal, &mut positions, keeping, observe).await?
                 }
-                None => {
+                Bound::Altitudes(floor) => {
+                    let round = floor.round(attempt, goal, &mut positions, keeping, observe);
+                    let (next, new) = round.await?;
+                    (next, new == 0)
+                }
+                Bound::None => {
                     let from = (&positions[..], None);
                     let mut next = attempt.sweep(&part, target, from, keeping, observe).await?;
                     positions = std::mem::take(&mut next.positions);
@@ -84,13 +118,13 @@ impl<'s> Rounds<'s> {
             let is_over = match ended.stop {
                 Stop::Cancelled | Stop::NotFinite => true,
                 // Within bounds that is known only at the end of the round.
-                Stop::Reached => limit.is_none(),
+                Stop::Reached => matches!(bound, Bound::None),
                 _ => false,
             };
             let mut stop = Some(ended.stop);
             if !is_over && left > 0 {
-                let limit = limit.as_deref_mut();
-                let objectives = self.slide(problem, &plan, &mut positions, &mut memory, limit);
+                let objectives =
+                    self.slide(problem, &plan, &mut positions, &mut memory, &mut bound);
                 // The slide is a part of the round's last sweep.
                 if let Some(last) = ended.history.last_mut() {
                     *last = objectives;
@@ -147,13 +181,19 @@ impl<'s> Rounds<'s> {
         plan: &Plan,
         positions: &mut Vec<DVec2>,
         memory: &mut Acceleration,
-        limit: Option<&mut Limit<'_>>,
+        bound: &mut Bound<'_, '_>,
     ) -> Objectives {
         self.count += 1;
         let (step, base) = (plan.base_step(1.0), plan.scheme.base());
         let began = self.params.clone();
         for _ in 0..SLIDES {
-            self.sliding.sweep(problem, &mut self.params, &self.reach, positions, &step);
+            self.sliding.sweep(
+                problem,
+                &mut self.params,
+                &self.reach,
+                positions,
+                (&step, self.floor),
+            );
         }
         let here = objectives(problem, plan, positions);
         let change = self.sliding.change(&began, &self.params);
@@ -162,13 +202,13 @@ impl<'s> Rounds<'s> {
         };
         let safe = (&self.params, &self.reach);
         if self.sliding.place(problem, &mut params, safe, &mut there)
-            && limit.as_ref().is_none_or(|limit| limit.holds_at(&there))
+            && bound.holds_at(&there)
             && is_sound(problem, positions, &there, step.shape_guard)
         {
             let lower = objectives(problem, plan, &there);
             if lower.of(base) < here.of(base) {
                 (self.params, *positions) = (params, there);
-                if let Some(limit) = limit {
+                if let Bound::Moves(limit) = bound {
                     limit.find_held(positions);
                 }
                 return lower;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
-use crate::altitude;
+use crate::altitude::{self, Floor};
 use crate::attempt::Attempt;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
@@ -23,7 +23,7 @@ use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::places::Places;
 use crate::quality::Quality;
 use crate::resume;
-use crate::rounds::Rounds;
+use crate::rounds::{Bound, Rounds};
 use crate::run::{
     Checkpoint, Desired, Goal, JITTER, Keeper, Keeping, NOISE, NoKeeper, Objectives, Observer,
     Options, Phase, ROUNDING, Sharpness, Stop,
@@ -247,9 +247,9 @@ impl<'a> Smoother<'a> {
         }
         if options.keep_altitude {
             altitude::check(options, from.is_some())?;
-            if self.sliding.is_some() || self.field.is_some() {
+            if self.field.is_some() {
                 let (option, value) = ("keep altitude", "on".to_owned());
-                let remedy = "it goes neither with sliding vertices nor with targets of places";
+                let remedy = "it does not go with targets of places";
                 return Err(SmoothError::Option { option, value, remedy });
             }
         }
@@ -308,8 +308,13 @@ impl<'a> Smoother<'a> {
             (Some(rounds), ..) => {
                 // A checkpoint does not hold where vertices have slid.
                 keeping.about = None;
-                let (goal, limit) = ((options, target), limit.as_mut());
-                rounds.run(run, goal, limit, &mut keeping, observe).await?
+                let mut floor = options.keep_altitude.then(|| Floor::new(self.mesh, &self.problem));
+                let bound = match (&mut limit, &mut floor) {
+                    (Some(limit), _) => Bound::Moves(limit),
+                    (None, Some(floor)) => Bound::Altitudes(floor),
+                    (None, None) => Bound::None,
+                };
+                rounds.run(run, (options, target), bound, &mut keeping, observe).await?
             }
             (_, _, Some(limit)) => {
                 keeping.about = None;

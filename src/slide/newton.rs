@@ -47,20 +47,20 @@ impl Reach {
 /// How much rounding may add to the distance from where a vertex was given, as a share of it.
 const ROUNDING: f64 = 1e-9;
 
-/// One Newton step along the curve, with a line search as in the sweeps over free vertices. Returns the new parameter and position of
+/// One Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls below `floor`. Returns the new parameter and position of
 /// the vertex, if it moves.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
     fan: &Fan,
     (curve, window, reach): (&Curve, Window, Reach),
-    step: &Step,
+    (step, floor): (&Step, f64),
 ) -> Option<(f64, DVec2)> {
     let Window { low, at, high } = window;
     let (center, scale) = problem.normalization();
     let Place { first, second, .. } = curve.at(at);
     let (first, second) = (first * scale, second * scale);
-    let patch = Patch { problem, positions, fan, step };
+    let patch = Patch { problem, positions, fan, step, floor };
     let here = positions[fan.own() as usize];
     let sum = patch.derivatives(here);
     let gradient = DVec2::from(sum.gradient);

@@ -181,14 +181,14 @@ impl Sliding {
     }
 
     /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step along its curve, no
-    /// farther from where it was given than `reach` says, in the unit of the mesh.
+    /// farther from where it was given than `reach` says, in the unit of the mesh, and such that no altitude falls below `floor`.
     pub(crate) fn sweep(
         &self,
         problem: &Problem,
         params: &mut Params,
         reach: &Params,
         positions: &mut [DVec2],
-        step: &Step,
+        (step, floor): (&Step, f64),
     ) {
         for ((track, params), reach) in self.tracks.iter().zip(params).zip(reach) {
             let count = params.len();
@@ -196,7 +196,7 @@ impl Sliding {
                 let Some(fan) = &track.fans[k] else { continue };
                 let window = track.window(params, k);
                 let place = (&track.curve, window, track.reach(reach, k));
-                let moved = newton::visit(problem, positions, fan, place, step);
+                let moved = newton::visit(problem, positions, fan, place, (step, floor));
                 if let Some((param, position)) = moved {
                     params[k] = param;
                     positions[fan.own() as usize] = position;

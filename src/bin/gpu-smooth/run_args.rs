@@ -259,7 +259,6 @@ impl SmoothArgs {
         }
         if self.keep_altitude {
             let dropped = [
-                (self.sliding.slide, "--slide"),
                 (self.max_move.is_some(), "--max-move"),
                 (self.checkpoint.is_some(), "--checkpoint"),
                 (self.continued.is_some(), "--continue"),
