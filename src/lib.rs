@@ -112,6 +112,7 @@ mod targets;
 mod topology;
 mod untangle;
 mod whole;
+mod worst;
 
 /// Exact checks for inverted and flat triangles.
 pub mod validity {
@@ -151,11 +152,11 @@ pub use measure::{
 };
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
-pub use outcome::{DeviceFault, GoalOutcome, Outcome, Slid};
+pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
 pub use quality::Quality;
 pub use run::{
     Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,
-    Phase, Progress, Sharpness, Stop,
+    Phase, Progress, Sharpness, Stop, WorstBy,
 };
 pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};

@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use crate::error::GpuError;
-use crate::run::{Objectives, Stop};
+use crate::run::{Objectives, Stop, WorstBy};
 
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
-    /// the run if f of that state is not lower by more than rounding (1e-9 of f). No triangle is inverted or flat, by
+    /// the run if f of that state is not lower by more than rounding (1e-9 of f), nor its worst triangle better where those were
+    /// improved. No triangle is inverted or flat, by
     /// exact predicates on these values.
     pub points: Vec<[f64; 2]>,
     /// Why the run ended.
@@ -44,10 +45,28 @@ pub struct Outcome {
     pub returned: usize,
     /// What slid, if vertices might; see [`Smoother::set_slide`](crate::Smoother::set_slide).
     pub slid: Option<Slid>,
+    /// What improving the worst triangles did, if it was asked for; see [`Options::improve_worst`](crate::Options::improve_worst).
+    pub improved: Option<Improved>,
     /// The fault of the device after which the run went on on the CPU, if there was one.
     pub device_fault: Option<DeviceFault>,
     /// Time spent in the run, the search for a desired objective included.
     pub smooth: Duration,
+}
+
+/// What improving the worst triangles did after the last sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Improved {
+    /// The measure.
+    pub by: WorstBy,
+    /// Number of vertices that it moved.
+    pub vertices: usize,
+    /// The worst triangle with a free vertex after the last sweep, and as returned: an inverse mean ratio, an angle in degrees, or an
+    /// altitude in the unit of the mesh.
+    pub worst: [f64; 2],
+    /// Number of triangles that are worse than that and have no free vertex, so that nothing can be done for them.
+    pub stuck: usize,
+    /// The objective by the base metric after the last sweep, and as returned.
+    pub f: [f64; 2],
 }
 
 /// What slid in a run.

@@ -24,11 +24,8 @@ use crate::run::{
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
-use crate::whole::Attempt;
-use crate::whole::Limit;
-use crate::whole::Places;
-use crate::whole::Rounds;
-use crate::whole::altitude;
+use crate::whole::altitude::{self, Floor};
+use crate::whole::{Attempt, Bound, Improving, Limit, Places, Rounds, in_rounds};
 
 /// The processor that does the sweeps.
 pub enum Backend {
@@ -230,15 +227,10 @@ impl<'a> Smoother<'a> {
         let start = Instant::now();
         options.check_for(&self.problem)?;
         if self.sliding.is_some() {
-            Rounds::check("slide", options, from.is_some())?;
+            in_rounds::check("slide", options, from.is_some())?;
         }
-        if let Some(max_move) = options.max_move {
+        if options.max_move.is_some() {
             Limit::check(options, from.is_some())?;
-            if self.sliding.is_some() {
-                let value = max_move.to_string();
-                let remedy = "vertices that slide have no bound: set one of the two";
-                return Err(SmoothError::Option { option: "max move", value, remedy });
-            }
         }
         if self.field.is_some() {
             Places::check(options, from.is_some())?;
@@ -250,9 +242,9 @@ impl<'a> Smoother<'a> {
         }
         if options.keep_altitude {
             altitude::check(options, from.is_some())?;
-            if self.sliding.is_some() || self.field.is_some() {
+            if self.field.is_some() {
                 let (option, value) = ("keep altitude", "on".to_owned());
-                let remedy = "it goes neither with sliding vertices nor with targets of places";
+                let remedy = "it does not go with targets of places";
                 return Err(SmoothError::Option { option, value, remedy });
             }
         }
@@ -299,7 +291,11 @@ impl<'a> Smoother<'a> {
         let mut rounds = self.sliding.as_ref().map(Rounds::new);
         let mut places =
             self.field.as_ref().map(|field| Places::new(self.mesh, field, &self.problem));
-        let end = match (&mut rounds, &mut places, options.max_move) {
+        let mut limit = options.max_move.map(|most| {
+            let bound = (most, options.stored);
+            Limit::new(self.mesh, &self.topology, &self.problem, bound)
+        });
+        let mut end = match (&mut rounds, &mut places, &mut limit) {
             (_, Some(places), _) => {
                 keeping.about = None;
                 places.run(run, options, &mut keeping, observe).await?
@@ -307,12 +303,16 @@ impl<'a> Smoother<'a> {
             (Some(rounds), ..) => {
                 // A checkpoint does not hold where vertices have slid.
                 keeping.about = None;
-                rounds.run(run, options, target, &mut keeping, observe).await?
+                let mut floor = options.keep_altitude.then(|| Floor::new(self.mesh, &self.problem));
+                let bound = match (&mut limit, &mut floor) {
+                    (Some(limit), _) => Bound::Moves(limit),
+                    (None, Some(floor)) => Bound::Altitudes(floor),
+                    (None, None) => Bound::None,
+                };
+                rounds.run(run, (options, target), bound, &mut keeping, observe).await?
             }
-            (_, _, Some(most)) => {
+            (_, _, Some(limit)) => {
                 keeping.about = None;
-                let bound = (most, options.stored);
-                let mut limit = Limit::new(self.mesh, &self.topology, &self.problem, bound);
                 limit.run(run, options, target, &mut keeping, observe).await?
             }
             _ if options.keep_altitude => {
@@ -331,6 +331,11 @@ impl<'a> Smoother<'a> {
             };
             (0..end.history.len()).fold(0, better)
         };
+        let swept = f(&end.history[best_sweep]);
+        let now = places.as_ref().map_or(&self.problem, |places| &places.problem);
+        let bounds = limit.as_ref().map(Limit::bounds);
+        let improving = Improving::after(end.stop, options, now, bounds, &mut end.positions);
+        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         let mut points = self.problem.denormalize(self.mesh, &end.positions);
         for (v, point) in rounds.iter().flat_map(|rounds| rounds.sliding.moved(&rounds.params)) {
             points[v as usize] = point;
@@ -345,7 +350,6 @@ impl<'a> Smoother<'a> {
         }
         // The returned values themselves are judged: rounding, and vertices that were set back, may have cost more
         // than the sweeps gained, and a device moves the vertices of an optimal mesh by its own rounding.
-        let swept = f(&end.history[best_sweep]);
         let judged = self.problem.normalized(&points, end.positions);
         let written = match &mut places {
             None => self.objective(base, &judged),
@@ -354,7 +358,9 @@ impl<'a> Smoother<'a> {
                 base.ideal_squared() + mean_excess(base, &places.problem, &judged)
             }
         };
-        let gains = initial - written > NOISE * initial + ROUNDING;
+        let now = places.as_ref().map_or(&self.problem, |places| &places.problem);
+        let gains = initial - written > NOISE * initial + ROUNDING
+            || improving.as_ref().is_some_and(|improving| improving.is_better(now, &judged));
         // Of a smaller gain, the errors of f on a device would be a share to speak of.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
@@ -366,6 +372,10 @@ impl<'a> Smoother<'a> {
         }
         let slid = rounds.map(|rounds| rounds.slid(self.mesh, &self.topology, gains, &points));
         let best = if gains { written } else { initial };
+        let improved = improving.map(|improving| {
+            let positions = if gains { &judged } else { self.problem.positions() };
+            improving.outcome(now, (positions, best), gains)
+        });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
             // 0 / 0: the initial objective was the desired one.
@@ -386,6 +396,7 @@ impl<'a> Smoother<'a> {
             goal,
             returned,
             slid,
+            improved,
             device_fault: fault.or(end.fault),
             smooth: start.elapsed(),
         })
@@ -410,6 +421,7 @@ impl<'a> Smoother<'a> {
             goal: None,
             returned: 0,
             slid: None,
+            improved: None,
             device_fault: None,
             smooth: start.elapsed(),
         }

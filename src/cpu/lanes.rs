@@ -12,8 +12,8 @@ use crate::metric::Real;
 /// compiled for, and the constant `$mapped` to whether triangles are to be seen through target maps.
 ///
 /// Each copy of a sweep takes seconds to compile. So there is one for each usual metric on meshes without targets, with
-/// AVX2 on x86, and one for all else. It looks the metric up for each triangle, and sees a mesh without targets
-/// through maps that change nothing.
+/// AVX2 on x86, one for soft-size on meshes that have some, which is half the time there, and one for all else. It looks the metric up
+/// for each triangle, which costs imr nothing that can be measured, and sees a mesh without targets through maps that change nothing.
 macro_rules! with_lanes {
     ($problem:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
         'done: {
@@ -37,6 +37,18 @@ macro_rules! with_lanes {
                 ))
             }
             const $mapped: bool = true;
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            if let (Some($simd), Some(_), $crate::metric::Metric::SoftSize) =
+                (level.as_avx2(), $problem.targets(), $metric)
+            {
+                #[allow(non_upper_case_globals)]
+                const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::SoftSize;
+                break 'done fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $body,
+                );
+            }
             let $f = $metric.formulas();
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             match level.as_avx2() {

@@ -7,6 +7,7 @@ use crate::measure::sizes::{doubled_areas, size_ratios};
 use crate::measure::table::Measure;
 use crate::measure::triangle::Triangle;
 use crate::parallel::{collect, map_ranges};
+use crate::targets::Surface;
 use crate::topology::Topology;
 
 const CHUNK: usize = 1 << 12;
@@ -31,6 +32,7 @@ const CHUNK: usize = 1 << 12;
 pub struct Measured<'a> {
     points: &'a [[f64; 2]],
     topology: &'a Topology<'a>,
+    surface: Surface,
     mean_area: f64,
     size_ratios: OnceLock<Vec<f64>>,
 }
@@ -41,11 +43,24 @@ impl<'a> Measured<'a> {
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
     pub fn new(points: &'a [[f64; 2]], topology: &'a Topology<'a>) -> Result<Self, MeshError> {
+        Self::on(Surface::Plane, points, topology)
+    }
+
+    /// The same where `points` are coordinates of a surface: lengths and angles are those on the surface at the middle of each
+    /// triangle.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn on(
+        surface: Surface,
+        points: &'a [[f64; 2]],
+        topology: &'a Topology<'a>,
+    ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        let areas = doubled_areas(points, topology);
+        let areas = doubled_areas(surface, points, topology);
         let sums = map_ranges(areas.len(), CHUNK, |range| areas[range].iter().sum::<f64>());
         let mean_area = sums.iter().sum::<f64>() / 2.0 / areas.len() as f64;
-        Ok(Self { points, topology, mean_area, size_ratios: OnceLock::new() })
+        Ok(Self { points, topology, surface, mean_area, size_ratios: OnceLock::new() })
     }
 
     /// The positions of the vertices.
@@ -68,16 +83,18 @@ impl<'a> Measured<'a> {
     pub(crate) fn prepare(&self, measures: &[Measure]) {
         if measures.contains(&Measure::SizeRatio) && self.size_ratios.get().is_none() {
             // Another caller may have been faster, with the same result.
-            let _ = self.size_ratios.set(size_ratios(self.points, self.topology));
+            let _ = self.size_ratios.set(size_ratios(self.surface, self.points, self.topology));
         }
     }
 
     /// A triangle to be measured by what [`Self::prepare`] was called for.
     #[inline]
     pub(crate) fn triangle(&self, index: usize) -> Triangle {
-        let corners = self.topology.triangles()[index];
+        let corners = &self.topology.triangles()[index];
         let size_ratio = self.size_ratios.get().map_or(f64::NAN, |ratios| ratios[index]);
-        Triangle::new(corners.map(|v| self.points[v as usize]), self.mean_area, size_ratio)
+        let lengths = self.surface.lengths_in(self.points, corners);
+        let points = corners.map(|v| self.points[v as usize]);
+        Triangle::new(points, lengths, self.mean_area, size_ratio)
     }
 
     /// The value of a measure for triangle `index`; NaN if there is no such triangle.

@@ -1,5 +1,6 @@
 //! Quality measures: a table with a row for each, computed for the triangles of a mesh, with statistics over them.
 
+mod altitude;
 mod change;
 mod measured;
 mod moments;
@@ -11,6 +12,7 @@ mod table;
 mod triangle;
 mod vertices;
 
+pub(crate) use altitude::altitude;
 pub(crate) use change::mean_edges;
 pub use change::{Change, Spread};
 pub use measured::Measured;

@@ -1,19 +1,31 @@
 //! The measure `size-ratio`, which depends on the neighbors of a triangle.
 
 use crate::parallel::collect;
+use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// The areas of triangles, doubled and without their signs.
-pub(crate) fn doubled_areas(points: &[[f64; 2]], topology: &Topology<'_>) -> Vec<f64> {
+/// The areas of triangles on a surface, doubled and without their signs.
+pub(crate) fn doubled_areas(
+    surface: Surface,
+    points: &[[f64; 2]],
+    topology: &Topology<'_>,
+) -> Vec<f64> {
     let triangles = topology.triangles();
-    collect(triangles.len(), |t| orientation(points, &triangles[t]).abs())
+    collect(triangles.len(), |t| {
+        let [x, y] = surface.lengths_in(points, &triangles[t]);
+        orientation(points, &triangles[t]).abs() * x * y
+    })
 }
 
 /// For each triangle, the largest ratio of its area to that of a triangle across one of its edges, or the other way
 /// round; 1 if it has no neighbor, infinite if it or one of them is flat.
-pub(crate) fn size_ratios(points: &[[f64; 2]], topology: &Topology<'_>) -> Vec<f64> {
-    let areas = doubled_areas(points, topology);
+pub(crate) fn size_ratios(
+    surface: Surface,
+    points: &[[f64; 2]],
+    topology: &Topology<'_>,
+) -> Vec<f64> {
+    let areas = doubled_areas(surface, points, topology);
     let triangles = topology.triangles();
     // Stars that were forgotten are found again here, not by the first of many threads.
     topology.star(0);

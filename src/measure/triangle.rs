@@ -69,10 +69,15 @@ impl Triangle {
         }
     }
 
-    /// The triangle with its corners at `points`, counter-clockwise unless it is inverted. `mean_area` is that of the
-    /// mesh, `size_ratio` the measure of that name.
+    /// The triangle with its corners at `points`, counter-clockwise unless it is inverted, where units of the two coordinates have these
+    /// `lengths`. `mean_area` is that of the mesh, `size_ratio` the measure of that name.
     #[inline]
-    pub(crate) fn new(mut points: [[f64; 2]; 3], mean_area: f64, size_ratio: f64) -> Self {
+    pub(crate) fn new(
+        mut points: [[f64; 2]; 3],
+        lengths: [f64; 2],
+        mean_area: f64,
+        size_ratio: f64,
+    ) -> Self {
         if !points.as_flattened().iter().all(|x| x.is_finite()) {
             return Self::point(size_ratio);
         }
@@ -85,6 +90,7 @@ impl Triangle {
         }
         let [p, q, r] = points;
         let edges = [difference(p, q), difference(p, r), difference(q, r)];
+        let edges = edges.map(|[x, y]| [x * lengths[0], y * lengths[1]]);
         let size = largest(edges.as_flattened());
         if size == 0.0 {
             return Self::point(size_ratio);
@@ -94,7 +100,10 @@ impl Triangle {
         Self {
             edges,
             lengths: edges.map(length),
-            doubled_area: orientation(&points, &[0, 1, 2]) * shrink * shrink,
+            // Factors above zero leave its sign as it is.
+            doubled_area: orientation(&points, &[0, 1, 2])
+                * (lengths[0] * shrink)
+                * (lengths[1] * shrink),
             mean_area,
             per_unit: per_unit * shrink,
             angles: OnceCell::new(),

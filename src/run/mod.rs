@@ -20,6 +20,7 @@ mod shape_guard;
 mod step;
 mod stop;
 mod sweeps;
+mod worst_by;
 mod yielding;
 
 pub(crate) use checkpoint::About;
@@ -41,3 +42,4 @@ pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE, ROUNDING};
 pub use stop::{Stop, StopRule};
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;
+pub use worst_by::WorstBy;

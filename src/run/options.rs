@@ -8,6 +8,7 @@ use crate::metric::Scheme;
 use crate::run::plan::Plan;
 use crate::run::step::{Derivatives, Sharpness};
 use crate::run::stop::StopRule;
+use crate::run::worst_by::WorstBy;
 
 /// Whether sweeps are followed by corrections from coarser levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -80,6 +81,10 @@ pub struct Options {
     /// Whether no triangle's altitude may fall below the least that the mesh has, which bounds the time step of explicit solvers. Only
     /// for whole runs, by one metric other than edge.
     pub keep_altitude: bool,
+    /// By what measure the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as the metric does. Free
+    /// vertices around the worst thousandth of the triangles (10 to 1000 of them) move such that the worst around them becomes less
+    /// bad, and none worse than that was; f may rise a little for it. Only for whole runs, and not after one that was cancelled.
+    pub improve_worst: Option<WorstBy>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
     /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`Sharpness::CONTINUED`] in runs with
@@ -104,6 +109,7 @@ impl Default for Options {
             guard: Guard::ByMetric,
             max_move: None,
             keep_altitude: false,
+            improve_worst: None,
             derivatives: Derivatives::Analytic,
             sharpness: None,
             track_all: false,
@@ -165,6 +171,7 @@ impl Options {
             (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
             (_, Some(most)) => refuse("max move", most.to_string()),
             _ if self.keep_altitude => refuse("keep altitude", "on".to_owned()),
+            _ if self.improve_worst.is_some() => refuse("improve worst", "on".to_owned()),
             _ => Ok(()),
         }
     }

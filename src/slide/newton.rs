@@ -18,21 +18,49 @@ pub(crate) struct Window {
     pub(crate) high: f64,
 }
 
-/// One Newton step along the curve, with a line search as in the sweeps over free vertices. Returns the new parameter and position of
+/// How far a vertex may be from where it was given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// The parameter of where it was given.
+    pub(crate) start: f64,
+    /// The largest distance from there, in the unit of the mesh; infinite for none.
+    pub(crate) most: f64,
+}
+
+impl Reach {
+    /// Whether a vertex may be at a parameter.
+    pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
+        self.most.is_infinite()
+            || curve.at(at).point.distance(curve.at(self.start).point) <= self.most
+    }
+
+    /// A way from a parameter, cut off where a straight curve goes out of reach.
+    fn shortened(self, way: f64, at: f64) -> f64 {
+        if self.most.is_infinite() {
+            return way;
+        }
+        let most = self.most * (1.0 - ROUNDING);
+        (at + way).clamp(self.start - most, self.start + most) - at
+    }
+}
+
+/// How much rounding may add to the distance from where a vertex was given, as a share of it.
+const ROUNDING: f64 = 1e-9;
+
+/// One Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls below `floor`. Returns the new parameter and position of
 /// the vertex, if it moves.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
     fan: &Fan,
-    curve: &Curve,
-    window: Window,
-    step: &Step,
+    (curve, window, reach): (&Curve, Window, Reach),
+    (step, floor): (&Step, f64),
 ) -> Option<(f64, DVec2)> {
     let Window { low, at, high } = window;
     let (center, scale) = problem.normalization();
     let Place { first, second, .. } = curve.at(at);
     let (first, second) = (first * scale, second * scale);
-    let patch = Patch { problem, positions, fan, step };
+    let patch = Patch { problem, positions, fan, step, floor };
     let here = positions[fan.own() as usize];
     let sum = patch.derivatives(here);
     let gradient = DVec2::from(sum.gradient);
@@ -45,6 +73,7 @@ pub(crate) fn visit(
         return None;
     }
     let way = newton.clamp(NEAREST * (low - at), NEAREST * (high - at));
+    let way = reach.shortened(way, at);
     let squares = sum.value + fan.degree() as f64 * step.metric.ideal_squared();
     let most = sum.value + squares * SLACK;
     let limit = match step.shape_guard.is_finite() {
@@ -55,7 +84,7 @@ pub(crate) fn visit(
     for _ in 0..line_search::TRIALS {
         let to = at + way * length;
         let position = (curve.at(to).point - center) * scale;
-        let value = match curve.is_near([low, to, high]) {
+        let value = match curve.is_near([low, to, high]) && reach.allows(curve, to) {
             true => patch.objective(position, limit),
             false => None,
         };

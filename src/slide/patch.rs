@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
+use crate::measure::altitude;
 use crate::metric::{Corner, Dual, TargetMap};
 use crate::run::Step;
 use crate::topology::Topology;
@@ -45,6 +46,8 @@ pub(crate) struct Patch<'a> {
     pub(crate) positions: &'a [DVec2],
     pub(crate) fan: &'a Fan,
     pub(crate) step: &'a Step,
+    /// The least altitude that a triangle may have, normalized; 0 for any.
+    pub(crate) floor: f64,
 }
 
 impl Patch<'_> {
@@ -69,13 +72,16 @@ impl Patch<'_> {
         })
     }
 
-    /// The objective. `None` if a triangle is inverted or flat, or has an inverse mean ratio above the limit.
+    /// The objective. `None` if a triangle is inverted or flat, or has an inverse mean ratio above the limit or an altitude below the floor.
     pub(crate) fn objective(&self, at: DVec2, limit: f64) -> Option<f64> {
         let Step { metric, sharpness, .. } = *self.step;
         let mut sum = 0.0;
         for corners in &self.fan.0 {
             let points = corners.map(|v| self.positions[v as usize].to_array());
             let is_sound = is_positive(&[at.to_array(), points[1], points[2]], &[0, 1, 2]);
+            if self.floor > 0.0 && altitude([at, points[1].into(), points[2].into()]) < self.floor {
+                return None;
+            }
             let corner = self.corner(corners, at);
             if !is_sound || corner.doubled_area() <= 0.0 || corner.inverse_mean_ratio() > limit {
                 return None;

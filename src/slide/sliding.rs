@@ -7,7 +7,7 @@ use crate::mesh::Precision;
 use crate::run::Step;
 use crate::slide::chains::chains;
 use crate::slide::curve::Curve;
-use crate::slide::newton::{self, Window};
+use crate::slide::newton::{self, Reach, Window};
 use crate::slide::options::Slide;
 use crate::slide::patch::Fan;
 use crate::topology::Topology;
@@ -112,6 +112,12 @@ impl Sliding {
         self.tracks.iter().zip(params).flat_map(of_track).collect()
     }
 
+    /// A number for each vertex of each curve, by its number in the mesh.
+    pub(crate) fn for_each_vertex(&self, of: impl Fn(u32) -> f64) -> Params {
+        let of_track = |track: &Track| track.vertices.iter().map(|&v| of(v)).collect();
+        self.tracks.iter().map(of_track).collect()
+    }
+
     /// By how much parameters changed, in lengths of an edge that was given.
     pub(crate) fn change(&self, before: &Params, after: &Params) -> Vec<f64> {
         let of_track = |((track, before), after): ((&Track, &Vec<f64>), &Vec<f64>)| {
@@ -126,20 +132,25 @@ impl Sliding {
     }
 
     /// Moves the vertices that slide to where `params` are. Those that would not be between their neighbors, or too far from the lines
-    /// that were given, go to where `safe` has them instead. Returns whether all are sound then.
+    /// that were given or, by `reach`, from where they were given, go to where `safe` has them instead. Returns whether all are sound
+    /// then.
     pub(crate) fn place(
         &self,
         problem: &Problem,
         params: &mut Params,
-        safe: &Params,
+        (safe, reach): (&Params, &Params),
         positions: &mut [DVec2],
     ) -> bool {
         let (center, scale) = problem.normalization();
-        self.tracks.iter().zip(params).zip(safe).all(|((track, params), safe)| {
+        let mut all = self.tracks.iter().zip(params).zip(safe.iter().zip(reach));
+        all.all(|((track, params), (safe, reach))| {
             let sliding = || (0..track.fans.len()).filter(|&k| track.fans[k].is_some());
             let is_sound = |params: &[f64], k: usize| {
                 let Window { low, at, high } = track.window(params, k);
-                low < at && at < high && track.curve.is_near([low, at, high])
+                low < at
+                    && at < high
+                    && track.curve.is_near([low, at, high])
+                    && track.reach(reach, k).allows(&track.curve, at)
             };
             for _ in 0..GIVE_WAY {
                 let bad: Vec<usize> = sliding().filter(|&k| !is_sound(params, k)).collect();
@@ -169,20 +180,23 @@ impl Sliding {
         self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
     }
 
-    /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step along its curve.
+    /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step along its curve, no
+    /// farther from where it was given than `reach` says, in the unit of the mesh, and such that no altitude falls below `floor`.
     pub(crate) fn sweep(
         &self,
         problem: &Problem,
         params: &mut Params,
+        reach: &Params,
         positions: &mut [DVec2],
-        step: &Step,
+        (step, floor): (&Step, f64),
     ) {
-        for (track, params) in self.tracks.iter().zip(params) {
+        for ((track, params), reach) in self.tracks.iter().zip(params).zip(reach) {
             let count = params.len();
             for k in (0..count).chain((0..count).rev()) {
                 let Some(fan) = &track.fans[k] else { continue };
                 let window = track.window(params, k);
-                let moved = newton::visit(problem, positions, fan, &track.curve, window, step);
+                let place = (&track.curve, window, track.reach(reach, k));
+                let moved = newton::visit(problem, positions, fan, place, (step, floor));
                 if let Some((param, position)) = moved {
                     params[k] = param;
                     positions[fan.own() as usize] = position;
@@ -227,6 +241,11 @@ impl Track {
         let turns = at.div_euclid(count);
         let param = known(at.rem_euclid(count) as usize)?;
         Some(param + turns as f64 * self.curve.period())
+    }
+
+    /// How far a vertex may go.
+    fn reach(&self, reach: &[f64], k: usize) -> Reach {
+        Reach { start: self.curve.params()[k], most: reach[k] }
     }
 
     /// Where a vertex is on its curve, and its neighbors.

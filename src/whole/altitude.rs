@@ -7,12 +7,13 @@ use glam::DVec2;
 
 use crate::error::SmoothError;
 use crate::layout::Problem;
+use crate::measure::altitude;
 use crate::mesh::Mesh;
-use crate::run::{Keeper, Keeping, Observer, Options, Stop};
+use crate::run::{Keeper, Keeping, Observer, Options, Plan, Stop};
 use crate::topology::Topology;
 use crate::whole::attempt::{Attempt, Ended};
 use crate::whole::holding::Holding;
-use crate::whole::rounds::{Rounds, objectives};
+use crate::whole::in_rounds::{self, objectives};
 
 /// Number of sweeps in a round, until there is one after which no vertex goes back.
 const SWEEPS: u32 = 2;
@@ -21,16 +22,14 @@ const ROUNDS: u32 = 60;
 /// How often the way of vertices is halved before they go back all of it.
 const HALVED: u32 = 3;
 
-/// The least altitude of a triangle.
-pub(crate) fn altitude([p, q, r]: [DVec2; 3]) -> f64 {
-    let longest =
-        (q - p).length_squared().max((r - q).length_squared()).max((p - r).length_squared());
-    (q - p).perp_dot(r - p) / longest.sqrt()
-}
-
 /// The least altitude of some triangles.
 fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
     triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
+}
+
+/// The least altitude of a triangle with the vertices where the problem has them, normalized.
+pub(crate) fn least_of(problem: &Problem) -> f64 {
+    least(problem.triangles(), |v| problem.positions()[v as usize])
 }
 
 /// Brings the vertices of triangles whose altitude is below `floor` back to where they were, half of the way as often as `halved` says and
@@ -90,40 +89,46 @@ pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothE
         let (value, remedy) = ("with a bound on moves".to_owned(), "set one of the two");
         return Err(SmoothError::Option { option, value, remedy });
     }
-    Rounds::check(option, options, is_continued)
+    in_rounds::check(option, options, is_continued)
 }
 
-/// Sweeps from the positions of the problem until a run ends in which no altitude is below the least there was.
-pub(crate) async fn run<K: Keeper + ?Sized>(
-    (mesh, problem): (&Mesh, &Problem),
-    attempt: Attempt<'_>,
-    (options, target): (&Options, Option<f64>),
-    keeping: &mut Keeping<'_, K>,
-    observe: &mut (impl Observer + ?Sized),
-) -> Result<Ended, SmoothError> {
-    let (plan, base) = (options.plan_to(target), options.scheme.base());
-    let mut holding = Holding::new(mesh, problem);
-    let mut positions = problem.positions().to_vec();
-    let floor = least(problem.triangles(), |v| positions[v as usize]);
-    let mut whole: Option<Ended> = None;
-    let (mut round, mut is_clean) = (0, false);
-    loop {
-        round += 1;
-        let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
-        let left = options.max_sweeps.saturating_sub(done);
-        let most = if is_clean { left } else { left.min(SWEEPS) };
-        let part = Options { max_sweeps: most, ..options.clone() };
+/// The least altitude that a run keeps, and the vertices that were brought back for it.
+pub(crate) struct Floor<'s> {
+    problem: &'s Problem,
+    holding: Holding<'s>,
+    /// Normalized.
+    pub(crate) least: f64,
+}
+
+impl<'s> Floor<'s> {
+    /// The least altitude of a triangle with the vertices where the problem has them.
+    pub(crate) fn new(mesh: &'s Mesh, problem: &'s Problem) -> Self {
+        Self { problem, holding: Holding::new(mesh, problem), least: least_of(problem) }
+    }
+
+    /// A round from some positions, to which it moves the vertices: sweeps on the engine, after which vertices of triangles that have
+    /// become too flat go back, and are held from then on. Returns its end without positions, of which the history counts nothing that was
+    /// set back, and how many vertices are held for it.
+    pub(crate) async fn round<K: Keeper + ?Sized>(
+        &mut self,
+        attempt: Attempt<'_>,
+        (part, plan, target): (&Options, &Plan, Option<f64>),
+        positions: &mut Vec<DVec2>,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<(Ended, usize), SmoothError> {
+        let Self { problem, holding, least } = self;
+        let (problem, base) = (*problem, plan.scheme.base());
         let smaller = holding.smaller()?;
         let now = smaller.as_ref().unwrap_or(problem);
-        let from = holding.renumbered(&positions, now);
-        let Attempt { device, phase, .. } = attempt;
-        let attempt = Attempt { problem: now, device, phase, done };
-        let mut next = attempt.sweep(&part, target, (&from, None), keeping, observe).await?;
-        let mut to = holding.numbered_back(&next.positions, now);
-        let returned = bring_back(problem.triangles(), &positions, &mut to, (floor, HALVED));
-        positions = to;
+        let from = holding.renumbered(positions, now);
+        let attempt = Attempt { problem: now, ..attempt };
+        let mut next = attempt.sweep(part, target, (&from, None), keeping, observe).await?;
+        let mut to = holding.numbered_back(&std::mem::take(&mut next.positions), now);
+        let returned = bring_back(problem.triangles(), positions, &mut to, (*least, HALVED));
+        *positions = to;
         // f of what was set back does not count.
-        let here = objectives(problem, &plan, &positions);
+        let here = objectives(problem, plan, positions);
         let count = next.history.len() - 1;
         for (k, entry) in next.history.iter_mut().enumerate().skip(1) {
             if k == count || entry.of(base) < here.of(base) {
@@ -135,7 +140,39 @@ pub(crate) async fn run<K: Keeper + ?Sized>(
         for v in returned.into_iter().map(|v| v as usize).filter(|&v| v < free) {
             new += usize::from(!std::mem::replace(&mut holding.held[v], true));
         }
-        let is_all = holding.held.iter().all(|held| *held);
+        Ok((next, new))
+    }
+
+    /// Whether no altitude is below the least.
+    pub(crate) fn holds_at(&self, positions: &[DVec2]) -> bool {
+        least(self.problem.triangles(), |v| positions[v as usize]) >= self.least
+    }
+}
+
+/// Sweeps from the positions of the problem until a run ends in which no altitude is below the least there was.
+pub(crate) async fn run<K: Keeper + ?Sized>(
+    (mesh, problem): (&Mesh, &Problem),
+    attempt: Attempt<'_>,
+    (options, target): (&Options, Option<f64>),
+    keeping: &mut Keeping<'_, K>,
+    observe: &mut (impl Observer + ?Sized),
+) -> Result<Ended, SmoothError> {
+    let plan = options.plan_to(target);
+    let mut floor = Floor::new(mesh, problem);
+    let mut positions = problem.positions().to_vec();
+    let mut whole: Option<Ended> = None;
+    let (mut round, mut is_clean) = (0, false);
+    loop {
+        round += 1;
+        let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
+        let left = options.max_sweeps.saturating_sub(done);
+        let most = if is_clean { left } else { left.min(SWEEPS) };
+        let part = Options { max_sweeps: most, ..options.clone() };
+        let Attempt { device, phase, .. } = attempt;
+        let attempt = Attempt { problem, device, phase, done };
+        let goal = (&part, &plan, target);
+        let (next, new) = floor.round(attempt, goal, &mut positions, keeping, observe).await?;
+        let is_all = floor.holding.held.iter().all(|held| *held);
         let ended = match whole.take() {
             None => next,
             Some(before) => before.followed_by(next),

@@ -10,11 +10,11 @@ use crate::mesh::{Mesh, Precision};
 use crate::run::{
     Keeper, Keeping, Observer, Options, Plan, Step, Stop, StopRule, line_search, set_guards,
 };
-use crate::slide::{Fan, Patch};
+use crate::slide::{Fan, Params, Patch, Sliding};
 use crate::topology::Topology;
 use crate::whole::attempt::{Attempt, Ended};
 use crate::whole::holding::Holding;
-use crate::whole::rounds::{Rounds, is_sound, objectives};
+use crate::whole::in_rounds::{self, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 3;
@@ -30,7 +30,9 @@ const AT_BOUND: f64 = 1.0 - 1e-6;
 /// How far each free vertex may move, and which ones are as far as they may.
 pub(crate) struct Limit<'s> {
     problem: &'s Problem,
-    /// The largest distance of each free vertex from its start, normalized.
+    /// The largest distance of each vertex of the mesh from its start, in the unit of the mesh.
+    all: Vec<f64>,
+    /// The same of each free vertex, normalized.
     bounds: Vec<f64>,
     /// Which free vertices are at their bound.
     holding: Holding<'s>,
@@ -50,11 +52,11 @@ impl<'s> Limit<'s> {
             Precision::Double => f64::EPSILON,
         };
         let edges = mean_edges(topology, &mesh.points);
-        let bound = |v: u32| {
-            let [x, y] = mesh.points[v as usize];
+        let bound = |([x, y], edge): (&[f64; 2], &f64)| {
             let rounding = 2.0 * digits * x.abs().max(y.abs());
-            (most * edges[v as usize] * (1.0 - 1e-9) - rounding).max(0.0)
+            (most * edge * (1.0 - 1e-9) - rounding).max(0.0)
         };
+        let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();
         let (_, scale) = problem.normalization();
         let holding = Holding::new(mesh, problem);
         let free = &problem.vertices()[..problem.free_count()];
@@ -65,10 +67,16 @@ impl<'s> Limit<'s> {
         };
         Self {
             problem,
-            bounds: free.iter().map(|&v| bound(v) * scale).collect(),
+            bounds: free.iter().map(|&v| all[v as usize] * scale).collect(),
+            all,
             fans: free.iter().map(fan).collect(),
             holding,
         }
+    }
+
+    /// How far each free vertex may be from where the run began, normalized.
+    pub(crate) fn bounds(&self) -> &[f64] {
+        &self.bounds
     }
 
     /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
@@ -91,40 +99,19 @@ impl<'s> Limit<'s> {
             let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
             let left = options.max_sweeps.saturating_sub(done);
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
-            // Those at their bound are fixed to the engine.
-            let smaller = self.holding.smaller()?;
-            let problem = smaller.as_ref().unwrap_or(self.problem);
-            let from = self.holding.renumbered(&positions, problem);
             let Attempt { device, phase, .. } = attempt;
-            let attempt = Attempt { problem, device, phase, done };
-            let mut next = attempt.sweep(&part, target, (&from, None), keeping, observe).await?;
-            let to = self.holding.numbered_back(&next.positions, problem);
-            let before = self.holding.held.clone();
-            let has_moved = self.take(&plan, &mut positions, &to);
-            for _ in 0..VISITS {
-                self.visit_held(&mut positions, &plan.base_step(1.0));
-            }
-            if has_moved {
-                self.find_held(&positions);
-            }
-            let now = objectives(self.problem, &plan, &positions);
-            let last = now.of(base).unwrap_or(f64::NAN);
-            // Of what sweeps gained beyond the bounds, nothing counts.
-            for entry in next.history.iter_mut().skip(1) {
-                if entry.of(base).is_none_or(|f| f < last) {
-                    *entry = now;
-                }
-            }
-            if let (Some(entry), true) = (next.history.last_mut(), left > 0) {
-                *entry = now;
-            }
+            let attempt = Attempt { problem: self.problem, device, phase, done };
+            let goal = (&part, &plan, target);
+            let (next, is_settled) =
+                self.round(attempt, goal, &mut positions, keeping, observe).await?;
+            let last = objectives(self.problem, &plan, &positions).of(base).unwrap_or(f64::NAN);
             let ended = match whole.take() {
                 None => next,
                 Some(before) => before.followed_by(next),
             };
             f.push(last);
             let judged = rule.judge(&f[1..], f.len() - 2, 1);
-            let is_settled = judged.is_some() && (has_moved || before == self.holding.held);
+            let is_settled = judged.is_some() && is_settled;
             estimates = if is_settled { estimates + 1 } else { 0 };
             let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left == 0;
             let is_last = left <= SWEEPS && ended.stop == Stop::MaxSweeps
@@ -141,6 +128,58 @@ impl<'s> Limit<'s> {
                 None => whole = Some(ended),
             }
         }
+    }
+
+    /// A round from some positions, to which it moves the vertices: sweeps on the engine, after which vertices beyond their bound are
+    /// brought back. Returns its end without positions, of which the history counts no gain beyond the bounds, and whether the same
+    /// vertices are held as before unless the sweeps led somewhere.
+    pub(crate) async fn round<K: Keeper + ?Sized>(
+        &mut self,
+        attempt: Attempt<'_>,
+        (part, plan, target): (&Options, &Plan, Option<f64>),
+        positions: &mut Vec<DVec2>,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<(Ended, bool), SmoothError> {
+        let base = plan.scheme.base();
+        // Those at their bound are fixed to the engine.
+        let smaller = self.holding.smaller()?;
+        let problem = smaller.as_ref().unwrap_or(self.problem);
+        let from = self.holding.renumbered(positions, problem);
+        let attempt = Attempt { problem, ..attempt };
+        let mut next = attempt.sweep(part, target, (&from, None), keeping, observe).await?;
+        let to = self.holding.numbered_back(&std::mem::take(&mut next.positions), problem);
+        let before = self.holding.held.clone();
+        let has_moved = self.take(plan, positions, &to);
+        for _ in 0..VISITS {
+            self.visit_held(positions, &plan.base_step(1.0));
+        }
+        if has_moved {
+            self.find_held(positions);
+        }
+        let now = objectives(self.problem, plan, positions);
+        let last = now.of(base).unwrap_or(f64::NAN);
+        // Of what sweeps gained beyond the bounds, nothing counts.
+        for entry in next.history.iter_mut().skip(1) {
+            if entry.of(base).is_none_or(|f| f < last) {
+                *entry = now;
+            }
+        }
+        if let (Some(entry), true) = (next.history.last_mut(), part.max_sweeps > 0) {
+            *entry = now;
+        }
+        Ok((next, has_moved || before == self.holding.held))
+    }
+
+    /// Whether all free vertices are within their bounds.
+    pub(crate) fn holds_at(&self, positions: &[DVec2]) -> bool {
+        let start = self.problem.positions().iter().zip(positions);
+        start.zip(&self.bounds).all(|((start, now), bound)| now.distance(*start) <= *bound)
+    }
+
+    /// How far each vertex that slides may be from where it was given, in the unit of the mesh.
+    pub(crate) fn reach(&self, sliding: &Sliding) -> Params {
+        sliding.for_each_vertex(|v| self.all[v as usize])
     }
 
     /// The position of a free vertex, brought back to its bound if it is beyond.
@@ -184,7 +223,7 @@ impl<'s> Limit<'s> {
         for v in (0..self.holding.held.len()).filter(|&v| self.holding.held[v]) {
             let here = positions[v];
             let fan = &self.fans[v];
-            let patch = Patch { problem: self.problem, positions, fan, step };
+            let patch = Patch { problem: self.problem, positions, fan, step, floor: 0.0 };
             let sum = patch.derivatives(here);
             let gradient = DVec2::from(sum.gradient);
             let [xx, xy, yy] = sum.hessian;
@@ -212,7 +251,7 @@ impl<'s> Limit<'s> {
     }
 
     /// Finds the vertices at their bound. Those that were held for another reason are let go where they have moved inward.
-    fn find_held(&mut self, positions: &[DVec2]) {
+    pub(crate) fn find_held(&mut self, positions: &[DVec2]) {
         for (v, held) in self.holding.held.iter_mut().enumerate() {
             let distance = positions[v].distance(self.problem.positions()[v]);
             *held = distance >= AT_BOUND * self.bounds[v];
@@ -221,6 +260,6 @@ impl<'s> Limit<'s> {
 
     /// Checks that there can be a bound in a run by these options.
     pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
-        Rounds::check("max move", options, is_continued)
+        in_rounds::check("max move", options, is_continued)
     }
 }

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::run::{Keeper, Keeping, NOISE, Objectives, Observer, Options, Plan, Stop, set_guards};
 use crate::targets::TargetField;
 use crate::whole::attempt::{Attempt, Ended};
-use crate::whole::rounds::{Rounds, is_sound, objectives};
+use crate::whole::in_rounds::{self, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 5;
@@ -47,7 +47,7 @@ impl<'s> Places<'s> {
         if options.max_move.is_some() {
             return refuse("with a bound", "set one of the two, or targets of vertices");
         }
-        Rounds::check(option, options, is_continued)
+        in_rounds::check(option, options, is_continued)
     }
 
     /// Takes the targets of the places where the vertices are.

@@ -38,6 +38,7 @@ mod sphere;
 mod streams;
 mod targets;
 mod untangle;
+mod worst;
 
 use gpu_smooth::{Mesh, MeshFile};
 use serde_json::Value;

@@ -67,6 +67,21 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
         let compared =
             folder.line("compare in.gr3 out.gr3 --surface sphere --slide --interpolate depth");
         assert_eq!(compared.code, Some(0), "{}", compared.err);
+        // The command for quality measures the same angles on the sphere.
+        let quality = folder.line("quality out.gr3 --surface sphere --json --picture q.png");
+        let quality: serde_json::Value = serde_json::from_str(&quality.out).unwrap();
+        assert_eq!(quality["vertices"], before.points.len());
+        let measures = &quality["measures"];
+        for (key, [measure, extreme]) in [
+            ("min_angle", ["min-angle", "min"]),
+            ("max_angle", ["max-angle", "max"]),
+            ("worst_imr", ["condition", "max"]),
+        ] {
+            let told = number(&report["after"][key]);
+            assert!((number(&quality[key]) / told - 1.0).abs() < 1e-12, "{key}");
+            let measured = number(&measures[measure][extreme]);
+            assert!((measured / told - 1.0).abs() < 1e-9, "{key}: {measured} {told}");
+        }
         // A vertex that is moved by hand to the other side of its triangles is found.
         let text = folder.text("out.gr3");
         let inside = (fields + usize::from(fields < COLUMNS) as u32) as usize + 1;

@@ -1,8 +1,9 @@
 //! Runs that keep the least altitude of a mesh.
 
-use crate::{backends, history, name, run};
+use crate::{backends, history, name, plate, run, support};
 use gpu_smooth::{
-    Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, validity,
+    Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, TargetField,
+    Targets, validity,
 };
 use std::ops::ControlFlow;
 
@@ -60,6 +61,34 @@ fn what_does_not_go_with_kept_altitudes_is_refused() {
     };
     refused(&smoother, Options { max_move: Some(1.0), ..Options::default() });
     refused(&smoother, Options { scheme: Metric::Edge.into(), ..Options::default() });
-    smoother.set_slide(Some(&Slide::default())).unwrap();
+    let targets = Targets::equilateral(mesh.points.len());
+    let field = TargetField::new(&mesh, &targets).unwrap();
+    smoother.set_target_field(field).unwrap();
     refused(&smoother, Options::default());
+}
+
+/// Vertices of the boundary are out of place as well, so that they have somewhere to go.
+#[test]
+fn the_least_altitude_is_kept_where_vertices_slide() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let slide = Slide { corner_angle: 180.0, ..Slide::default() };
+    smoother.set_slide(Some(&slide)).unwrap();
+    let altitudes = |points: &[[f64; 2]]| {
+        Change::between(smoother.topology(), &mesh.points, points).unwrap().least_altitude
+    };
+    for (backend, stored) in backends().iter().zip([Precision::Double, Precision::Single]) {
+        let label = name(backend);
+        let options = Options { stored, keep_altitude: true, ..Options::default() };
+        let kept = run(&smoother, &options, backend);
+        let [before, after] = altitudes(&kept.points);
+        assert!(after >= before, "{label}: {before} {after}");
+        assert!(kept.slid.unwrap().moved > 20, "{label}: {:?}", kept.slid);
+        let astray = slide.astray(smoother.topology(), &mesh.points, &kept.points, stored);
+        assert_eq!(astray, [], "{label}");
+        let f = history(&kept, Metric::Imr);
+        assert!(f[f.len() - 1] < f[0], "{label}: {f:?}");
+        let bad = validity::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
+        assert!(bad.is_empty(), "{label}");
+    }
 }

@@ -26,6 +26,7 @@ mod slide;
 mod targets;
 mod tolerance;
 mod untangle;
+mod worst;
 
 use gpu_smooth::internal::run_on_gpu;
 use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};

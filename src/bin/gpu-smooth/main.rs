@@ -34,6 +34,7 @@ mod task;
 mod tell;
 mod trial;
 mod untangle;
+mod worst_args;
 
 use std::process::ExitCode;
 

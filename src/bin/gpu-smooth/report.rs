@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::explain::BadTriangleReport;
 use crate::numbers::{percent, six};
 use crate::proof::Certificate;
+use crate::worst_args::ImprovedReport;
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -64,6 +65,9 @@ pub(crate) struct Report {
     /// What slid along lines, if vertices might.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) slid: Option<SlideReport>,
+    /// What improving the worst triangles did, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) improved: Option<ImprovedReport>,
     /// What the files alone say, where the mesh was written to a file and a report is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certificate: Option<Certificate>,
@@ -284,6 +288,9 @@ impl Report {
         let _ = writeln!(text, "{}", self.moves());
         if let Some(slides) = self.slides() {
             let _ = writeln!(text, "{slides}");
+        }
+        if let Some(improved) = &self.improved {
+            let _ = writeln!(text, "{}", improved.told());
         }
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");

@@ -15,6 +15,7 @@ use crate::read_args::ReadArgs;
 use crate::riding::RidingArgs;
 use crate::slide_args::SlideArgs;
 use crate::target_args::TargetArgs;
+use crate::worst_args::WorstArgs;
 
 #[derive(Args)]
 pub(crate) struct SmoothArgs {
@@ -112,6 +113,9 @@ pub(crate) struct SmoothArgs {
     /// that can be smoothed was (worst)
     #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
     pub(crate) guard: GuardChoice,
+
+    #[command(flatten)]
+    pub(crate) improving: WorstArgs,
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,
@@ -255,7 +259,6 @@ impl SmoothArgs {
         }
         if self.keep_altitude {
             let dropped = [
-                (self.sliding.slide, "--slide"),
                 (self.max_move.is_some(), "--max-move"),
                 (self.checkpoint.is_some(), "--checkpoint"),
                 (self.continued.is_some(), "--continue"),
@@ -266,7 +269,6 @@ impl SmoothArgs {
         }
         if self.max_move.is_some() {
             let dropped = [
-                (self.sliding.slide, "--slide"),
                 (self.untangle, "--untangle"),
                 (self.checkpoint.is_some(), "--checkpoint"),
                 (self.continued.is_some(), "--continue"),
@@ -314,6 +316,7 @@ impl SmoothArgs {
             inner: self.inner,
             max_move: self.max_move,
             keep_altitude: self.keep_altitude,
+            improve_worst: self.improving.measure(),
             guard: match self.guard {
                 GuardChoice::ByMetric => Guard::ByMetric,
                 GuardChoice::Worst => Guard::Worst,

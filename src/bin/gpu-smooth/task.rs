@@ -204,6 +204,7 @@ pub(crate) fn carry_out<T>(
         goal: goal_report(&outcome),
         returned: outcome.returned,
         slid: outcome.slid.map(Into::into),
+        improved: outcome.improved.map(Into::into),
         max_move: args.max_move,
         change: change.into(),
         before: (&before).into(),
@@ -258,7 +259,7 @@ enum Prepared<'a> {
 fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
     let options = args.options(stored);
     match choice.nothing_to_do {
-        Some(_) => Options { max_sweeps: 0, goal: None, ..options },
+        Some(_) => Options { max_sweeps: 0, goal: None, improve_worst: None, ..options },
         None => options,
     }
 }

@@ -48,8 +48,9 @@ pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Re
 fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     let told = |error: gpu_smooth::MeshError| error.to_string();
     let topology = done.smoother.topology();
-    let before = Measured::new(&done.file.mesh().points, topology).map_err(told)?;
-    let after = Measured::new(&done.outcome.points, topology).map_err(told)?;
+    let surface = task.args.target.surface();
+    let before = Measured::on(surface, &done.file.mesh().points, topology).map_err(told)?;
+    let after = Measured::on(surface, &done.outcome.points, topology).map_err(told)?;
     let states = [&before, &after];
     let spots = worst::spots(done.file, states);
 

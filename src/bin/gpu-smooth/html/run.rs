@@ -35,6 +35,9 @@ pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     for choice in &done.report.choices {
         item("choice", choice);
     }
+    if let Some(improved) = &done.report.improved {
+        item("worst", &improved.told());
+    }
     text += "</dl>";
     text += &certificate(done)?;
     Ok(text)

@@ -20,7 +20,7 @@ pub(crate) use outlines::{Outlines, slid};
 use std::path::Path;
 
 use canvas::Canvas;
-use gpu_smooth::{Measure, Measured, MeshError, MeshFile, Topology, output};
+use gpu_smooth::{Measure, Measured, MeshError, MeshFile, Surface, Topology, output};
 use layout::Frame;
 use raster::Raster;
 use scene::{Panel, Scene};
@@ -68,7 +68,7 @@ pub(crate) fn check<'p>(
 pub(crate) fn write(
     args: &PictureArgs,
     file: &MeshFile,
-    topology: &Topology<'_>,
+    (topology, surface): (&Topology<'_>, Surface),
     shots: &[Shot<'_>],
 ) -> Result<(), String> {
     let Some(path) = &args.picture else { return Ok(()) };
@@ -78,7 +78,7 @@ pub(crate) fn write(
             "--picture-arrows is for a run, as arrows begin where vertices were".into(),
         ));
     }
-    let panels = shots.iter().map(|shot| panel(args, topology, shot));
+    let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
     let panels =
         panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
     let (before, after) = match shots {
@@ -141,11 +141,11 @@ fn goodness_of(
 
 fn panel<'a>(
     args: &PictureArgs,
-    topology: &Topology<'_>,
+    (topology, surface): (&Topology<'_>, Surface),
     shot: &Shot<'a>,
 ) -> Result<Panel<'a>, MeshError> {
     let measure = args.picture_measure;
-    let measured = Measured::new(shot.points, topology)?;
+    let measured = Measured::on(surface, shot.points, topology)?;
     let goodness = goodness_of(topology, &measured, measure)?;
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);

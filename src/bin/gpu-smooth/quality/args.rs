@@ -8,6 +8,7 @@ use gpu_smooth::{Better, Measure};
 
 use crate::picture::PictureArgs;
 use crate::read_args::ReadArgs;
+use crate::surface_args::SurfaceArgs;
 
 #[derive(Args)]
 pub(crate) struct QualityArgs {
@@ -44,6 +45,8 @@ pub(crate) struct QualityArgs {
     pub(crate) ascii: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

@@ -92,21 +92,24 @@ pub(crate) struct Violation {
 impl Sheet {
     /// Reads and measures a mesh.
     pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
-        let file = read(path, args.reading)?;
+        let mut file = read(path, args.reading)?;
+        let laid_out = args.surface.lay_out(&mut file)?;
+        let (file, surface) = (file, args.surface.surface());
         let mesh = file.mesh();
         let refused = |error| explain::mesh_error(&file, &error);
         let topology = Topology::new(mesh).map_err(refused)?;
-        let quality = Quality::of(&mesh.points, &topology).map_err(refused)?;
+        let quality = Quality::on(surface, &mesh.points, &topology).map_err(refused)?;
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
-        let measured = Measured::new(&mesh.points, &topology).map_err(refused)?;
+        let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
-        picture::write(&args.picture, &file, &topology, &[Shot { title, points: &mesh.points }])?;
+        let shot = Shot { title, points: &mesh.points };
+        picture::write(&args.picture, &file, (&topology, surface), &[shot])?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
             format: file.format().to_string(),
-            remarks: tell::remarks(&file, false),
-            vertices: mesh.points.len(),
+            remarks: tell::remarks(&file, false).into_iter().chain(laid_out).collect(),
+            vertices: file.original().points.len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
             report: QualityReport::from(&quality),

@@ -149,7 +149,8 @@ fn draw(
 ) -> Result<(), String> {
     let shot = |title: &str, points| Shot { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
-    picture::write(&args.picture, file, smoother.topology(), &shots)
+    let surface = args.target.surface();
+    picture::write(&args.picture, file, (smoother.topology(), surface), &shots)
 }
 
 fn write_report(args: &SmoothArgs, report: &impl Serialize) -> Result<(), String> {

@@ -1,0 +1,101 @@
+//! The option that improves the worst triangles, and what came of it.
+
+use clap::{Args, ValueEnum};
+use gpu_smooth::{Improved, WorstBy};
+use serde::Serialize;
+
+use crate::numbers::six;
+
+/// Whether the worst triangles are improved.
+#[derive(Args)]
+pub(crate) struct WorstArgs {
+    /// WorstBy the worst triangles after the last sweep, at a small cost in f: vertices around the worst thousandth of them move until the
+    /// largest imr is as small, or the least angle or altitude as large, as it can be made
+    #[arg(
+        long,
+        value_enum,
+        value_name = "MEASURE",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "imr",
+        help_heading = "Method"
+    )]
+    improve_worst: Option<WorstChoice>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum WorstChoice {
+    Imr,
+    MinAngle,
+    Altitude,
+}
+
+impl WorstArgs {
+    /// The measure of the worst triangles, if they are to be improved.
+    pub(crate) fn measure(&self) -> Option<WorstBy> {
+        self.improve_worst.map(|choice| match choice {
+            WorstChoice::Imr => WorstBy::Imr,
+            WorstChoice::MinAngle => WorstBy::MinAngle,
+            WorstChoice::Altitude => WorstBy::Altitude,
+        })
+    }
+}
+
+/// What improving the worst triangles did.
+#[derive(Serialize)]
+pub(crate) struct ImprovedReport {
+    /// imr, min-angle (in degrees) or altitude (in the unit of the mesh).
+    measure: &'static str,
+    /// Vertices that it moved.
+    vertices: usize,
+    /// The worst triangle with a free vertex, before and after.
+    worst: [f64; 2],
+    /// Triangles without a free vertex that are worse than that.
+    stuck: usize,
+    /// The base metric's objective, before and after.
+    f: [f64; 2],
+}
+
+impl From<Improved> for ImprovedReport {
+    fn from(Improved { by, vertices, worst, stuck, f }: Improved) -> Self {
+        Self { measure: by.name(), vertices, worst, stuck, f }
+    }
+}
+
+impl ImprovedReport {
+    /// What was improved and what that cost, in a sentence.
+    pub(crate) fn told(&self) -> String {
+        let Self { measure, vertices, worst: [before, after], stuck, f } = self;
+        let worst = match *measure {
+            "imr" => "worst imr".to_owned(),
+            name => format!("least {}", name.trim_start_matches("min-")),
+        };
+        let shown = |x: f64| match *measure {
+            "min-angle" => format!("{x:.2}°"),
+            _ => six(x),
+        };
+        let mut text = match vertices {
+            0 => {
+                format!(
+                    "the {worst} of movable triangles, {}, could not be improved",
+                    shown(*after)
+                )
+            }
+            n => {
+                let vertices = if *n == 1 { "vertex" } else { "vertices" };
+                let change = 100.0 * (f[1] / f[0] - 1.0);
+                format!(
+                    "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which changed f by {change:+.2} %",
+                    shown(*before),
+                    shown(*after)
+                )
+            }
+        };
+        text += &match stuck {
+            0 => String::new(),
+            1 => "; 1 triangle is worse, and all its corners are fixed".to_owned(),
+            n => format!("; {n} triangles are worse, and all their corners are fixed"),
+        };
+        text
+    }
+}

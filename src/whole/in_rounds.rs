@@ -1,0 +1,54 @@
+//! What runs that go in rounds share: the options they can have, and the judgment of positions between sweeps on the engine.
+
+use glam::DVec2;
+
+use crate::cpu::mean_excess;
+use crate::error::SmoothError;
+use crate::layout::Problem;
+use crate::parallel::map_parts;
+use crate::run::{Derivatives, Desired, Goal, Objectives, Options, Plan};
+
+/// Checks that a run by these options can go in rounds, as `option` asks for.
+pub(crate) fn check(
+    option: &'static str,
+    options: &Options,
+    is_continued: bool,
+) -> Result<(), SmoothError> {
+    let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
+    if options.scheme.period() > 1 || !options.scheme.is_monotone() {
+        return refuse("it needs one metric other than edge: take imr, say");
+    }
+    if options.derivatives != Derivatives::Analytic {
+        return refuse("it needs exact derivatives");
+    }
+    if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
+        return refuse("the desired f is not sought in such a run: give its value");
+    }
+    match is_continued {
+        true => refuse("such a run is not continued from a checkpoint: start anew"),
+        false => Ok(()),
+    }
+}
+
+/// The objectives that a plan asks for.
+pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
+    let mut objectives = Objectives::untracked();
+    for metric in plan.tracked() {
+        let excess = mean_excess(metric, problem, positions);
+        objectives.set(metric, metric.ideal_squared() + excess);
+    }
+    objectives
+}
+
+/// Whether no triangle is inverted or flat after a move, or has an inverse mean ratio that is worse than before and above `guard`.
+pub(crate) fn is_sound(problem: &Problem, before: &[DVec2], after: &[DVec2], guard: f64) -> bool {
+    let ratio = |positions: &[DVec2], t: &[u32; 3]| {
+        problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
+    };
+    let is_sound = |t: &[u32; 3]| {
+        let now = ratio(after, t);
+        now.is_finite() && (now <= guard || now <= ratio(before, t))
+    };
+    let parts = map_parts(problem.triangles().chunks(4096), |_, part| part.iter().all(is_sound));
+    parts.into_iter().all(|is_sound| is_sound)
+}

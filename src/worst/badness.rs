@@ -1,0 +1,172 @@
+//! How bad a triangle is while the worst ones are improved.
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::metric::{Corner, Dual, Real, TargetMap};
+use crate::run::WorstBy;
+use crate::topology::predicates::is_positive;
+
+/// √3/6: the sum of the squared lengths of an equilateral triangle times this is its doubled area.
+const IDEAL: f64 = 0.288_675_134_594_812_9;
+
+/// A measure of triangles: the larger, the worse. Squares, so that they have smooth derivatives: of the inverse mean ratio, of one over
+/// the sine of the least angle, or of one over the least altitude.
+#[derive(Clone, Copy)]
+pub(crate) struct Badness(pub(crate) WorstBy);
+
+impl Badness {
+    /// The numbers of which the badness of a triangle is the largest, and how many there are.
+    fn terms<T: Real>(self, corner: &Corner<T>) -> ([T; 3], usize) {
+        let [a, b, c] = corner.squared_lengths();
+        let area = corner.doubled_area();
+        let per_area = area.constant(1.0) / (area * area);
+        match self.0 {
+            WorstBy::Imr => {
+                let sum = (a + b + c) * IDEAL;
+                ([sum * sum * per_area; 3], 1)
+            }
+            // A sine is the doubled area over the lengths of two edges.
+            WorstBy::MinAngle => ([a * b * per_area, a * c * per_area, b * c * per_area], 3),
+            WorstBy::Altitude => ([a * per_area, b * per_area, c * per_area], 3),
+        }
+    }
+
+    /// Whether triangles are measured as targets show them.
+    pub(crate) fn is_of_targets(self) -> bool {
+        self.0 != WorstBy::Altitude
+    }
+
+    /// A triangle as it is measured.
+    pub(crate) fn seen(self, corner: Corner<f64>, map: Option<&TargetMap<f64>>) -> Corner<f64> {
+        match map {
+            Some(map) if self.is_of_targets() => map.show(&corner),
+            _ => corner,
+        }
+    }
+
+    /// The badness of a triangle as it is measured; infinite if it is inverted or flat.
+    pub(crate) fn of(self, corner: &Corner<f64>) -> f64 {
+        if !is_sound(corner) {
+            return f64::INFINITY;
+        }
+        let (terms, _) = self.terms(corner);
+        terms.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The sum of the terms of a triangle as it is measured, each relative to `unit` and to the power 2^doublings.
+    pub(crate) fn power(self, corner: &Corner<f64>, unit: f64, doublings: u32) -> f64 {
+        let (terms, count) = self.terms(corner);
+        terms[..count].iter().map(|term| power(term / unit, doublings)).sum()
+    }
+
+    /// The same with its derivatives by the vertex that the edges of the triangle start from.
+    pub(crate) fn power_derivatives(
+        self,
+        corner: &Corner<f64>,
+        unit: f64,
+        doublings: u32,
+    ) -> Dual<f64> {
+        let vertex = |edge: [f64; 2]| [0, 1].map(|axis| Dual::variable(edge[axis], axis, -1.0));
+        let (a, b) = (vertex(corner.a), vertex(corner.b));
+        let (terms, count) = self.terms(&Corner { a, b, mean_area: corner.mean_area });
+        let k = 2f64.powi(doublings as i32);
+        terms[..count].iter().fold(Dual::default(), |sum, term| {
+            let value = power(term.value / unit, doublings);
+            let (slope, bend) = (k * value / term.value, (k - 1.0) / term.value);
+            let ([x, y], [xx, xy, yy]) = (term.gradient, term.hessian);
+            let hessian = [xx + bend * x * x, xy + bend * x * y, yy + bend * y * y];
+            let gradient = [slope * x, slope * y];
+            sum + Dual { value, gradient, hessian: hessian.map(|second| slope * second) }
+        })
+    }
+
+    /// What a badness means: an inverse mean ratio, an angle in degrees, or an altitude in the unit of the mesh.
+    pub(crate) fn meaning(self, badness: f64, problem: &Problem) -> f64 {
+        match self.0 {
+            WorstBy::Imr => badness.sqrt(),
+            WorstBy::MinAngle => badness.sqrt().recip().min(1.0).asin().to_degrees(),
+            WorstBy::Altitude => (badness.sqrt() * problem.normalization().1).recip(),
+        }
+    }
+}
+
+/// x to the power 2^doublings.
+fn power(x: f64, doublings: u32) -> f64 {
+    (0..doublings).fold(x, |x, _| x * x)
+}
+
+/// Whether a triangle is neither inverted nor flat.
+pub(crate) fn is_sound(corner: &Corner<f64>) -> bool {
+    is_positive(&[[0.0; 2], corner.a, corner.b], &[0, 1, 2]) && corner.doubled_area() > 0.0
+}
+
+/// The triangle that one corner and two others make, in coordinates.
+pub(crate) fn corner(at: DVec2, [a, b]: [DVec2; 2], mean_area: f64) -> Corner<f64> {
+    Corner { a: (a - at).into(), b: (b - at).into(), mean_area }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const POINTS: [[f64; 2]; 3] = [[0.1, 0.2], [1.3, 0.1], [0.4, 0.9]];
+
+    fn seen_from(at: [f64; 2]) -> Corner<f64> {
+        corner(at.into(), [POINTS[1].into(), POINTS[2].into()], 1.0)
+    }
+
+    #[test]
+    fn measures_are_those_of_the_triangle() {
+        let [p, q, r] = POINTS.map(DVec2::from);
+        let (a, b, c) = (p.distance(q), p.distance(r), q.distance(r));
+        let area = (q - p).perp_dot(r - p);
+        // Heron's formula and the law of cosines: no formula of the code under test.
+        let half = 0.5 * (a + b + c);
+        let heron = 2.0 * (half * (half - a) * (half - b) * (half - c)).sqrt();
+        assert!((heron - area).abs() < 1e-15);
+        let angle = |opposite: f64, x: f64, y: f64| {
+            ((x * x + y * y - opposite * opposite) / (2.0 * x * y)).acos().to_degrees()
+        };
+        let least = angle(a, b, c).min(angle(b, a, c)).min(angle(c, a, b));
+        let corner = seen_from(POINTS[0]);
+        let imr = Badness(WorstBy::Imr).of(&corner).sqrt();
+        assert!((imr - (a * a + b * b + c * c) / (12f64.sqrt() * heron)).abs() < 1e-14);
+        let sine = Badness(WorstBy::MinAngle).of(&corner).sqrt().recip();
+        assert!((sine.asin().to_degrees() - least).abs() < 1e-12);
+        let altitude = Badness(WorstBy::Altitude).of(&corner).sqrt().recip();
+        assert!((altitude - heron / a.max(b).max(c)).abs() < 1e-15);
+        let inverted = Corner { a: corner.b, b: corner.a, ..corner };
+        assert!(WorstBy::ALL.iter().all(|&by| Badness(by).of(&inverted) == f64::INFINITY));
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_power() {
+        let h = 1e-5;
+        for by in WorstBy::ALL {
+            let (badness, unit) = (Badness(by), 3.0);
+            for doublings in [0, 3] {
+                let value = |x: f64, y: f64| {
+                    let [px, py] = POINTS[0];
+                    badness.power(&seen_from([px + x * h, py + y * h]), unit, doublings)
+                };
+                let found = badness.power_derivatives(&seen_from(POINTS[0]), unit, doublings);
+                let here = value(0.0, 0.0);
+                assert!((found.value - here).abs() < 1e-12 * here);
+                let size = found.hessian.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                let (left, right) = (value(-1.0, 0.0), value(1.0, 0.0));
+                let (low, high) = (value(0.0, -1.0), value(0.0, 1.0));
+                let gradient = [(right - left) / (2.0 * h), (high - low) / (2.0 * h)];
+                let cross =
+                    value(1.0, 1.0) - value(1.0, -1.0) - value(-1.0, 1.0) + value(-1.0, -1.0);
+                let hessian = [right - 2.0 * here + left, 0.25 * cross, high - 2.0 * here + low];
+                for (got, want) in found.gradient.into_iter().zip(gradient) {
+                    assert!((got - want).abs() < 1e-7 * size, "{by:?}: {got} {want}");
+                }
+                for (got, want) in found.hessian.into_iter().zip(hessian) {
+                    assert!((got - want / (h * h)).abs() < 1e-4 * size, "{by:?}: {got} {want}");
+                }
+            }
+        }
+    }
+}

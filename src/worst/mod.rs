@@ -1,0 +1,10 @@
+//! The worst triangles improved after a run: free vertices around them move such that the worst of each patch becomes less bad.
+
+mod badness;
+mod patch;
+mod regions;
+mod stage;
+
+pub(crate) use badness::Badness;
+pub(crate) use patch::Rules;
+pub(crate) use stage::{improve, worst_movable};

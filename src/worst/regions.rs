@@ -1,0 +1,44 @@
+//! Which vertices may move while the worst triangles are improved.
+
+use crate::layout::Problem;
+
+/// The free vertices of some triangles and of so many rings around them, ascending, apart where no triangle joins them.
+pub(crate) fn around(problem: &Problem, triangles: &[u32], rings: u32) -> Vec<Vec<u32>> {
+    let free = problem.free_count() as u32;
+    let mut found = Vec::new();
+    let mut is_in = vec![false; free as usize];
+    let mut add = |v: u32, found: &mut Vec<u32>| {
+        if v < free && !std::mem::replace(&mut is_in[v as usize], true) {
+            found.push(v);
+        }
+    };
+    for &t in triangles {
+        problem.triangles()[t as usize].into_iter().for_each(|v| add(v, &mut found));
+    }
+    let mut ring = 0..found.len();
+    for _ in 0..rings {
+        for at in ring.clone() {
+            problem.ring_of(found[at]).iter().for_each(|&v| add(v, &mut found));
+        }
+        ring = ring.end..found.len();
+    }
+    found.sort_unstable();
+    let mut regions = Vec::new();
+    for start in found {
+        if !std::mem::replace(&mut is_in[start as usize], false) {
+            continue;
+        }
+        let (mut region, mut done) = (vec![start], 0);
+        while let Some(&v) = region.get(done) {
+            done += 1;
+            for &next in problem.ring_of(v) {
+                if next < free && std::mem::replace(&mut is_in[next as usize], false) {
+                    region.push(next);
+                }
+            }
+        }
+        region.sort_unstable();
+        regions.push(region);
+    }
+    regions
+}

@@ -1,0 +1,88 @@
+//! The stage after a run in which the worst triangles are improved.
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::metric::TargetMap;
+use crate::parallel::{collect, map_parts};
+use crate::worst::badness::{Badness, corner};
+use crate::worst::patch::{Patch, Rules};
+use crate::worst::regions::around;
+
+/// One of so many triangles is improved, the worst of those with a free vertex,
+const SHARE: usize = 1000;
+/// but so many at least,
+const FEWEST: usize = 10;
+/// and so many at most, so that the stage takes seconds for the largest mesh.
+const MOST: usize = 1000;
+/// The rings of vertices around them that move too: with three the worst falls no farther, and f rises more.
+const RINGS: u32 = 2;
+/// The stage ends after so many passes,
+const PASSES: u32 = 10;
+/// or one in which the worst badness of the mesh fell by less than this share. Of imr it is half as much.
+const LEAST_GAIN: f64 = 0.01;
+
+/// The largest badness of a triangle with a free vertex, and the number of triangles without one that are worse.
+pub(crate) fn worst_movable(
+    problem: &Problem,
+    badness: Badness,
+    positions: &[DVec2],
+) -> (f64, usize) {
+    let all = all(problem, badness, positions);
+    let free = problem.free_count() as u32;
+    let can_move = |t: usize| problem.triangles()[t].iter().any(|&v| v < free);
+    let movable = all.iter().enumerate().filter(|(t, _)| can_move(*t));
+    let worst = movable.map(|(_, badness)| *badness).fold(0.0, f64::max);
+    let is_worse = |(t, badness): &(usize, &f64)| **badness > worst && !can_move(*t);
+    (worst, all.iter().enumerate().filter(is_worse).count())
+}
+
+/// The badness of every triangle.
+fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
+    collect(problem.triangles().len(), |t| {
+        let t = problem.triangles()[t];
+        let [p, q, r] = t.map(|v| positions[v as usize]);
+        let map = problem
+            .targets()
+            .map(|maps| TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))));
+        badness.of(&badness.seen(corner(p, [q, r], problem.mean_area()), map.as_ref()))
+    })
+}
+
+/// Improves the worst triangles of a mesh with its vertices at `positions`: each patch around some of them by itself, for as long as the
+/// worst of all becomes less bad. No triangle becomes worse than the worst of its patch was. Returns the number of vertices that
+/// have moved.
+pub(crate) fn improve(problem: &Problem, rules: &Rules<'_>, positions: &mut [DVec2]) -> usize {
+    let free = problem.free_count() as u32;
+    let mut has_moved = vec![false; free as usize];
+    let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MOST);
+    let mut last = f64::INFINITY;
+    for _ in 0..PASSES {
+        let badness = all(problem, rules.badness, positions);
+        let is_movable = |&t: &u32| problem.triangles()[t as usize].iter().any(|&v| v < free);
+        let mut bad: Vec<u32> = (0..badness.len() as u32).filter(is_movable).collect();
+        let worse_first = |a: &u32, b: &u32| {
+            let [x, y] = [a, b].map(|&t| badness[t as usize]);
+            y.total_cmp(&x).then(a.cmp(b))
+        };
+        if bad.len() > count {
+            bad.select_nth_unstable_by(count, worse_first);
+            bad.truncate(count);
+        }
+        let worst = bad.iter().map(|&t| badness[t as usize]).fold(0.0, f64::max);
+        let is_better = worst < last * (1.0 - LEAST_GAIN);
+        if !is_better {
+            break;
+        }
+        last = worst;
+        let here = &*positions;
+        let improved = map_parts(around(problem, &bad, RINGS), |_, vertices| {
+            Patch::new(problem, rules, here, vertices).improve()
+        });
+        for (v, to) in improved.into_iter().flatten().flatten() {
+            has_moved[v as usize] |= positions[v as usize] != to;
+            positions[v as usize] = to;
+        }
+    }
+    has_moved.into_iter().filter(|moved| *moved).count()
+}

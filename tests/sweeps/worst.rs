@@ -1,0 +1,145 @@
+//! The worst triangles improved after a run.
+
+use crate::support::{self, check};
+use crate::{backends, distorted, name, plate, run, with_points};
+use gpu_smooth::{Backend, Change, Mesh, Metric, Options, Outcome, Smoother, Targets, WorstBy};
+
+/// The least angle of a triangle, in degrees, by the law of cosines.
+fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
+    let length = |[x, y]: [f64; 2], [a, b]: [f64; 2]| (x - a).hypot(y - b);
+    let (a, b, c) = (length(q, r), length(r, p), length(p, q));
+    let angle = |a: f64, b: f64, c: f64| ((b * b + c * c - a * a) / (2.0 * b * c)).acos();
+    angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b)).to_degrees()
+}
+
+/// The worst triangle with a free vertex, in the words of [`gpu_smooth::Improved::worst`].
+fn worst(smoother: &Smoother, points: &[[f64; 2]], by: WorstBy) -> f64 {
+    let topology = smoother.topology();
+    let can_move = |t: &&[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
+    let of = |measure: &dyn Fn([[f64; 2]; 3]) -> f64| {
+        let values = topology.triangles().iter().filter(can_move);
+        values.map(|t| measure(t.map(|v| points[v as usize]))).collect::<Vec<_>>()
+    };
+    let altitude = |corners: [[f64; 2]; 3]| {
+        let [p, q, r] = corners;
+        let longest = [(p, q), (q, r), (r, p)].map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+        let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        area.abs() / longest.into_iter().fold(0.0, f64::max)
+    };
+    match by {
+        WorstBy::Imr => of(&check::imr).into_iter().fold(1.0, f64::max),
+        WorstBy::MinAngle => of(&least_angle).into_iter().fold(180.0, f64::min),
+        WorstBy::Altitude => of(&altitude).into_iter().fold(f64::INFINITY, f64::min),
+    }
+}
+
+fn improved(smoother: &Smoother, by: WorstBy, options: Options, backend: &Backend) -> Outcome {
+    run(smoother, &Options { improve_worst: Some(by), ..options }, backend)
+}
+
+#[test]
+fn the_worst_triangle_is_better_by_each_measure_at_a_small_cost_in_f() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let usual = run(&smoother, &Options::default(), &Backend::Cpu);
+    assert_eq!(usual.improved, None);
+    let (cpu, gpu) = (&backends()[0], &backends()[1]);
+    for (by, backend) in [(WorstBy::Imr, cpu), (WorstBy::MinAngle, gpu), (WorstBy::Altitude, cpu)] {
+        let outcome = improved(&smoother, by, Options::default(), backend);
+        let told = outcome.improved.unwrap();
+        let label = format!("{by:?} on the {}: {told:?}", name(backend));
+        let [before, after] = told.worst;
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-4;
+        assert!(near(before, worst(&smoother, &usual.points, by)), "{label}");
+        assert!((after / worst(&smoother, &outcome.points, by) - 1.0).abs() < 1e-9, "{label}");
+        let gain = if by == WorstBy::Imr { before / after } else { after / before };
+        assert!(gain > 1.05, "{label}");
+        let f = |points| smoother.f(Metric::Imr, points).unwrap();
+        assert!(near(told.f[0], f(&usual.points)), "{label}");
+        assert!((told.f[1] / f(&outcome.points) - 1.0).abs() < 1e-9, "{label}");
+        // Larger altitudes take room from other triangles.
+        let most = if by == WorstBy::Altitude { 1.3 } else { 1.06 };
+        assert!(told.f[0] < told.f[1] && told.f[1] < most * told.f[0], "{label}");
+        assert!(told.vertices > 0 && told.vertices <= smoother.topology().free_count(), "{label}");
+        assert!(check::is_valid(&with_points(&mesh, &outcome.points)), "{label}");
+        // No other shape may become worse than the worst was.
+        let shapes = [&usual, &outcome].map(|o| worst(&smoother, &o.points, WorstBy::Imr));
+        assert!(shapes[1] <= shapes[0] * (1.0 + 1e-6), "{label}: {shapes:?}");
+    }
+}
+
+/// Not even where f is higher than before is the mesh given back as it was.
+#[test]
+fn a_smooth_mesh_is_improved_without_a_sweep() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smooth = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
+    let mesh = with_points(&mesh, &smooth.points);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options { max_sweeps: 0, ..Options::default() };
+    let outcome = improved(&smoother, WorstBy::Imr, options, &Backend::Cpu);
+    let told = outcome.improved.unwrap();
+    assert!(told.worst[1] < 0.95 * told.worst[0] && told.f[1] > told.f[0], "{told:?}");
+    let moved = outcome.points.iter().zip(&mesh.points).filter(|(a, b)| a != b).count();
+    assert_eq!(moved, told.vertices);
+}
+
+#[test]
+fn bounds_and_altitudes_hold_while_the_worst_is_improved() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let change = |outcome: &Outcome| {
+        Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap()
+    };
+    let bounded = Options { max_move: Some(0.4), ..Options::default() };
+    let outcome = improved(&smoother, WorstBy::Imr, bounded, &Backend::Cpu);
+    assert!(change(&outcome).moved.most <= 0.4 && outcome.improved.unwrap().vertices > 0);
+    let kept = Options { keep_altitude: true, ..Options::default() };
+    let outcome = improved(&smoother, WorstBy::MinAngle, kept, &Backend::Cpu);
+    let [before, after] = change(&outcome).least_altitude;
+    assert!(after >= before && outcome.improved.unwrap().vertices > 0);
+}
+
+/// A mesh and its image under a linear map, of which the target undoes that map, end in the same shapes.
+#[test]
+fn the_worst_is_what_targets_show() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let stretched: Vec<[f64; 2]> = mesh.points.iter().map(|[x, y]| [*x, 0.5 * y]).collect();
+    let image = with_points(&mesh, &stretched);
+    let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
+    let plain = Smoother::new(&mesh).unwrap();
+    let mut shown = Smoother::new(&image).unwrap();
+    shown.set_targets(&targets).unwrap();
+    for by in [WorstBy::Imr, WorstBy::MinAngle] {
+        let options = Options { tolerance: 1e-9, ..Options::default() };
+        let ends = [&plain, &shown].map(|smoother| {
+            improved(smoother, by, options.clone(), &Backend::Cpu).improved.unwrap()
+        });
+        let [a, b] = ends.map(|end| end.worst);
+        assert!((a[0] / b[0] - 1.0).abs() < 1e-4, "{by:?}: {ends:?}");
+        assert!((a[1] / b[1] - 1.0).abs() < 1e-2, "{by:?}: {ends:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_improved_stays() {
+    // Equilateral triangles around a free vertex, and a worse one that no vertex of can move.
+    let mut points: Vec<[f64; 2]> =
+        (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
+    points.extend([[0.0, 0.0], [3.0, 0.4]]);
+    let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
+    triangles.push([0, 7, 1]);
+    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let smoother = Smoother::new(&mesh).unwrap();
+    let outcome = improved(&smoother, WorstBy::Imr, Options::default(), &Backend::Cpu);
+    let told = outcome.improved.unwrap();
+    assert_eq!((told.vertices, told.stuck), (0, 1), "{told:?}");
+    assert_eq!(told.worst[0], told.worst[1]);
+    assert_eq!(outcome.points, mesh.points);
+    // Nor is anything done after a run that was left.
+    let mesh = distorted();
+    let smoother = Smoother::new(mesh).unwrap();
+    let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
+    let mut leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
+    let outcome = smoother.run(&options, &Backend::Cpu, &mut leave).unwrap();
+    assert_eq!(outcome.improved, None);
+}
