@@ -10,7 +10,7 @@ mod limit;
 mod places;
 mod rounds;
 
-pub(crate) use attempt::Attempt;
+pub(crate) use attempt::{Attempt, Ended};
 pub(crate) use improving::Improving;
 pub(crate) use limit::Limit;
 pub(crate) use places::Places;

@@ -1,0 +1,237 @@
+//! A prepared mesh, and its runs.
+
+mod goal;
+mod running;
+mod ways;
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use glam::DVec2;
+use web_time::Instant;
+
+use crate::cpu::mean_excess;
+use crate::error::{MeshError, SmoothError};
+use crate::gpu::{Gpu, MeshSize, Waiting};
+use crate::layout::{Problem, prepare};
+use crate::mesh::Mesh;
+use crate::metric::Metric;
+use crate::outcome::Outcome;
+use crate::quality::Quality;
+use crate::run::{Checkpoint, Keeper, NoKeeper, Observer, Options};
+use crate::slide::{Slide, Sliding};
+use crate::targets::{Outside, TargetField, Targets};
+use crate::topology::{Topology, certify};
+use crate::whole::Places;
+
+/// The processor that does the sweeps.
+pub enum Backend {
+    /// All cores of the CPU, in double precision.
+    Cpu,
+    /// A wgpu device.
+    Gpu(Gpu),
+}
+
+/// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
+pub struct Smoother<'a> {
+    mesh: &'a Mesh,
+    topology: Topology<'a>,
+    problem: Problem,
+    sliding: Option<Sliding>,
+    /// The targets of places, if targets do not belong to vertices.
+    field: Option<TargetField>,
+    prepare: Duration,
+}
+
+impl<'a> Smoother<'a> {
+    /// Prepares a mesh.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
+    pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
+        let start = Instant::now();
+        let (mut topology, problem) = prepare(mesh)?;
+        // Runs need the problem alone. Stars are found again if a vertex has to be set back.
+        topology.forget_stars();
+        Ok(Self { mesh, topology, problem, sliding: None, field: None, prepare: start.elapsed() })
+    }
+
+    /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
+    /// vertex of the mesh. f is then that of the triangles as their targets show them.
+    ///
+    /// # Errors
+    /// [`MeshError::ValueCount`] if there is not one target for each vertex.
+    pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
+        targets.check_count(self.mesh.points.len())?;
+        self.problem.set_targets(targets.maps());
+        self.field = None;
+        Ok(())
+    }
+
+    /// Sets what elements are to look like at each place, in place of targets that belong to vertices. A run then goes in rounds of
+    /// sweeps, after each of which targets are taken from where the vertices have moved to. f is that by the targets of the places
+    /// where vertices are, at the end of each round, and does not rise. As sweeps see targets that stand still, a run ends where
+    /// they lead to no lower f, which may be above the least there is. Returns which vertices are outside of the field's mesh.
+    ///
+    /// # Errors
+    /// [`MeshError::NotFinite`] if a vertex is at no place.
+    pub fn set_target_field(&mut self, field: TargetField) -> Result<Outside, MeshError> {
+        let (targets, outside) = field.at(&self.mesh.points)?;
+        self.set_targets(&targets)?;
+        self.field = Some(field);
+        Ok(outside)
+    }
+
+    /// Lets vertices slide along the boundary and other curves in further runs; `None` for none. Returns how many vertices may.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a vertex is listed that the mesh does
+    /// not have.
+    pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
+        self.sliding = None;
+        let Some(slide) = slide else { return Ok(0) };
+        let vertices = self.mesh.points.len();
+        slide.check(vertices)?;
+        let sliding = Sliding::new(&self.mesh.points, &self.topology, slide);
+        let sliding = sliding.numbered(&self.problem, vertices);
+        self.topology.forget_stars();
+        let count = sliding.count();
+        self.sliding = (count > 0).then_some(sliding);
+        Ok(count)
+    }
+
+    /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
+    /// [`Self::set_targets`] and [`Self::set_target_field`].
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a point at which there is
+    /// no target.
+    pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
+        self.topology.check_count(points)?;
+        let positions = self.problem.normalized(points, Vec::new());
+        let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
+        let mut places = Places::new(self.mesh, field, &self.problem);
+        places.follow(&positions)?;
+        Ok(metric.ideal_squared() + mean_excess(metric, &places.problem, &positions))
+    }
+
+    /// The mesh's windings, boundary and free vertices.
+    pub fn topology(&self) -> &Topology<'a> {
+        &self.topology
+    }
+
+    /// Number of colors that the free vertices have.
+    pub fn colors(&self) -> usize {
+        self.problem.colors().len()
+    }
+
+    /// Time spent in [`Self::new`].
+    pub fn prepare_time(&self) -> Duration {
+        self.prepare
+    }
+
+    /// Number of triangles, and of vertices that some triangle uses.
+    pub fn size(&self) -> MeshSize {
+        let triangles = self.problem.triangles().len();
+        MeshSize { vertices: self.problem.positions().len(), triangles }
+    }
+
+    /// Quality statistics of the mesh with its vertices at `points`.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn quality(&self, points: &[[f64; 2]]) -> Result<Quality, MeshError> {
+        Quality::of(points, &self.topology)
+    }
+
+    /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and
+    /// returns how many; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
+    /// again after [`Self::run`].
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex. Nothing is moved then.
+    pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
+        certify(&self.topology, &self.mesh.points, points)
+    }
+
+    /// Smooths the mesh. Blocks until the run ends. `observe` is called every few sweeps and can end the run;
+    /// the best state so far is then returned.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
+    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
+    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
+    pub fn run(
+        &self,
+        options: &Options,
+        backend: &Backend,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Outcome, SmoothError> {
+        let device = match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
+        };
+        pollster::block_on(self.run_at(options, device, None, &mut NoKeeper, observe))
+    }
+
+    /// Smooths the mesh as [`run`](Self::run) does, and lets `keeper` decide what is kept of the run meanwhile: checkpoints to go on
+    /// from later, and whether it goes on on the CPU if the device fails. With `from`, it goes on from a checkpoint of a run on the
+    /// same mesh with the same options: on the engine that took the checkpoint, to the same bits as if that run had never been left.
+    /// A run that was left on the CPU goes on there whatever the backend.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run), and [`SmoothError::Checkpoint`] if the checkpoint is of another run.
+    pub fn run_kept(
+        &self,
+        options: &Options,
+        backend: &Backend,
+        from: Option<&Checkpoint>,
+        keeper: &mut (impl Keeper + ?Sized),
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Outcome, SmoothError> {
+        let device = match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
+        };
+        pollster::block_on(self.run_at(options, device, from, keeper, observe))
+    }
+
+    /// Smooths the mesh on a device without blocking the thread while the device works.
+    ///
+    /// The future completes only if the application polls the device meanwhile, as one that draws frames does
+    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result; if
+    /// `observe` ends the run, the best state so far is returned. The future is `Send` if `observe` is.
+    ///
+    /// # Errors
+    /// The same as those of [`run`](Self::run).
+    pub async fn run_async(
+        &self,
+        options: &Options,
+        gpu: &Gpu,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Outcome, SmoothError> {
+        self.run_at(options, Some((gpu, Waiting::Await)), None, &mut NoKeeper, observe).await
+    }
+
+    /// The objective by a metric at normalized positions.
+    fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
+        metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
+    }
+}
+
+/// Smooths a mesh given as slices, in one blocking call. `points` are positions in any unit, `triangles` zero-based
+/// vertex triples in either winding. The boundary stays fixed. Returns the positions in the order of `points`.
+///
+/// # Errors
+/// Those of [`Smoother::new`] and [`Smoother::run`].
+pub fn smooth(
+    points: &[[f64; 2]],
+    triangles: &[[u32; 3]],
+    options: &Options,
+    backend: &Backend,
+) -> Result<Vec<[f64; 2]>, SmoothError> {
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
+    let smoother = Smoother::new(&mesh)?;
+    let outcome = smoother.run(options, backend, &mut |_| ControlFlow::Continue(()))?;
+    Ok(outcome.points)
+}

@@ -1,0 +1,194 @@
+//! A run of a prepared mesh, from the check of its options to the judgment of its result.
+
+use std::time::Duration;
+
+use web_time::Instant;
+
+use crate::cpu::mean_excess;
+use crate::error::{MeshError, SmoothError};
+use crate::gpu::{Gpu, Waiting};
+use crate::metric::Metric;
+use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::resume;
+use crate::run::{
+    Checkpoint, Goal, JITTER, Keeper, Keeping, NOISE, Objectives, Observer, Options, Phase,
+    ROUNDING, Stop,
+};
+use crate::whole::{Attempt, Ended, Improving, altitude};
+
+use super::Smoother;
+use super::ways::Ways;
+
+impl Smoother<'_> {
+    pub(super) async fn run_at<K: Keeper + ?Sized>(
+        &self,
+        options: &Options,
+        device: Option<(&Gpu, Waiting)>,
+        from: Option<&Checkpoint>,
+        keeper: &mut K,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Outcome, SmoothError> {
+        let start = Instant::now();
+        options.check_for(&self.problem)?;
+        Ways::check(self, options, from.is_some())?;
+        let (device, fault) = self.checked(device, keeper).await?;
+        let mut about = resume::about(self.mesh, self.problem.targets(), options);
+        let resumed = from
+            .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
+            .transpose()?;
+        let base = options.scheme.base();
+        let initial = self.objective(base, self.problem.positions());
+        if !initial.is_finite() {
+            let triangle = self.quality(&self.mesh.points)?.worst_triangle;
+            let metric = base.properties().name;
+            return Err(MeshError::BeyondPrecision { triangle, metric }.into());
+        }
+        let known = resumed.and_then(|resumed| resumed.about.goal.clone());
+        let goal = match (options.goal, known) {
+            (Some(Goal { fraction, .. }), Some((desired, origin))) => {
+                Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
+            }
+            (Some(goal), None) => match self.aim(goal, options, device, keeper, observe).await? {
+                Some(aimed) => Some(aimed),
+                None => return Ok(self.unchanged(base, initial, start)),
+            },
+            (None, _) => None,
+        };
+        let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
+
+        about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
+        let mut keeping = Keeping::new(keeper);
+        keeping.about = Some(about);
+        let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing, done: 0 };
+        let mut ways = Ways::new(self, options);
+        let ended = ways.sweep(run, (options, target), resumed, &mut keeping, observe).await?;
+        let outcome = self.judged(options, (initial, goal), ended, ways)?;
+        let device_fault = fault.or(outcome.device_fault);
+        Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
+    }
+
+    /// The device that a run begins on, which has room for the mesh and keeps all digits. With a fault, the run begins on the CPU.
+    async fn checked<'g, K: Keeper + ?Sized>(
+        &self,
+        device: Option<(&'g Gpu, Waiting)>,
+        keeper: &mut K,
+    ) -> Result<(Option<(&'g Gpu, Waiting)>, Option<DeviceFault>), SmoothError> {
+        let Some((gpu, waiting)) = device else { return Ok((None, None)) };
+        gpu.check_size(self.size())?;
+        match gpu.arithmetic_checked(waiting).await {
+            Ok(()) => Ok((device, None)),
+            Err(error) if keeper.goes_on_without(&error, 0) => {
+                Ok((None, Some(DeviceFault { sweep: 0, error })))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Makes the coordinates of the result from where the sweeps ended, and judges them as they are: rounding, and vertices that were
+    /// set back, may have cost more than the sweeps gained, and a device moves the vertices of an optimal mesh by its own
+    /// rounding. If nothing was gained on `initial`, the mesh comes back as it was.
+    fn judged(
+        &self,
+        options: &Options,
+        (initial, goal): (f64, Option<GoalOutcome>),
+        mut ended: Ended,
+        mut ways: Ways<'_>,
+    ) -> Result<Outcome, SmoothError> {
+        let base = options.scheme.base();
+        let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);
+        let evaluations = ended.history.len();
+        let best_sweep = match options.plan().is_monotone() {
+            true => evaluations - 1,
+            false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
+        };
+        let swept = f(best_sweep);
+        let improving = Improving::after(
+            ended.stop,
+            options,
+            ways.problem(),
+            ways.bounds(),
+            &mut ended.positions,
+        );
+        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
+        let mut points = self.problem.denormalize(self.mesh, &ended.positions);
+        ways.slide_into(&mut points);
+        for x in points.as_flattened_mut() {
+            *x = options.stored.rounded(*x);
+        }
+        let mut returned = self.certify(&mut points)?;
+        if options.keep_altitude {
+            returned += altitude::restore(&self.topology, &self.mesh.points, &mut points);
+            returned += self.certify(&mut points)?;
+        }
+        let judged = self.problem.normalized(&points, ended.positions);
+        ways.follow(&judged)?;
+        let problem = ways.problem();
+        let written = base.ideal_squared() + mean_excess(base, problem, &judged);
+        let gains = initial - written > NOISE * initial + ROUNDING
+            || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
+        // Of a smaller gain, the errors of f on a device would be a share to speak of.
+        let lost = match initial - swept > 100.0 * JITTER * initial {
+            true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        if !gains {
+            points.clone_from(&self.mesh.points);
+            returned = 0;
+        }
+        let slid = ways.slid(gains, &points);
+        let best = if gains { written } else { initial };
+        let improved = improving.map(|improving| {
+            let positions = if gains { &judged } else { self.problem.positions() };
+            improving.outcome(problem, (positions, best), gains)
+        });
+        let goal = goal.map(|goal| {
+            let gone = (initial - best) / (initial - goal.desired);
+            // 0 / 0: the initial objective was the desired one.
+            GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
+        });
+        Ok(Outcome {
+            points,
+            stop: ended.stop,
+            sweeps: evaluations as u32 - 1,
+            corrections: ended.corrections,
+            opening_sweeps: ended.opening_sweeps,
+            levels_left_out: ended.levels_left_out,
+            best_sweep: if gains { best_sweep as u32 } else { 0 },
+            remaining: ended.remaining,
+            held_back: ended.held_back,
+            lost,
+            history: ended.history,
+            goal,
+            returned,
+            slid,
+            improved,
+            device_fault: ended.fault,
+            smooth: Duration::ZERO,
+        })
+    }
+
+    /// The outcome of a run that was cancelled before its first sweep.
+    fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
+        let mut objectives = Objectives::untracked();
+        objectives.set(base, f);
+        Outcome {
+            points: self.mesh.points.clone(),
+            stop: Stop::Cancelled,
+            sweeps: 0,
+            corrections: 0,
+            opening_sweeps: 0,
+            levels_left_out: false,
+            best_sweep: 0,
+            remaining: None,
+            held_back: 0,
+            lost: 0.0,
+            history: vec![objectives],
+            goal: None,
+            returned: 0,
+            slid: None,
+            improved: None,
+            device_fault: None,
+            smooth: start.elapsed(),
+        }
+    }
+}
