@@ -9,7 +9,7 @@ use crate::numbers::six;
 /// Whether the worst triangles are improved.
 #[derive(Args)]
 pub(crate) struct WorstArgs {
-    /// WorstBy the worst triangles after the last sweep, at a small cost in f: vertices around the worst thousandth of them move until the
+    /// Make the worst triangles better after the last sweep, at a small cost in f: vertices around the worst thousandth of them move until the
     /// largest imr is as small, or the least angle or altitude as large, as it can be made
     #[arg(
         long,
@@ -40,6 +40,9 @@ impl WorstArgs {
         })
     }
 }
+
+/// A smaller change of the worst triangle, as a share, is none.
+const TO_SPEAK_OF: f64 = 1e-3;
 
 /// What improving the worst triangles did.
 #[derive(Serialize)]
@@ -83,12 +86,19 @@ impl ImprovedReport {
             }
             n => {
                 let vertices = if *n == 1 { "vertex" } else { "vertices" };
-                let change = 100.0 * (f[1] / f[0] - 1.0);
-                format!(
-                    "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which changed f by {change:+.2} %",
-                    shown(*before),
-                    shown(*after)
-                )
+                let cost = format!("changed f by {:+.2} %", 100.0 * (f[1] / f[0] - 1.0));
+                // Patches around others may have become better all the same.
+                match (after / before - 1.0).abs() > TO_SPEAK_OF {
+                    true => format!(
+                        "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",
+                        shown(*before),
+                        shown(*after)
+                    ),
+                    false => format!(
+                        "the {worst} of movable triangles stays {}; others were improved by {n} {vertices}, which {cost}",
+                        shown(*after)
+                    ),
+                }
             }
         };
         text += &match stuck {
