@@ -98,7 +98,7 @@ pub(crate) enum Command {
     /// Writes a mesh in another format, and says before what that does not hold
     Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
-    Adapters,
+    Adapters(AdaptersArgs),
     /// Tells what each metric measures and what it is good for
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
@@ -167,6 +167,12 @@ fn targets() -> impl TypedValueParser<Value = Format> {
     let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
     PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
         .try_map(move |name| format(name).map(|(_, format)| format).ok_or("not a format"))
+}
+
+#[derive(Args)]
+pub(crate) struct AdaptersArgs {
+    /// List only the adapter that --adapter NAME takes
+    pub(crate) name: Option<String>,
 }
 
 #[derive(Args)]
