@@ -4,7 +4,7 @@ use super::made::base;
 use super::others::{folder, for_each};
 use super::vtu::{self, Place, styles};
 use super::{Folder, damage};
-use gpu_smooth::{Format, MeshFile, PointField, Precision};
+use gpu_smooth::{Conversion, Format, MeshFile, PointField, Precision};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -298,6 +298,11 @@ fn depths_and_other_numbers_need_not_be_finite() {
             let [field] = &file.point_fields(None).unwrap()[..] else { panic!("{name}") };
             assert_eq!(field.values()[..4], [1.0; 4], "{name}");
             assert!(!field.values()[4].is_finite(), "{name}");
+            for (_, target) in Conversion::targets() {
+                let converted = Conversion::new(&file, target).unwrap().unwrap();
+                let Some(text) = converted.text() else { continue };
+                MeshFile::from_bytes("converted".as_ref(), text.into_bytes()).unwrap();
+            }
             // Moved, the vertex keeps what it has.
             let mut points = file.mesh().points.clone();
             points[4] = [2.0, 2.0];
