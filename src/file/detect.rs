@@ -87,7 +87,14 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
         return of(source, &ADCIRC);
     }
-    Err(source.error("the format is not recognized", formats_read()))
+    // Formats that are not read may begin in any way.
+    match FAMILIES.iter().find(|family| !family.is_read() && family.has_ending_of(&source.path)) {
+        Some(family) => of(source, family),
+        None => {
+            let remedy = format!("{}. Convert it, with meshio or gmsh for example", formats_read());
+            Err(source.error("the format is not recognized", remedy))
+        }
+    }
 }
 
 /// The name of the format, with a reader or without, whose files end as this path does.
@@ -185,12 +192,15 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 14] = [
+        let cases: [(&[u8], &str); 17] = [
             (b"<?xml version=\"1.0\"?>\n<!-- <Xdmf> -->\n<VTKFile>", "VTK XML"),
             (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
             (b"solid part\n", "STL"),
             (b"CDF\x02\0\0", "Exodus II"),
             (b"\x89HDF\r\n", "HDF5 is not read"),
+            (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
+            (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM is not read"),
+            (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI) is not read"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),
             (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),
@@ -205,6 +215,8 @@ mod tests {
             assert_eq!(problem("mesh.dat", bytes), name);
         }
         assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
+        assert_eq!(problem("mesh.bdf", b"$ made by hand\nGRID,1,,0.,0.\n"), "Nastran is not read");
+        assert_eq!(problem("mesh.unv", b"    -1\n  2411\n"), "I-DEAS universal is not read");
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
     }
 

@@ -142,12 +142,8 @@ static EXODUS: Family = family(
 );
 static XDMF: Family =
     family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
-static ABAQUS: Family = unread(
-    "Abaqus",
-    &[".inp"],
-    &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"],
-    "Convert it to a format that is read, with meshio for example",
-);
+static ABAQUS: Family =
+    unread("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"], BY_MESHIO);
 static HDF: Family = unread(
     "HDF5",
     &[".h5", ".hdf5", ".med", ".cgns"],
@@ -158,8 +154,34 @@ static HDF: Family = unread(
 static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 
+static NASTRAN: Family = unread("Nastran", &[".bdf", ".nas"], &[b"BEGIN BULK"], BY_MESHIO);
+static UNV: Family =
+    unread("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
+static LS_DYNA: Family =
+    unread("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
+static FLUENT: Family =
+    unread("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
+static MFEM: Family =
+    unread("MFEM", &[], &[b"MFEM mesh", b"MFEM NC mesh"], "Save it as VTK: Mesh::PrintVTK of MFEM");
+static DOLFIN: Family = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
+static MIKE: Family = unread("MIKE (DHI)", &[], &[b"100079 ", b"100079\t"], BY_OTHERS);
+static FVCOM: Family = unread("FVCOM", &[], &[b"Node Number"], BY_OTHERS);
+static COMSOL: Family =
+    unread("COMSOL", &[".mphtxt", ".mphbin"], &[b"# Created by COMSOL"], "Export the mesh as VTK");
+static GEOMETRY: Family = unread(
+    "a geometry without a mesh (CAD or .geo)",
+    &[".step", ".stp", ".iges", ".igs", ".brep", ".geo"],
+    &[b"ISO-10303-21"],
+    "Mesh it first, with gmsh for example",
+);
+
+/// What to do with a file of a format that meshio reads.
+const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for example";
+/// What to do with a file that no converter at hand reads.
+const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
+
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 21] = [
+pub(crate) static FAMILIES: [&Family; 31] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -181,4 +203,14 @@ pub(crate) static FAMILIES: [&Family; 21] = [
     &ABAQUS,
     &HDF,
     &GMSH_1,
+    &NASTRAN,
+    &UNV,
+    &LS_DYNA,
+    &FLUENT,
+    &MFEM,
+    &DOLFIN,
+    &MIKE,
+    &FVCOM,
+    &COMSOL,
+    &GEOMETRY,
 ];

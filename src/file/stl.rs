@@ -165,7 +165,7 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let is = |name: &str| word.eq_ignore_ascii_case(name.as_bytes());
     if is("vertex") {
         let (x_at, at) = cursor.point("a vertex")?;
-        return Ok(Row::Vertex(x_at, at, cursor.height("a vertex")?.1));
+        return Ok(Row::Vertex(x_at, at, cursor.coordinate('z', "a vertex")?));
     }
     match () {
         () if is("facet") => Ok(Row::Facet(start)),

@@ -348,10 +348,10 @@ impl<'a> Cursor<'a> {
         token.and_then(float).ok_or_else(|| self.unusable(token, what, "a number"))
     }
 
-    /// Reads z. Returns where it stands, and z.
+    /// Reads z, which need not be finite: programs write NaN where they know no depth. Returns where it stands, and z.
     #[inline]
     pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
-        Ok((self.at(), self.coordinate('z', owner)?))
+        Ok((self.at(), self.real(format_args!("z of {owner}"))?))
     }
 
     /// Reads x and y. Returns where x stands, and both.

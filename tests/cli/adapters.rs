@@ -16,6 +16,7 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
 
     let part: String = name.chars().take(4).collect();
     for part in [part.to_uppercase(), part.to_lowercase()] {
+        assert_eq!(folder.run(["adapters", &part]).clean().out.trim_end(), first);
         for engine in ["gpu", "auto"] {
             let args = ["in", "out", "--engine", engine, "--adapter", &part, "--report", "r.json"];
             folder.run(args).clean();
@@ -38,6 +39,7 @@ fn an_unknown_adapter_is_answered_with_those_there_are() {
         let run = folder.line(&format!("in out --engine {engine} --adapter nonsense"));
         run.refused(&["no GPU adapter has 'nonsense' in its name. There are: ", name]);
     }
+    folder.line("adapters nonsense").refused(&["no GPU adapter has 'nonsense' in its name", name]);
     assert!(folder.content() == before);
 }
 

@@ -172,12 +172,53 @@ fn a_driver_that_crashes_on_start_does_not_end_a_run_that_was_free_to_choose() {
             "edge on cpu (all cores): the driver of the GPU failed when it was tried: signal: 6";
         assert_holds(&run.clean().out, &[told]);
     }
-    // Where a GPU is asked for, the driver ends the process, and no file is touched.
+}
+
+#[test]
+fn a_driver_that_crashes_on_start_is_told_where_a_gpu_is_asked_for() {
     let folder = small();
     let before = folder.content();
-    let mut command = folder.command();
-    let command = with_fault(&mut command, "vkCreateInstance", 1, "crash");
-    let ended = command.args(["in", "out", "--engine", "gpu"]).output().unwrap();
-    assert_eq!(ended.status.signal(), Some(6));
+    let told = "the driver of the GPU failed when it was tried: signal: 6";
+    let remedy = "Use --engine cpu, or another driver";
+    let lines = ["in out --engine gpu", "in out --adapter llvm", "in --out-dir d --engine gpu"];
+    let others = ["adapters", "bench --engine gpu"];
+    for (line, function) in lines.into_iter().chain(others).zip([
+        "vkCreateInstance",
+        "vkCreateDevice",
+        "vkQueueSubmit",
+        "vkCreateDevice",
+        "vkCreateInstance",
+    ]) {
+        let mut command = folder.command();
+        let run = finish(with_fault(&mut command, function, 1, "crash").args(line.split(' ')));
+        run.refused(&[told, remedy]);
+    }
+    fs::remove_dir(folder.path("d")).unwrap();
     assert!(folder.content() == before);
+}
+
+/// Nothing can be done in a process that has ended, but what was saved is there, and the next call says how to go on.
+#[test]
+fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
+    let folder = small();
+    let line = "in out --tolerance 0 --max-sweeps 40 --checkpoint c --checkpoint-every 1e-9";
+    let mut command = folder.command();
+    with_fault(&mut command, "vkQueueSubmit", 14, "crash");
+    let ended = command.args(format!("{line} --engine gpu").split(' ')).output().unwrap();
+    assert_eq!(ended.status.signal(), Some(6), "{ended:?}");
+    assert!(!folder.path("out.node").exists());
+    folder.line(line).refused(&["--continue c (with --engine cpu as well, if the driver of a GPU"]);
+    let line = "in out --tolerance 0 --max-sweeps 40 --continue c --engine cpu --report r.json";
+    folder.line(line).clean();
+    assert!(folder.json("r.json")["continued_from"].as_u64().unwrap() > 0);
+    assert_eq!(folder.json("r.json")["sweeps"], 40);
+    assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+    // Left to choose, the run does not start the driver again that crashes.
+    folder.line(
+        "in out --tolerance 0 --max-sweeps 40 --time-limit 1e-9 --checkpoint c --engine gpu -q",
+    );
+    let mut command = folder.command();
+    with_fault(&mut command, "vkCreateDevice", 1, "crash");
+    let run = finish(command.args("in out --tolerance 0 --max-sweeps 40 --continue c".split(' ')));
+    assert_holds(&run.clean().out, &["which does not open: the driver of the GPU failed when"]);
 }

@@ -4,7 +4,7 @@ use super::made::base;
 use super::others::{folder, for_each};
 use super::vtu::{self, Place, styles};
 use super::{Folder, damage};
-use gpu_smooth::{Format, MeshFile, PointField, Precision};
+use gpu_smooth::{Conversion, Format, MeshFile, PointField, Precision};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -238,4 +238,81 @@ fn damaged_data_never_panic() {
         read += 1;
     }
     assert!(read > 40, "{read} of 400 files were read");
+}
+
+/// Grids without a depth somewhere were refused, as were the nan of programs in other numbers of a PLY.
+#[test]
+fn depths_and_other_numbers_need_not_be_finite() {
+    // A square, its center and a place for the depth of the center.
+    let square = ["0 0", "4 0", "4 4", "0 4"];
+    let row = |before: &str, z: &str| -> String {
+        let corner = |at: &&str| format!("{before}{at} 1\n");
+        square.iter().map(corner).collect::<String>() + &format!("{before}1 2 {z}\n")
+    };
+    let numbered = |before: &str, z: &str| -> String {
+        let row = |(n, at): (usize, String)| format!("{before}{} {at}\n", n + 1);
+        row_ends(&square, z).into_iter().enumerate().map(row).collect()
+    };
+    fn row_ends(square: &[&str], z: &str) -> Vec<String> {
+        let corners = square.iter().map(|at| format!("{at} 1"));
+        corners.chain([format!("1 2 {z}")]).collect()
+    }
+    let from = |first: usize, lead: &str, numbers: bool| -> String {
+        let triangle = |k: usize| {
+            let number = if numbers { format!("{} ", k + 1) } else { String::new() };
+            let corners = [k, (k + 1) % 4, 4].map(|v| (v + first).to_string());
+            format!("{}{}\n", lead.replace("N ", &number), corners.join(" "))
+        };
+        (0..4).map(triangle).collect()
+    };
+    for z in ["NaN", "-nan", "inf"] {
+        let grid = format!("a grid\n4 5\n{}{}", numbered("", z), from(1, "N 3 ", true));
+        let sms = format!("MESH2D\n{}{}", numbered("ND ", z), from(1, "E3T N ", true));
+        let obj = format!("{}{}", row("v ", z), from(1, "f ", false));
+        let off = format!("OFF\n5 4 0\n{}{}", row("", z), from(0, "3 ", false));
+        let gmsh = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n{}$EndNodes\n$Elements\n4\n{}$EndElements\n",
+            numbered("", z),
+            from(1, "N 2 0 ", true)
+        );
+        let head = "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\nproperty float quality\n";
+        let ply = format!(
+            "{head}element face 4\nproperty list uchar int vertex_indices\nend_header\n{}{}",
+            row("", z),
+            from(0, "3 ", false)
+        );
+        let files = [
+            ("a.gr3", grid),
+            ("a.2dm", sms),
+            ("a.obj", obj),
+            ("a.off", off),
+            ("a.msh", gmsh),
+            ("a.ply", ply),
+        ];
+        for (name, text) in files {
+            let folder = Folder::new(&[(name, &text)]);
+            let file = folder.read(name);
+            let out = folder.path(&format!("out-{name}"));
+            file.write(&out, &file.mesh().points).unwrap();
+            assert_eq!(fs::read_to_string(&out).unwrap(), text, "{name}");
+            let [field] = &file.point_fields(None).unwrap()[..] else { panic!("{name}") };
+            assert_eq!(field.values()[..4], [1.0; 4], "{name}");
+            assert!(!field.values()[4].is_finite(), "{name}");
+            for (_, target) in Conversion::targets() {
+                let converted = Conversion::new(&file, target).unwrap().unwrap();
+                let Some(text) = converted.text() else { continue };
+                MeshFile::from_bytes("converted".as_ref(), text.into_bytes()).unwrap();
+            }
+            // Moved, the vertex keeps what it has.
+            let mut points = file.mesh().points.clone();
+            points[4] = [2.0, 2.0];
+            file.write(&out, &points).unwrap();
+            let moved = fs::read_to_string(&out).unwrap();
+            assert!(moved.contains(&format!("2 {z}\n")), "{name}: {moved}");
+        }
+    }
+    let wrong = "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty int n\nend_header\n0 0 nan\n";
+    let folder = Folder::new(&[("b.ply", wrong)]);
+    let error = MeshFile::read(&folder.path("b.ply")).unwrap_err().to_string();
+    assert!(error.contains("b.ply:8: a whole number of an item is not finite"), "{error}");
 }

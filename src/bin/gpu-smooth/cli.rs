@@ -1,5 +1,10 @@
 //! The command line.
 
+#[cfg(test)]
+#[path = "cli_tests.rs"]
+mod tests;
+
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -98,7 +103,7 @@ pub(crate) enum Command {
     /// Writes a mesh in another format, and says before what that does not hold
     Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
-    Adapters,
+    Adapters(AdaptersArgs),
     /// Tells what each metric measures and what it is good for
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
@@ -170,6 +175,12 @@ fn targets() -> impl TypedValueParser<Value = Format> {
 }
 
 #[derive(Args)]
+pub(crate) struct AdaptersArgs {
+    /// List only the adapter that --adapter NAME takes
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Args)]
 pub(crate) struct CompletionsArgs {
     /// The shell
     pub(crate) shell: Shell,
@@ -182,24 +193,33 @@ pub(crate) struct ManArgs {
 }
 
 impl Cli {
-    /// The command line, or the end of the process with what is wrong with it.
+    /// The command line of this process, or the end of it with what is wrong with it.
     pub(crate) fn read() -> Self {
-        let matches = Self::command().get_matches();
+        Self::checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
+    }
+
+    /// A command line, the name of the program first, of which each option has a value it may have and none contradicts another.
+    ///
+    /// # Errors
+    /// What is wrong with it, or the help or version that it asks for.
+    pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let matches = Self::command().try_get_matches_from(words)?;
+        let refused = |kind, text: String| Err(Self::command().error(kind, text));
         if let Some(text) = misplaced(&matches) {
-            Self::command().error(ErrorKind::ArgumentConflict, text).exit();
+            return refused(ErrorKind::ArgumentConflict, text);
         }
-        let cli = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+        let cli = Self::from_arg_matches(&matches)?;
         if let (None, Some(extra)) = (&cli.smooth.out_dir, cli.smooth.more.first()) {
             let text = format!(
                 "unexpected argument '{}' after IN and OUT: give one mesh a run, or --out-dir DIR for several",
                 extra.display()
             );
-            Self::command().error(ErrorKind::UnknownArgument, text).exit();
+            return refused(ErrorKind::UnknownArgument, text);
         }
-        if let Some(text) = cli.smooth.contradiction() {
-            Self::command().error(ErrorKind::ArgumentConflict, text).exit();
+        match cli.smooth.contradiction() {
+            Some(text) => refused(ErrorKind::ArgumentConflict, text),
+            None => Ok(cli),
         }
-        cli
     }
 }
 

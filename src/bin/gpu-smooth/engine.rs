@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
 use crate::run_args::{EngineChoice, SmoothArgs};
-use crate::trial;
+use crate::trial::{self, Tried};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
@@ -48,8 +48,7 @@ pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
 
 /// Chooses the engine for a mesh of this size and opens it.
 pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
-    let (backend, reason) =
-        Backend::auto_tried(size, &args.options(Precision::Double), trial::drivers);
+    let (backend, reason) = Backend::auto_tried(size, &args.options(Precision::Double), try_best);
     Taken::new(backend, Some(worded(&reason)))
 }
 
@@ -58,7 +57,7 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     let Some(name) = checkpoint.adapter() else {
         return Taken::new(Backend::Cpu, Some("where the run was left".into()));
     };
-    match Gpu::open(Some(name)) {
+    match tried_and_opened(Some(name)) {
         Ok(gpu) => Taken::new(Backend::Gpu(gpu), Some("where the run was left".into())),
         Err(error) => {
             let reason = format!("the run was left on {name}, which does not open: {error}");
@@ -126,7 +125,7 @@ impl<'a> Engines<'a> {
             return taken.clone();
         }
         let (backend, reason) =
-            Backend::auto_tried(size, &self.args.options(Precision::Double), trial::drivers);
+            Backend::auto_tried(size, &self.args.options(Precision::Double), try_best);
         let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
         let known = (taken.clone(), size.vertices);
         match reason {
@@ -153,11 +152,21 @@ fn in_turns(taken: Taken) -> Taken {
 
 /// Opens an adapter, for a command that needs one.
 pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, String> {
-    Gpu::open(name).map_err(refusal)
+    tried_and_opened(name).map_err(refusal)
+}
+
+/// Opens an adapter once it was tried in a process of its own: a driver that crashes would end this one without a word.
+fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
+    trial::drivers(Tried::Adapter(name)).and_then(|()| Gpu::open(name))
+}
+
+/// Tries the adapter that comes first.
+fn try_best() -> Result<(), GpuError> {
+    trial::drivers(Tried::Adapter(None))
 }
 
 /// Why there is no adapter, and what to do.
-fn refusal(error: GpuError) -> String {
+pub(crate) fn refusal(error: GpuError) -> String {
     match error {
         GpuError::NoAdapter { wanted: Some(name), available } if !available.is_empty() => {
             format!("no GPU adapter has '{name}' in its name. There are: {available}")

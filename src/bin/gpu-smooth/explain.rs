@@ -80,11 +80,29 @@ pub(crate) fn are_across(file: &MeshFile, bad: &[BadTriangle]) -> bool {
         && bad.iter().any(is_far)
 }
 
+/// The coordinate that is the same at all vertices, if one is: the mesh then stands upright on the plane of x and y.
+fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
+    let first = points.first()?;
+    let is_constant = |k: usize| points.iter().all(|point| point[k] == first[k]);
+    ['x', 'y']
+        .into_iter()
+        .zip(0..2)
+        .find(|&(_, k)| is_constant(k))
+        .map(|(name, k)| (name, first[k]))
+}
+
 /// File, place, problem and remedy, in one line unless several triangles are to be listed.
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
     match *error {
         MeshError::Infeasible { ref triangles } => {
+            if let Some((axis, value)) = constant(&file.mesh().points) {
+                return format!(
+                    "{}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed. \
+                     Turn the mesh into that plane",
+                    file.path().display()
+                );
+            }
             let remedy = match are_across(file, triangles) {
                 true => {
                     "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again"

@@ -35,7 +35,7 @@ pub(crate) fn check<'p>(
         None => {}
         Some(true) => {
             return Err(format!(
-                "{name}: the checkpoint of another run is there. Go on with that run by --continue {name}, or remove the file"
+                "{name}: the checkpoint of another run is there. Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
             ));
         }
         Some(false) => {

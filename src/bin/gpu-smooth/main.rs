@@ -1,5 +1,6 @@
 //! The `gpu-smooth` command: reads a mesh, smooths it, writes it back with nothing else changed.
 
+mod adapters;
 mod bench;
 mod cli;
 mod columns;
@@ -55,7 +56,7 @@ fn run() -> ExitCode {
         Some(Command::Groups(args)) => groups::run(args),
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Convert(args)) => convert::run(args, &cli.output),
-        Some(Command::Adapters) => tell::adapters(),
+        Some(Command::Adapters(args)) => adapters::run(args),
         Some(Command::Metrics) => tell::metrics(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
         Some(Command::Completions(args)) => shell::completions(args),

@@ -81,7 +81,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, default_value = "300", value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) checkpoint_every: Duration,
     /// Go on with the run that FILE is a checkpoint of, given the same IN and options, to the same mesh as if it had never been left: bit
-    /// for bit, on the CPU or on the GPU that it was left on. The state is saved to FILE again, unless --checkpoint names another
+    /// for bit, on the CPU or on the GPU that it was left on. If the driver of that GPU ended the process, add --engine cpu. The state
+    /// is saved to FILE again, unless --checkpoint names another
     #[arg(
         long = "continue",
         value_name = "FILE",

@@ -7,11 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use gpu_smooth::gpu::AdapterSummary;
-use gpu_smooth::{Format, GpuError, MeshFile, Metric};
+use gpu_smooth::{Format, MeshFile, Metric};
 
 use serde_json::{Value, json};
-
-use crate::engine::INSTALL;
 
 /// Whether what goes to standard error is JSON, and when the process began.
 static JSON: AtomicBool = AtomicBool::new(false);
@@ -122,28 +120,6 @@ pub(crate) fn degrees(file: &MeshFile) -> Option<String> {
         "the coordinates look like degrees: --surface sphere smooths them as longitude and latitude"
             .to_owned()
     })
-}
-
-/// `gpu-smooth adapters`.
-pub(crate) fn adapters() -> Result<(), String> {
-    let adapters = gpu_smooth::gpu::checked_adapters();
-    if adapters.is_empty() {
-        say(&format!("no GPU adapter was found. {INSTALL}"));
-    }
-    for (adapter, usable) in adapters {
-        let state = match usable {
-            Ok(()) if adapter.is_software() => {
-                "arithmetic checked, used only where asked for (--engine gpu, --adapter)".to_owned()
-            }
-            Ok(()) => "arithmetic checked".to_owned(),
-            Err(GpuError::Arithmetic { operation, .. }) => {
-                format!("wrong arithmetic, not used: {operation}")
-            }
-            Err(error) => format!("not used: {error}"),
-        };
-        say(&format!("{} {}; {state}", adapter.name, self::adapter(&adapter)));
-    }
-    Ok(())
 }
 
 /// What an adapter is and what drives it.

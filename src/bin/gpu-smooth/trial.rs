@@ -1,7 +1,8 @@
 //! Tries the drivers of GPUs in a process of its own, which one that crashes ends instead of this one.
 
+use std::collections::BTreeMap;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::GpuError;
@@ -11,19 +12,45 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// How often the process is looked at.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// Whether all drivers of this machine start, open their adapters and compute, as `gpu-smooth adapters` makes them do. Found out once.
-///
-/// # Errors
-/// [`GpuError::Crashed`] if they ended the process, or did not answer.
-pub(crate) fn drivers() -> Result<(), GpuError> {
-    static TRIED: OnceLock<Result<(), GpuError>> = OnceLock::new();
-    TRIED.get_or_init(|| tried().map_err(GpuError::Crashed)).clone()
+/// Set for a process that tries drivers, which must not start another one to do so.
+const MARK: &str = "GPU_SMOOTH_IS_TRIAL";
+
+/// What is tried.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tried<'a> {
+    /// All adapters there are.
+    All,
+    /// The adapter that [`gpu_smooth::Gpu::open`] takes for this name.
+    Adapter(Option<&'a str>),
 }
 
-fn tried() -> Result<(), String> {
+/// Whether the driver of an adapter, or of all, starts, opens it and computes, as `gpu-smooth adapters` makes it do. Each is found out once.
+///
+/// # Errors
+/// [`GpuError::Crashed`] if the driver ended the process, or did not answer.
+pub(crate) fn drivers(tried: Tried<'_>) -> Result<(), GpuError> {
+    static KNOWN: Mutex<BTreeMap<Option<String>, Result<(), GpuError>>> =
+        Mutex::new(BTreeMap::new());
+    if std::env::var_os(MARK).is_some() {
+        return Ok(());
+    }
+    let name = match tried {
+        Tried::All => None,
+        // Every adapter has the empty text in its name.
+        Tried::Adapter(name) => Some(name.unwrap_or_default().to_owned()),
+    };
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = known
+        .entry(name)
+        .or_insert_with_key(|name| outcome(name.as_deref()).map_err(GpuError::Crashed));
+    found.clone()
+}
+
+fn outcome(name: Option<&str>) -> Result<(), String> {
     let Ok(program) = std::env::current_exe() else { return Ok(()) };
     let mut command = Command::new(program);
-    command.arg("adapters").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.arg("adapters").args(name.map(|name| ["--", name]).into_iter().flatten());
+    command.env(MARK, "1").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     // Where there can be no second process, nothing is known.
     let Ok(mut child) = command.spawn() else { return Ok(()) };
     match ended(&mut child) {

