@@ -17,6 +17,9 @@ pub struct Outcome {
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
+    /// Number of sweeps in which the metrics of the scheme took turns. Those after it were by the base metric, for the corrections
+    /// that followed them.
+    pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
     /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for

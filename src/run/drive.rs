@@ -114,6 +114,8 @@ impl<'a> Strategy<'a> {
 pub(crate) struct End {
     pub(crate) history: History,
     pub(crate) positions: Vec<DVec2>,
+    /// Number of sweeps in which the metrics of the scheme took turns.
+    pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) levels_left_out: bool,
     pub(crate) stop: Stop,
@@ -174,7 +176,12 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
         Strategy::Sweeps => (0, false),
         Strategy::Corrected(corrections) => (corrections.taken(), corrections.is_left_out()),
     };
-    Ok(End { history, positions, corrections, levels_left_out, stop })
+    let alternated = match &strategy {
+        Strategy::Sweeps => None,
+        Strategy::Corrected(corrections) => corrections.alternated(),
+    };
+    let alternated = alternated.unwrap_or(history.sweeps());
+    Ok(End { history, positions, alternated, corrections, levels_left_out, stop })
 }
 
 /// Why a run could not be driven to its end.

@@ -92,16 +92,22 @@ impl Targets {
     }
 
     /// These targets where `points` are coordinates of a surface: what was wanted in lengths of the surface, in its
-    /// coordinates. Not for [`Self::keep_shape`], which takes shapes in coordinates.
+    /// coordinates. Not for [`Self::keep_shape`], which takes shapes in coordinates. A vertex that none of `triangles` uses may be
+    /// anywhere.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Target`] if a point is not on
-    /// the surface.
-    pub fn seen_on(mut self, surface: Surface, points: &[[f64; 2]]) -> Result<Self, MeshError> {
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] if a triangle has a vertex
+    /// that is not there, [`MeshError::Target`] if one is not on the surface.
+    pub fn seen_on(
+        mut self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        triangles: &[[u32; 3]],
+    ) -> Result<Self, MeshError> {
         if points.len() != self.maps.len() {
             return Err(MeshError::PointCount { given: points.len(), expected: self.maps.len() });
         }
-        surface.check(points)?;
+        surface.check(points, triangles)?;
         for (map, &[_, y]) in self.maps.iter_mut().zip(points) {
             *map = map.squared().stretched(surface.lengths(y)).sqrt();
         }

@@ -13,16 +13,26 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Fails if a point is not on the surface.
-    pub fn check(self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        let is_off = |&[_, y]: &[f64; 2]| y.is_nan() || y.abs() > 90.0;
-        match (self, points.iter().position(is_off)) {
-            (Surface::Sphere, Some(vertex)) => {
-                let problem = "its latitude is not between -90 and 90 degrees";
-                Err(MeshError::Target { vertex, problem })
-            }
-            _ => Ok(()),
+    /// Fails if a vertex of these triangles is not on the surface.
+    pub(crate) fn check(
+        self,
+        points: &[[f64; 2]],
+        triangles: &[[u32; 3]],
+    ) -> Result<(), MeshError> {
+        if self == Surface::Plane {
+            return Ok(());
         }
+        for (index, &vertex) in triangles.as_flattened().iter().enumerate() {
+            let Some([_, y]) = points.get(vertex as usize) else {
+                let (triangle, vertices) = (Some(index / 3), points.len());
+                return Err(MeshError::IndexOutOfRange { triangle, vertex, vertices });
+            };
+            if y.is_nan() || y.abs() > 90.0 {
+                let problem = "its latitude is not between -90 and 90 degrees";
+                return Err(MeshError::Target { vertex: vertex as usize, problem });
+            }
+        }
+        Ok(())
     }
 
     /// [`Self::lengths`] in the middle of a triangle.

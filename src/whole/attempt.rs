@@ -34,6 +34,7 @@ pub(crate) struct Attempt<'s> {
 pub(crate) struct Ended {
     pub(crate) history: Vec<Objectives>,
     pub(crate) positions: Vec<DVec2>,
+    pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
@@ -51,6 +52,8 @@ impl Ended {
         history.extend(next.history.into_iter().skip(1));
         Ended {
             history,
+            // Only runs by one metric are followed by others.
+            alternated: self.alternated + next.alternated,
             corrections: self.corrections + next.corrections,
             opening_sweeps: self.opening_sweeps + next.opening_sweeps,
             levels_left_out: self.levels_left_out || next.levels_left_out,
@@ -146,6 +149,7 @@ impl Attempt<'_> {
         Ok(Ended {
             history,
             positions,
+            alternated: done + end.alternated,
             corrections: end.corrections,
             opening_sweeps,
             levels_left_out: end.levels_left_out,
@@ -171,8 +175,8 @@ impl Attempt<'_> {
             }
         };
         let history = History::resumed(plan, &log, None);
-        let (stop, corrections) = (Stop::NotFinite, 0);
-        End { history, positions, corrections, levels_left_out: false, stop }
+        let (stop, corrections, alternated) = (Stop::NotFinite, 0, history.sweeps());
+        End { history, positions, alternated, corrections, levels_left_out: false, stop }
     }
 
     /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these

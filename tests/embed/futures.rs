@@ -8,7 +8,8 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, Desired, Goal, Metric, Options, Outcome, Progress, Smoother, Stop, Sweeps, wgpu,
+    Backend, Desired, Goal, Method, Metric, Options, Outcome, Progress, Smoother, Stop, Sweeps,
+    wgpu,
 };
 
 use crate::app::{App, bad_plate};
@@ -46,7 +47,11 @@ fn assert_same(expected: &Outcome, found: &Outcome) {
 }
 
 fn cases() -> [Options; 3] {
-    let edge = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
+    let edge = Options {
+        scheme: "edge+imr".parse().unwrap(),
+        method: Method::Sweeps,
+        ..Options::default()
+    };
     let goal = Goal { fraction: 0.95, desired: Desired::Auto };
     [
         Options { track_all: true, ..Options::default() },

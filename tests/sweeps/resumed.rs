@@ -39,7 +39,9 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
     assert_eq!(format!("{:?}", a.history), format!("{:?}", b.history), "{what}");
     let told = |o: &Outcome| (o.stop, o.sweeps, o.corrections, o.best_sweep, o.remaining, o.lost);
     assert_eq!(told(a), told(b), "{what}");
-    let more = |o: &Outcome| (o.opening_sweeps, o.levels_left_out, o.held_back, o.goal.clone());
+    let more = |o: &Outcome| {
+        (o.opening_sweeps, o.alternated, o.levels_left_out, o.held_back, o.goal.clone())
+    };
     assert_eq!(more(a), more(b), "{what}");
 }
 
@@ -67,8 +69,13 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
     for backend in backends() {
         let every = if matches!(backend, Backend::Cpu) { 1 } else { 3 };
         for scheme in all_schemes().into_iter().step_by(every) {
+            let alternates = scheme.alternates();
             let options = Options { scheme, max_sweeps: 40, ..Options::default() };
             assert_goes_on(&smoother, &options, backend, 2);
+            if alternates {
+                let alone = Options { method: Method::Sweeps, ..options };
+                assert_goes_on(&smoother, &alone, backend, 2);
+            }
         }
     }
 }

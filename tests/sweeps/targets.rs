@@ -266,7 +266,11 @@ fn degrees_are_seen_as_lengths_on_the_sphere() {
     };
     let points = exact.points.iter().zip(&held).map(noisy).collect();
     let mesh = Mesh { points, ..exact.clone() };
-    let targets = Targets::equilateral(mesh.points.len()).seen_on(Surface::Sphere, &mesh.points);
+    let targets = Targets::equilateral(mesh.points.len()).seen_on(
+        Surface::Sphere,
+        &mesh.points,
+        &mesh.triangles,
+    );
     let smoother = with_targets(&mesh, &targets.unwrap());
     for backend in backends() {
         let outcome = run(&smoother, &Options::default(), backend);
@@ -300,7 +304,15 @@ fn what_is_no_target_is_refused() {
     refused(Targets::tensors(&tensors), 9);
     let mut points = mesh.points.clone();
     points[4][1] = 90.5;
-    refused(Targets::equilateral(count).seen_on(Surface::Sphere, &points), 4);
+    let seen = |points: &[[f64; 2]], triangles: &[[u32; 3]]| {
+        let targets = Targets::equilateral(points.len());
+        targets.seen_on(Surface::Sphere, points, triangles)
+    };
+    refused(seen(&points, &mesh.triangles), 4);
+    let elsewhere: Vec<_> = mesh.triangles.iter().copied().filter(|t| !t.contains(&4)).collect();
+    assert!(seen(&points, &elsewhere).is_ok(), "a vertex of no triangle may be anywhere");
+    let missing = MeshError::IndexOutOfRange { triangle: Some(0), vertex: 9999, vertices: count };
+    assert_eq!(seen(&points, &[[0, 1, 9999]]).unwrap_err(), missing);
 
     let mut smoother = Smoother::new(&mesh).unwrap();
     let error = smoother.set_targets(&Targets::equilateral(3)).unwrap_err();

@@ -251,9 +251,13 @@ const NOT_FINITE: &str = "undone: a sweep made a number that is not finite, whic
 
 /// The history of a run, sweep by sweep.
 pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
+    let metric = |sweep| match sweep <= outcome.alternated {
+        true => scheme.metric(sweep),
+        false => scheme.base(),
+    };
     let one = |(sweep, objectives): (u32, &gpu_smooth::Objectives)| SweepReport {
         sweep,
-        metric: (sweep > 0).then(|| scheme.metric(sweep).name()),
+        metric: (sweep > 0).then(|| metric(sweep).name()),
         f: objectives.of(scheme.base()).unwrap_or(f64::NAN),
         all: match all {
             false => BTreeMap::new(),

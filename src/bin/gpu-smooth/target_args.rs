@@ -177,7 +177,7 @@ impl TargetArgs {
         };
         let mesh = background.mesh();
         targets
-            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points))
+            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points, &mesh.triangles))
             .and_then(|targets| TargetField::new(mesh, &targets))
             .map_err(|error| explain::mesh_error(&background, &error))
     }
@@ -195,9 +195,10 @@ impl TargetArgs {
                 "{name}: a mesh across the line where longitudes start again has no background: give sizes for its vertices"
             )));
         }
+        let mesh = view.mesh();
         Targets::sizes(view.values())
-            .and_then(|targets| targets.seen_on(self.surface(), &view.mesh().points))
-            .and_then(|targets| TargetField::new(view.mesh(), &targets))
+            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points, &mesh.triangles))
+            .and_then(|targets| TargetField::new(mesh, &targets))
             .map_err(|error| told(format!("{name}: {error}, in the order of places in the file")))
     }
 
@@ -224,7 +225,8 @@ impl TargetArgs {
                 Targets::tensors(values.as_chunks().0)
             }
         };
-        let targets = targets.and_then(|targets| targets.seen_on(surface, points));
+        let triangles = &file.mesh().triangles;
+        let targets = targets.and_then(|targets| targets.seen_on(surface, points, triangles));
         targets.map(Some).map_err(told)
     }
 }

@@ -72,6 +72,8 @@ pub(crate) struct Corrections<'a> {
     attempts: u32,
     /// Number of corrections taken.
     taken: u32,
+    /// Number of sweeps after which corrections began for the first time; 0 before.
+    alternated: u32,
     /// Whether the last correction was expected to gain nothing.
     settled: bool,
     /// The slope along the last correction of the present stage.
@@ -113,6 +115,7 @@ impl<'a> Corrections<'a> {
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
+            alternated: 0,
             settled: false,
             slope: None,
             sharpness: *exponents(plan).start(),
@@ -165,6 +168,11 @@ impl<'a> Corrections<'a> {
             self.record(objectives, history);
         }
         Ok(())
+    }
+
+    /// Number of sweeps in which the metrics of the scheme took turns, if these are over.
+    pub(crate) fn alternated(&self) -> Option<u32> {
+        (self.attempts > 0).then_some(self.alternated)
     }
 
     /// Number of corrections taken so far.
@@ -238,6 +246,9 @@ impl<'a> Corrections<'a> {
         let pays = 1.0 - (1.0 - SWEEPS_PAY).powi(period as i32);
         let gain = last - (f - self.metric().ideal_squared());
         if done >= until.max(period) && gain < pays * last {
+            if self.attempts == 0 {
+                self.alternated = done as u32;
+            }
             self.attempts += 1;
             self.begin_correcting(done, 1.0);
             self.lowered.extend(self.metric().is_smooth().then_some(f));

@@ -18,7 +18,7 @@ impl Corrections<'_> {
         let mut words = vec![stage, at as u64, length.to_bits()];
         words.extend(counts.into_iter().chain(flags).chain(slope));
         words.extend(self.estimates.map(f64::to_bits));
-        words.push(self.sharpness.into());
+        words.extend([self.alternated, self.sharpness].map(u64::from));
         words.extend(self.lowered.iter().map(|f| f.to_bits()));
         words
     }
@@ -32,9 +32,18 @@ impl Corrections<'_> {
             return false;
         };
         let Some((
-            &[settled, accelerated, left_out, has_slope, slope, ref estimates @ .., sharpness],
+            &[
+                settled,
+                accelerated,
+                left_out,
+                has_slope,
+                slope,
+                ref estimates @ ..,
+                alternated,
+                sharpness,
+            ],
             lowered,
-        )) = rest.split_first_chunk::<{ 6 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 7 + ESTIMATES }>()
         else {
             return false;
         };
@@ -50,13 +59,22 @@ impl Corrections<'_> {
         }
         // Nothing can have happened more often than there were sweeps.
         let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
-        let (Some(attempts), Some(taken), Some(proposed), Some(refused), Some(at)) = (
+        let (
+            Some(attempts),
+            Some(alternated),
+            Some(taken),
+            Some(proposed),
+            Some(refused),
+            Some(at),
+        ) = (
             small(attempts),
+            small(&alternated),
             small(taken),
             small(proposed),
             small(refused),
             u32::try_from(*at).ok(),
-        ) else {
+        )
+        else {
             return false;
         };
         let (since, length) = (at as usize, f64::from_bits(*length));
@@ -69,7 +87,7 @@ impl Corrections<'_> {
             2 if since < evaluations => Stage::Without { since },
             _ => return false,
         };
-        (self.attempts, self.taken) = (attempts, taken);
+        (self.attempts, self.alternated, self.taken) = (attempts, alternated, taken);
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         self.was_left_out = left_out != 0;
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
