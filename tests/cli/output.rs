@@ -135,7 +135,9 @@ fn a_worst_element_that_got_worse_is_told_with_what_helps() {
 fn verbose_prints_every_sweep() {
     let folder = small();
     for engine in ["gpu", "cpu"] {
-        let line = format!("in out --engine {engine} -v --scheme edge+imr --report r.json");
+        let line = format!(
+            "in out --engine {engine} -v --scheme edge+imr --method relaxed --report r.json"
+        );
         let out = folder.line(&line).clean().out;
         let sweeps = folder.json("r.json")["sweeps"].as_u64().unwrap() as usize;
         let rows: Vec<_> = out.lines().take_while(|row| row.starts_with("sweep ")).collect();

@@ -28,8 +28,14 @@ fn they_are_opened_in_double_precision() {
         let mesh = flattened(height);
         assert!(support::is_ccw(&mesh) && support::worst_imr(&mesh) > 0.1 / height);
         let smoother = Smoother::new(&mesh).unwrap();
-        for scheme in [Metric::Imr.into(), Metric::Rms.into(), scheme("edge+imr")] {
-            let options = Options { scheme, ..Options::default() };
+        // At an optimum of 1, EDGE on a device has the digits of single precision: it stays away from there by sweeps alone.
+        for (scheme, method) in [
+            (Metric::Imr.into(), Method::Auto),
+            (Metric::Rms.into(), Method::Auto),
+            (scheme("rms+imr"), Method::Auto),
+            (scheme("edge+imr"), Method::Sweeps),
+        ] {
+            let options = Options { scheme, method, ..Options::default() };
             let base = options.scheme.base();
             let best = backends().each_ref().map(|backend| {
                 let outcome = run(&smoother, &options, backend);
