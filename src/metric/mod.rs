@@ -4,6 +4,7 @@
 mod ar;
 mod area;
 mod corner;
+mod descent;
 mod dual;
 mod edge;
 mod imr;
@@ -19,6 +20,7 @@ mod tmop_80;
 mod tmop_94;
 
 pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
+pub(crate) use descent::descent;
 pub use dual::{Dual, Real};
 pub use properties::Properties;
 pub use scheme::Scheme;

@@ -9,6 +9,8 @@
 
 use glam::DVec2;
 
+use crate::metric::descent;
+
 /// S of an equilateral triangle in units of its area.
 const IDEAL: f64 = 4.0 * 1.732_050_807_568_877_2;
 
@@ -101,18 +103,7 @@ impl Expansion {
 
     /// The Newton direction, with eigenvalues made positive. Zero or not finite where there is none.
     pub(crate) fn descent(&self) -> DVec2 {
-        let [xx, xy, yy] = self.hessian;
-        let g = self.gradient;
-        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = half.hypot(xy);
-        let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
-        let least = high.max(low) * EIGENVALUE_FLOOR;
-        // H = mean + R with R² = radius², so the projector on the upper eigenvector is (1 + R/radius)/2.
-        let upper = match radius > 0.0 {
-            true => 0.5 * (g + DVec2::new(half * g.x + xy * g.y, xy * g.x - half * g.y) / radius),
-            false => g,
-        };
-        -(upper / high.max(least) + (g - upper) / low.max(least))
+        descent(self.gradient, self.hessian, EIGENVALUE_FLOOR)
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::measure::altitude;
-use crate::metric::{Corner, Dual, TargetMap};
+use crate::metric::{Corner, Dual, TargetMap, descent};
 use crate::run::{Step, line_search};
 use crate::worst::badness::{Badness, corner, is_sound};
 
@@ -207,7 +207,8 @@ impl<'a> Patch<'a> {
         value: impl Fn(&Self, DVec2) -> f64,
         limit: f64,
     ) -> f64 {
-        let (here, way) = (self.positions[v], descent(sum));
+        let (here, way) =
+            (self.positions[v], descent(sum.gradient.into(), sum.hessian, EIGENVALUE_FLOOR));
         let slope = way.dot(sum.gradient.into());
         if !(slope < 0.0 && way.is_finite()) {
             return 0.0;
@@ -229,19 +230,4 @@ impl<'a> Patch<'a> {
         }
         0.0
     }
-}
-
-/// The Newton direction -H⁻¹g with the eigenvalues of H made positive. Zero or not finite where there is none.
-fn descent(at: &Dual<f64>) -> DVec2 {
-    let ([xx, xy, yy], g) = (at.hessian, DVec2::from(at.gradient));
-    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = half.hypot(xy);
-    let (high, low) = ((mean + radius).abs(), (mean - radius).abs());
-    let least = high.max(low) * EIGENVALUE_FLOOR;
-    // H = mean + R with R² = radius², so the projector on the upper eigenvector is (1 + R/radius)/2.
-    let upper = match radius > 0.0 {
-        true => 0.5 * (g + DVec2::new(half * g.x + xy * g.y, xy * g.x - half * g.y) / radius),
-        false => g,
-    };
-    -(upper / high.max(least) + (g - upper) / low.max(least))
 }
