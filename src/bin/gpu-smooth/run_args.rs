@@ -30,7 +30,7 @@ pub(crate) struct SmoothArgs {
     #[arg(hide = true, value_name = "MESH")]
     pub(crate) more: Vec<PathBuf>,
 
-    /// The metric to minimize, or several in turn, sweep by sweep, as in edge+imr; the first judges
+    /// The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges
     /// convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94 (see `gpu-smooth metrics`)
     /// [default: imr; soft-size with --target keep-size]
     #[arg(long, value_name = "A[+B...]", help_heading = "Metric and engine")]
