@@ -1,5 +1,8 @@
 //! The command line.
 
+#[cfg(any(test, fuzzing))]
+#[path = "cli_checks.rs"]
+pub(crate) mod checks;
 #[cfg(test)]
 #[path = "cli_tests.rs"]
 mod tests;

@@ -1,4 +1,9 @@
 //! The `gpu-smooth` command: reads a mesh, smooths it, writes it back with nothing else changed.
+//!
+//! With `--cfg fuzzing` it is a target of cargo-fuzz instead (`fuzz/Cargo.toml`), which tries command lines.
+
+#![cfg_attr(fuzzing, no_main)]
+#![cfg_attr(fuzzing, allow(dead_code))]
 
 mod adapters;
 mod bench;
@@ -40,6 +45,9 @@ mod worst_args;
 use std::process::ExitCode;
 
 use cli::{Cli, Command, LogForm};
+
+#[cfg(fuzzing)]
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| cli::checks::any_line(bytes));
 
 fn main() -> ExitCode {
     panics::told(run)
