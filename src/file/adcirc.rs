@@ -1,6 +1,7 @@
 //! The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
 //!
 //! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
+//! Programs read it as Fortran reads lists: numbers may have commas between them, and an item may go on in the next line.
 //! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
@@ -11,6 +12,7 @@ use crate::file::label::Label;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 
 pub(crate) struct Adcirc;
@@ -19,12 +21,14 @@ impl Walk for Adcirc {
     const VERTICES: &'static str = "the list of nodes";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source);
+        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
         // The first line is a title of any text, or of none.
         cursor.line();
         cursor.row(0, 1, "lines of counts")?;
-        let elements = cursor.integer("the number of elements")?;
-        let count = cursor.vertex_count()?;
+        let counts = |cursor: &mut Cursor<'_>| {
+            Ok((cursor.integer("the number of elements")?, cursor.vertex_count()?))
+        };
+        let (elements, count) = cursor.item(counts, &mut None)?;
         sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
         let mut depths = Heights::new(sink);
         each_row(

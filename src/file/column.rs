@@ -1,7 +1,7 @@
 //! Numbers of a file that may be replaced, and by what.
 
 use crate::file::numbers::{Form, Numbers, Places};
-use crate::file::token::skip_to_token;
+use crate::file::token::{number_end, skip_to_number};
 use crate::mesh::Precision;
 use std::io::Write;
 use std::ops::Range;
@@ -91,7 +91,7 @@ impl<'a> Column<'a> {
         let start = self.start(item);
         match (&self.at, self.form) {
             (_, Form::Binary(_, precision)) => start + precision.bytes(),
-            (At::Pairs(_), _) => number_end(bytes, skip_to_token(bytes, number_end(bytes, start))),
+            (At::Pairs(_), _) => number_end(bytes, skip_to_number(bytes, number_end(bytes, start))),
             _ => number_end(bytes, start),
         }
     }
@@ -129,7 +129,7 @@ impl<'a> Column<'a> {
                 At::Pairs(_) => {
                     let end = number_end(bytes, start);
                     add(number, start, Some(end));
-                    add(number + 1, skip_to_token(bytes, end), None);
+                    add(number + 1, skip_to_number(bytes, end), None);
                 }
                 _ => add(number, start, None),
             }
@@ -153,13 +153,4 @@ impl Form {
             }
         }
     }
-}
-
-/// Where the number ends that starts at `at`: like any token, or where a tag of XML begins.
-#[inline]
-fn number_end(bytes: &[u8], mut at: usize) -> usize {
-    while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' && bytes[at] != b'<' {
-        at += 1;
-    }
-    at
 }

@@ -5,7 +5,7 @@ use crate::file::field::PointField;
 use crate::file::mesh_file::{MeshFile, Place};
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::sink::{Home, Stored};
-use crate::file::token::{quoted, skip_to_token, token_end};
+use crate::file::token::{number_end, quoted, skip_to_number};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.
@@ -104,9 +104,9 @@ impl MeshFile {
             Numbers::Text { .. } => {
                 let bytes = &self.sources()[0].bytes;
                 for x in places {
-                    let x_end = token_end(bytes, x);
-                    let y = skip_to_token(bytes, x_end);
-                    ranges.extend([x..x_end, y..token_end(bytes, y)]);
+                    let x_end = number_end(bytes, x);
+                    let y = skip_to_number(bytes, x_end);
+                    ranges.extend([x..x_end, y..number_end(bytes, y)]);
                 }
             }
             Numbers::Binary { precision, y_after, .. } => {
@@ -164,11 +164,7 @@ fn number_ranges(
         }
         let range = |at: usize| match form {
             Form::Binary(_, precision) => at..at + precision.bytes(),
-            Form::Text(_) => {
-                let is_end = |byte: &u8| *byte <= b' ' || matches!(byte, b'#' | b'<');
-                let rest = bytes.get(at..).unwrap_or_default();
-                at..at + rest.iter().position(is_end).unwrap_or(rest.len())
-            }
+            Form::Text(_) => at..number_end(bytes, at),
         };
         match places {
             Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),

@@ -4,6 +4,7 @@ use crate::error::ReadError;
 use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
 use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
+use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 use crate::file::token::integer;
 use crate::file::triangle_names::{Names, appended};
@@ -52,7 +53,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
 
 /// Tells formats apart that consist only of rows of numbers, by how many numbers the first rows have.
 fn by_rows(source: &Source) -> Result<Content, ReadError> {
-    let [first, second, third] = first_rows(source);
+    let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
         |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
     let outline = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
@@ -83,6 +84,7 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
     if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
         return of(source, &FREEFEM);
     }
+    let [_, second, third] = first_rows(source, Syntax::FORTRAN);
     let counts = second.get(..2).and_then(numbers);
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
         return of(source, &ADCIRC);
@@ -144,10 +146,10 @@ fn after_prolog(bytes: &[u8]) -> &[u8] {
     head
 }
 
-fn first_rows(source: &Source) -> [Vec<&[u8]>; 3] {
+fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
     // Longer rows belong to none of the formats told apart here.
     const TOKENS: usize = 8;
-    let mut cursor = Cursor::new(source);
+    let mut cursor = Cursor::new(source).of(syntax);
     std::array::from_fn(|_| {
         let row = cursor.next_row();
         std::iter::from_fn(|| if row { cursor.token() } else { None }).take(TOKENS).collect()

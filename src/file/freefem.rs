@@ -8,6 +8,7 @@ use crate::file::format::Format;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 
 pub(crate) struct FreeFem;
@@ -16,7 +17,7 @@ impl Walk for FreeFem {
     const VERTICES: &'static str = "the list of vertices";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source);
+        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
         cursor.row(0, 1, "lines of counts")?;
         let vertices = cursor.vertex_count()?;
         let triangles = cursor.integer("the number of triangles")?;
@@ -41,8 +42,11 @@ impl Walk for FreeFem {
         if sink.asks_for_groups() {
             for vertex in 0..vertices {
                 before.row(vertex, vertices, "vertices")?;
-                before.tokens(2);
-                let label = before.signed("the label of a vertex")?;
+                let label = |cursor: &mut Cursor<'_>| {
+                    cursor.point("a vertex")?;
+                    cursor.signed("the label of a vertex")
+                };
+                let label = before.item(label, &mut None)?;
                 // Zero is what vertices have that were given no label.
                 if label != 0 {
                     sink.node_within(vertex as u32, "label", label);

@@ -14,24 +14,55 @@ use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CUT_OFF, Cursor};
-use crate::file::token::quoted;
+use crate::file::token::{float, quoted};
 
 pub(crate) struct Medit;
 
-/// A list of elements that was passed over, as they may stand before the vertices.
+/// What lists of elements of a volume start with, of any order.
+const VOLUMES: [&[u8]; 4] = [b"Tetrahedra", b"Hexahedra", b"Prisms", b"Pyramids"];
+
+/// A list of elements, which may stand before the vertices.
+#[derive(Clone)]
 struct List<'a> {
+    /// Stands before its first element.
     cursor: Cursor<'a>,
     count: u64,
     kind: Kind,
     keyword: &'a [u8],
 }
 
+impl<'a> List<'a> {
+    /// Hands on its elements. Returns where it ends.
+    fn send(self, sink: &mut dyn Sink) -> Result<Cursor<'a>, ReadError> {
+        let List { mut cursor, count, kind, keyword } = self;
+        // Points have no reference: the list they stand in is what tells them apart.
+        let list = Within { what: "list", label: Label::name(keyword), dimension: None };
+        sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
+        if kind == Kind::Triangle {
+            sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
+        }
+        each_row(
+            &mut cursor,
+            count,
+            "elements",
+            sink,
+            |cursor| element(cursor, kind),
+            |cursor, sink, done, (nodes, reference)| {
+                let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
+                sink.element(cursor, &element)
+            },
+        )?;
+        Ok(cursor)
+    }
+}
+
 impl Walk for Medit {
     const VERTICES: &'static str = "Vertices";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source);
+        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
         let mut lists: Vec<List<'_>> = Vec::new();
         let mut required = Vec::new();
         let mut dimension = 2;
@@ -56,23 +87,47 @@ impl Walk for Medit {
                         return Err(cursor.error(problem, "Save each mesh to a file of its own"));
                     }
                     vertices(cursor, dimension, sink)?;
+                    sink.end_nodes(cursor)?;
+                    sink.columns(vec![Column::tags("reference", 1)]);
+                    for list in &lists {
+                        list.clone().send(sink)?;
+                    }
                 }
-                b"Tetrahedra" | b"Hexahedra" | b"Prisms" | b"Pyramids" => {
+                volume_of if VOLUMES.iter().any(|name| volume_of.starts_with(name)) => {
                     if value(cursor, "a count")? > 0 {
                         return Err(volume(cursor, &quoted(keyword)));
                     }
                 }
                 b"RequiredTriangles" => numbers(cursor, &mut required)?,
+                keyword if !is_keyword(keyword) => {
+                    let problem = format!("`{}` stands where a keyword should", quoted(keyword));
+                    let remedy = "Correct the count of the list before it, or write the mesh again";
+                    return Err(cursor.error(problem, remedy));
+                }
+                keyword if is_of_higher_order(keyword) => {
+                    if value(cursor, "a count")? > 0 {
+                        let problem = format!(
+                            "{} are of higher order, and only corners are moved",
+                            quoted(keyword)
+                        );
+                        return Err(cursor.error(problem, "Save linear elements (Triangles)"));
+                    }
+                }
                 keyword => {
-                    if let Some(kind) = kind_of(keyword) {
+                    let kind = kind_of(keyword);
+                    if let Some(kind) = kind {
                         let count = value(cursor, "the number of elements")?;
                         lists.push(List { cursor: cursor.clone(), count, kind, keyword });
-                    }
-                    if sink.asks_for_data() && kind_of(keyword).is_none() {
+                    } else if sink.asks_for_data() {
                         sink.leaves_out(&format!("the list {}", quoted(keyword)));
                     }
-                    // What a list holds is numbers: the next keyword starts with a letter.
-                    skip_numbers(cursor);
+                    match lists.last() {
+                        Some(list) if vertices_seen && kind.is_some() => {
+                            *cursor = list.clone().send(sink)?;
+                        }
+                        // What a list holds is numbers: the next keyword starts with a letter.
+                        _ => skip_numbers(cursor),
+                    }
                 }
             }
         }
@@ -80,37 +135,8 @@ impl Walk for Medit {
             let problem = "it has no list of Vertices";
             return Err(source.error(problem, "Save the mesh again"));
         }
-        sink.end_nodes(cursor)?;
-        sink.columns(vec![Column::tags("reference", 1)]);
-        let triangles = lists.iter().filter(|list| list.kind == Kind::Triangle);
-        let triangles: Vec<_> = triangles.map(|list| (list.cursor.clone(), list.count)).collect();
-        for List { mut cursor, count, kind, keyword } in lists {
-            let cursor = &mut cursor;
-            // Points have no reference: the list they stand in is what tells them apart.
-            let list = Within { what: "list", label: Label::name(keyword), dimension: None };
-            sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
-            if kind == Kind::Triangle {
-                sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
-            }
-            each_row(
-                cursor,
-                count,
-                "elements",
-                sink,
-                |cursor| {
-                    let nodes = nodes(cursor, kind)?;
-                    let reference = match kind {
-                        Kind::Point => 0,
-                        _ => cursor.signed("the reference of an element")?,
-                    };
-                    Ok((nodes, reference))
-                },
-                |cursor, sink, done, (nodes, reference)| {
-                    let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
-                    sink.element(cursor, &element)
-                },
-            )?;
-        }
+        let triangles = lists.into_iter().filter(|list| list.kind == Kind::Triangle);
+        let triangles: Vec<_> = triangles.map(|list| (list.cursor, list.count)).collect();
         if !required.is_empty() {
             hold_required(triangles, required, sink)?;
         }
@@ -145,13 +171,14 @@ fn hold_required(
         let cursor = &mut cursor;
         for done in 0..count {
             cursor.row(done, count, "elements")?;
+            let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
+            let (corners, reference) = cursor.item(triangle, &mut None)?;
             let tag = before + done + 1;
             if left.first() != Some(&tag) {
                 continue;
             }
             left = &left[1..];
-            let corners = nodes(cursor, Kind::Triangle)?;
-            let region = [cursor.signed("the reference of an element")?, 0];
+            let region = [reference, 0];
             for &corner in &corners[..3] {
                 let (kind, nodes) = (Kind::Corner, [corner, 0, 0, 0]);
                 sink.element(cursor, &Element { tag, kind, region, nodes })?;
@@ -160,6 +187,12 @@ fn hold_required(
         before += count;
     }
     Ok(())
+}
+
+/// Whether a list is of elements that have nodes on their sides too, such as `TrianglesP2`.
+fn is_of_higher_order(keyword: &[u8]) -> bool {
+    let [elements @ .., b'P' | b'Q', b'2'..=b'9'] = keyword else { return false };
+    kind_of(elements).is_some()
 }
 
 fn kind_of(keyword: &[u8]) -> Option<Kind> {
@@ -212,8 +245,11 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
     if sink.asks_for_groups() {
         for vertex in 0..count {
             before.row(vertex, count, "vertices")?;
-            before.tokens(dimension);
-            let reference = before.signed("the reference of a vertex")?;
+            let reference = |cursor: &mut Cursor<'_>| {
+                (0..dimension).for_each(|_| _ = cursor.token());
+                cursor.signed("the reference of a vertex")
+            };
+            let reference = before.item(reference, &mut None)?;
             // Zero is what vertices have that were given no reference.
             if reference != 0 {
                 sink.node_within(vertex as u32, "reference", reference);
@@ -223,11 +259,41 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
     Ok(())
 }
 
-/// Moves to the last row before the next keyword.
+/// Reads the nodes of an element and its reference. Points have none.
+#[inline]
+fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadError> {
+    let nodes = nodes(cursor, kind)?;
+    let reference = match kind {
+        Kind::Point => 0,
+        _ => cursor.signed("the reference of an element")?,
+    };
+    Ok((nodes, reference))
+}
+
+/// Moves behind the last number before the next keyword.
 fn skip_numbers(cursor: &mut Cursor<'_>) {
-    let mut next = cursor.clone();
-    while next.next_row() && !next.is_at_letter() {
-        *cursor = next.clone();
+    loop {
+        while !cursor.is_at_end() {
+            let before = cursor.clone();
+            if cursor.token().is_none_or(is_keyword) {
+                *cursor = before;
+                return;
+            }
+        }
+        let mut next = cursor.clone();
+        if !next.next_row() {
+            return;
+        }
+        // Rows of plain numbers, as most are, have no letter.
+        let row = next.clone().rest();
+        if row.iter().fold(0, |most, &byte| byte.max(most)) < b'A' {
+            next.rest();
+        }
+        *cursor = next;
     }
-    cursor.rest();
+}
+
+/// Whether a word is none of those that are numbers, such as NaN.
+fn is_keyword(word: &[u8]) -> bool {
+    word.first().is_some_and(u8::is_ascii_alphabetic) && float(word).is_none()
 }

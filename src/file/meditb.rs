@@ -94,9 +94,18 @@ impl Walk for MeditBinary {
                     let numbers = bytes.chunks_exact(widths.integer);
                     required.extend(numbers.map(|number| widths.order.whole(number)));
                 }
-                8..=10 | 49 => {
+                8..=10 | 30 | 33 | 49 | 86..=87 | 96..=103 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
                         return Err(volume(cursor, "elements of a volume"));
+                    }
+                }
+                // Edges, triangles and quadrilaterals with nodes on their sides.
+                24..=25 | 27 | 88..=93 => {
+                    if integer(cursor, widths, widths.integer, "a count")? > 0 {
+                        let problem = format!(
+                            "elements of higher order (keyword {keyword}), of which only corners are moved"
+                        );
+                        return Err(cursor.error(problem, "Save linear elements (Triangles)"));
                     }
                 }
                 keyword => {

@@ -12,6 +12,7 @@ use crate::file::numbers::Numbers;
 use crate::file::regions::Numbering;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::{integer, quoted};
 
@@ -65,7 +66,8 @@ impl Walk for Obj {
     const VERTICES: &'static str = "the list of v rows";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source);
+        let start = rows(source);
+        let cursor = &mut start.clone();
         let mut count = 0;
         let mut heights = Heights::new(sink);
         all_rows(cursor, sink, vertex, |cursor, sink, row| {
@@ -79,10 +81,10 @@ impl Walk for Obj {
         cursor.check_vertex_count(count)?;
         sink.end_nodes(cursor)?;
         if sink.asks_for_data() {
-            left_out(source, sink);
+            left_out(start.clone(), sink);
         }
         heights.send("z", Numbers::TEXT.into(), sink);
-        let cursor = &mut Cursor::new(source);
+        let cursor = &mut start.clone();
         let (mut before, mut faces) = (0, 0);
         let mut names = Numbering::default();
         let mut region = [0; 2];
@@ -132,6 +134,15 @@ impl Walk for Obj {
     }
 }
 
+/// Stands before the first row. A row may be of several lines, each but the last of which ends in a backslash.
+fn rows(source: &Source) -> Cursor<'_> {
+    let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
+    match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
+        true => Cursor::new(source).of(Syntax::JOINED),
+        false => Cursor::new(source),
+    }
+}
+
 /// The names that hold where a row stands.
 #[derive(Default)]
 struct Named<'a> {
@@ -152,7 +163,7 @@ impl<'a> Named<'a> {
             b"o" => self.object = one,
             _ => {
                 let words = name.split(|&byte| byte <= b' ');
-                self.groups = words.filter(|word| !word.is_empty()).collect();
+                self.groups = words.filter(|word| !word.is_empty() && *word != b"\\").collect();
             }
         }
     }
@@ -201,8 +212,7 @@ fn face(
 
 /// Tells the sink what rows there are of those that are not read.
 #[cold]
-fn left_out(source: &Source, sink: &mut dyn Sink) {
-    let mut cursor = Cursor::new(source);
+fn left_out(mut cursor: Cursor<'_>, sink: &mut dyn Sink) {
     while cursor.next_row() {
         match cursor.token() {
             Some(b"vt") => sink.leaves_out("texture coordinates"),
@@ -227,12 +237,18 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
 /// Reads a row if it is not a vertex's.
 #[inline]
 fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
-    let mut row = cursor.clone();
+    let named = b"gou".iter().any(|&first| cursor.is_at(first)).then(|| cursor.clone());
     match cursor.token() {
         Some(b"v") => Ok(Row::Vertex(0, [0.0; 2], (0, 0.0))),
-        Some(kind @ (b"f" | b"l" | b"p")) => {
+        Some(kind @ (b"f" | b"fo" | b"l" | b"p")) => {
             let mut corners = Corners::Few([0; 4], 0);
-            while let Some(token) = cursor.token() {
+            loop {
+                // Nearly all corners are plain numbers.
+                if let Some(corner) = cursor.signed_up_to(b'/') {
+                    corners.push(corner);
+                    continue;
+                }
+                let Some(token) = cursor.token() else { break };
                 let end = token.iter().position(|&byte| byte == b'/').unwrap_or(token.len());
                 corners.push(signed(&token[..end]).ok_or_else(|| {
                     let problem = format!("a vertex is `{}`, not a whole number", quoted(token));
@@ -243,12 +259,15 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
                 return Err(cursor.error("an element without vertices", CORRECT));
             }
             Ok(match kind {
-                b"f" => Row::Face(corners),
                 b"l" => Row::Line(corners),
-                _ => Row::Points(corners),
+                b"p" => Row::Points(corners),
+                // Faces were called outlines of faces once.
+                _ => Row::Face(corners),
             })
         }
-        Some(b"g" | b"o" | b"usemtl") => Ok(Row::Name(row.rest())),
+        Some(b"g" | b"o" | b"usemtl") => {
+            Ok(named.map_or(Row::Other, |mut row| Row::Name(row.rest())))
+        }
         Some(b"curv" | b"curv2" | b"surf") => {
             let problem = "curves and surfaces of free form are not read";
             Err(cursor.error(problem, "Save the mesh as triangles"))

@@ -1,6 +1,7 @@
-//! Geomview's `.off`, as text: one row a vertex and one a face.
+//! Geomview's `.off`, as text.
 //!
-//! The format: <http://www.geomview.org/docs/html/OFF.html>. Normals, colors and texture coordinates are not read.
+//! The format: <http://www.geomview.org/docs/html/OFF.html>. Vertices may stand
+//! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -8,8 +9,9 @@ use crate::file::heights::Heights;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CUT_OFF, Cursor};
-use crate::file::token::quoted;
+use crate::file::token::{integer, quoted};
 
 pub(crate) struct Off;
 
@@ -19,22 +21,39 @@ impl Walk for Off {
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "header lines")?;
-        let header = cursor.token().unwrap_or_default();
-        if !matches!(header, b"OFF" | b"COFF" | b"NOFF" | b"CNOFF" | b"STOFF" | b"STCNOFF") {
-            let problem = format!("the header is `{}`, not OFF", quoted(header));
-            return Err(cursor.error(problem, "Save as OFF with vertices of three coordinates"));
-        }
-        if header != b"OFF" {
+        // Geomview takes a file without a header for a plain one.
+        let has_header = integer(cursor.clone().token().unwrap_or_default()).is_none();
+        let header = if has_header { cursor.token().unwrap_or_default() } else { b"OFF" };
+        let more = match header {
+            b"OFF" | b"off" => 0,
+            b"NOFF" => 3,
+            b"COFF" => 4,
+            b"CNOFF" => 7,
+            b"STOFF" => 2,
+            b"STCNOFF" => 9,
+            other => {
+                let problem = format!("the header is `{}`, not OFF", quoted(other));
+                return Err(cursor.error(problem, "Save as OFF with vertices of three coordinates"));
+            }
+        };
+        if more > 0 {
             sink.leaves_out("normals, colors or texture coordinates");
         }
         if cursor.is_at(b'B') {
             return Err(cursor.error("binary OFF is not read", "Save as text"));
         }
-        if !cursor.next_word() {
-            return Err(cursor.error("the file ends before its counts", CUT_OFF));
+        let vertices = count(cursor, "vertices")?;
+        cursor.check_vertex_count(vertices)?;
+        let is_spread = cursor.is_at_end();
+        let faces = count(cursor, "faces")?;
+        // Many leave out the number of edges.
+        match is_spread {
+            true => _ = count(cursor, "edges")?,
+            false => _ = cursor.token(),
         }
-        let vertices = cursor.vertex_count()?;
-        let faces = cursor.integer("the number of faces")?;
+        let syntax = layout(cursor, (vertices, faces), more);
+        let more = if syntax.is_of_words() { more } else { 0 };
+        *cursor = cursor.clone().of(syntax);
         sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
         let mut heights = Heights::new(sink);
         each_row(
@@ -44,7 +63,11 @@ impl Walk for Off {
             sink,
             |cursor| {
                 let point = cursor.point("a vertex")?;
-                Ok((point, cursor.height("a vertex")?))
+                let z = cursor.height("a vertex")?;
+                for _ in 0..more {
+                    cursor.real("a normal, color or texture coordinate of a vertex")?;
+                }
+                Ok((point, z))
             },
             |cursor, sink, done, ((x_at, at), z)| {
                 sink.node(cursor, done, 2, x_at, at);
@@ -55,6 +78,8 @@ impl Walk for Off {
         sink.end_nodes(cursor)?;
         heights.send("z", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
+        // What follows the corners of a face on its row is its color.
+        *cursor = cursor.clone().of(Syntax::RECORDS);
         each_row(
             cursor,
             faces,
@@ -74,4 +99,27 @@ impl Walk for Off {
         )?;
         Ok(Layout::in_place(Format::Off, Numbers::TEXT))
     }
+}
+
+fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error("the file ends before its counts", CUT_OFF));
+    }
+    cursor.integer(format_args!("the number of {what}"))
+}
+
+/// How vertices with so many numbers more than coordinates stand on the lines that follow: one a row, with whatever programs add
+/// there, unless rows have too few numbers or there are too few rows.
+fn layout(cursor: &Cursor<'_>, (vertices, faces): (u64, u64), more: usize) -> Syntax {
+    let starts_on_row = !cursor.is_at_end();
+    let mut first = cursor.clone();
+    if !starts_on_row && !first.next_row() {
+        return Syntax::RECORDS;
+    }
+    let words = std::iter::from_fn(|| first.token()).take(4 + more).count();
+    let may_be_several = starts_on_row || words > 3 + more;
+    let mut rows = cursor.clone();
+    let mut are_few = || (0..vertices.saturating_add(faces)).any(|_| !rows.next_row());
+    let is_of_words = words < 3 || (may_be_several && are_few());
+    if is_of_words { Syntax::WORDS } else { Syntax::RECORDS }
 }

@@ -22,7 +22,7 @@ pub(crate) fn take_rows<'a, T: Send>(
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
     take: impl FnMut(T) -> bool,
 ) -> u64 {
-    if count < LONG {
+    if count < LONG || !cursor.is_between_rows() {
         return 0;
     }
     take_chunks(cursor, count, CHUNK, read, take)
@@ -85,8 +85,8 @@ impl<'a, T: Send> Batch<'a, T> {
         self.damaged = map_parts(each, |_, (part, rows)| {
             while (rows.len() as u64) < most && part.next_row() {
                 match read(part) {
-                    Ok(row) => rows.push(row),
-                    Err(_) => return true,
+                    Ok(row) if part.is_between_rows() => rows.push(row),
+                    _ => return true,
                 }
             }
             false

@@ -289,7 +289,7 @@ impl Reader {
 }
 
 /// Reads a list of one row an item and hands the items to the sink with their positions: on all threads as far as its
-/// rows are plain and the sink allows that, and then row by row.
+/// rows are plain and the sink allows that, and then row by row, or as the cursor's syntax has items on lines.
 pub(crate) fn each_row<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -307,15 +307,22 @@ pub(crate) fn each_row<'a, T: Send>(
             done += u64::from(taken);
             taken
         });
-        if done == count && done > 0 {
+        if done > 0 {
             // It stands on the last row, before its words. A reader that goes on by words is to find none of them.
             cursor.rest();
         }
     }
+    let mut missing = None;
+    let mut is_plain = done > 0;
     while done < count {
-        cursor.row(done, count, what)?;
-        let item = read(cursor)?;
-        take(cursor, sink, done, item)?;
+        let item = cursor.row(done, count, what).and_then(|()| cursor.item(&read, &mut missing));
+        match item.and_then(|item| take(cursor, sink, done, item)) {
+            Ok(()) => {}
+            // Where a single row of many lacks a number, the next ones are read wrongly.
+            Err(error) if is_plain => return Err(missing.unwrap_or(error)),
+            Err(error) => return Err(error),
+        }
+        is_plain |= missing.is_none();
         done += 1;
     }
     Ok(())

@@ -12,6 +12,7 @@ use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::{integer, quoted};
 use std::ops::Range;
@@ -36,7 +37,7 @@ impl Walk for Su2 {
     const VERTICES: &'static str = "NPOIN";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).with_comments(b'%');
+        let cursor = &mut Cursor::new(source).of(Syntax::PERCENT);
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
         let (mut zones, mut points) = (vec![0], 0_u64);
@@ -74,6 +75,7 @@ impl Walk for Su2 {
                     let count = number(cursor, name, value)?;
                     let zone = zones.len() - 1;
                     let marker = if key == b"NELEM" { None } else { marker };
+                    skip_send_to(cursor);
                     let start = cursor.clone();
                     let ahead = read_ahead(cursor, count, sink);
                     // Not `row`, so that the error comes from the list itself, which knows more.
@@ -173,6 +175,14 @@ fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small
     ahead
 }
 
+/// Moves past the row between the count of a marker's elements and these that says where another process has copies of them.
+fn skip_send_to(cursor: &mut Cursor<'_>) {
+    let mut next = cursor.clone();
+    if next.next_row() && key_and_value(&mut next).0 == b"SEND_TO" {
+        *cursor = next;
+    }
+}
+
 /// The two sides of the equals sign of a row. The row itself and nothing if there is none.
 fn key_and_value<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
     let row = cursor.rest();
@@ -180,7 +190,8 @@ fn key_and_value<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
         None => (row, &[]),
         Some(at) => {
             let value = row[at + 1..].trim_ascii();
-            let end = value.iter().position(|&byte| byte <= b' ').unwrap_or(value.len());
+            let is_end = |&byte: &u8| byte <= b' ' || byte == b'%';
+            let end = value.iter().position(is_end).unwrap_or(value.len());
             (row[..at].trim_ascii(), &value[..end])
         }
     }

@@ -2,16 +2,14 @@
 
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
-use crate::file::token::{float, integer, line_end, quoted, skip_blanks, token_end};
-use std::fmt::Display;
+use crate::file::syntax::{Commas, Items, Syntax};
+use crate::file::token::line_end;
 use std::ops::Range;
 
 /// What to do about a single wrong line.
 pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
 /// What to do about a file that stops too early.
 pub(crate) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
-const WHOLE: &str = "a whole number from 0 to 2^64-1";
-const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
 
 /// Walks over the rows of a file, which are the lines that hold more than blanks and a `#` comment. In a binary file it
 /// takes bytes between the lines.
@@ -19,22 +17,31 @@ const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
 pub(crate) struct Cursor<'a> {
     pub(crate) source: &'a Source,
     /// The source's bytes up to where this cursor ends.
-    bytes: &'a [u8],
-    at: usize,
+    pub(in crate::file) bytes: &'a [u8],
+    pub(in crate::file) at: usize,
     /// How many lines were begun. Zero before the first one and after bytes were taken: then the next line starts at
     /// `at`.
     line: usize,
     /// Where the bytes last taken start. None in a text file.
     taken: Option<usize>,
-    /// What, besides `#`, starts a line that is no row.
-    comment: u8,
+    pub(in crate::file) syntax: Syntax,
+    /// Whether the end of a line is a blank like others, for the item at hand.
+    crosses: bool,
 }
 
 impl<'a> Cursor<'a> {
     /// Stands before the first row.
     pub(crate) fn new(source: &'a Source) -> Self {
         let at = source.begin();
-        Cursor { source, bytes: &source.bytes, at, line: 0, taken: None, comment: b'#' }
+        Cursor {
+            source,
+            bytes: &source.bytes,
+            at,
+            line: 0,
+            taken: None,
+            syntax: Syntax::PLAIN,
+            crosses: false,
+        }
     }
 
     /// Stands on the line of a byte, for messages.
@@ -58,9 +65,9 @@ impl<'a> Cursor<'a> {
         cursor
     }
 
-    /// Lines that start with this byte are no rows either.
-    pub(crate) fn with_comments(self, comment: u8) -> Self {
-        Cursor { comment, ..self }
+    /// The same in a text of another syntax.
+    pub(crate) fn of(self, syntax: Syntax) -> Self {
+        Cursor { syntax, ..self }
     }
 
     /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
@@ -79,7 +86,7 @@ impl<'a> Cursor<'a> {
         let mut at = part.map_or_else(|| self.next_line(), |part| part.bytes.len());
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
-            let end = line_end(self.bytes, self.bytes.len().min(at + size - 1));
+            let end = self.row_end(self.bytes.len().min(at + size - 1));
             let bytes = &self.bytes[..end];
             parts.push(Cursor { bytes, at, line: 0, taken: None, ..*self });
             at = end;
@@ -99,6 +106,7 @@ impl<'a> Cursor<'a> {
     pub(crate) fn location(&self) -> Location {
         match self.taken {
             // Zero if nothing was read so far, but editors count from one.
+            None if self.syntax.joins => Location::Line(self.source.line_of(self.at)),
             None => Location::Line(self.line.max(1)),
             Some(start) if self.line == 0 => Location::Byte(start),
             Some(_) => Location::Byte(self.at),
@@ -164,7 +172,73 @@ impl<'a> Cursor<'a> {
 
     #[inline]
     fn next_line(&self) -> usize {
-        if self.line > 0 { line_end(self.bytes, self.at) } else { self.at }
+        if self.line > 0 { self.row_end(self.at) } else { self.at }
+    }
+
+    /// Where the line ends that holds this byte, and those that it is joined to, after the line feed.
+    #[inline]
+    fn row_end(&self, at: usize) -> usize {
+        let end = line_end(self.bytes, at);
+        if self.syntax.joins { self.joined_end(at, end) } else { end }
+    }
+
+    #[cold]
+    fn joined_end(&self, mut at: usize, mut end: usize) -> usize {
+        while self.bytes[at..end].trim_ascii_end().ends_with(b"\\")
+            && memchr::memchr(b'#', &self.bytes[at..end]).is_none()
+        {
+            (at, end) = (end, line_end(self.bytes, end));
+        }
+        end
+    }
+
+    /// The first byte from `at` on that does not only separate numbers.
+    #[inline]
+    pub(in crate::file) fn skip_blanks(&self, mut at: usize) -> usize {
+        let bytes = self.bytes;
+        while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
+            at += 1;
+        }
+        let is_plain = self.syntax.is_plain && !self.crosses;
+        if is_plain || !self.is_word_end(at) { at } else { self.skip_more(at) }
+    }
+
+    #[cold]
+    fn skip_more(&self, mut at: usize) -> usize {
+        let mut comma = self.syntax.commas != Commas::Blanks;
+        while let Some(&byte) = self.bytes.get(at) {
+            match byte {
+                b',' if !comma => comma = true,
+                b'\\' if self.syntax.joins => {
+                    let end = line_end(self.bytes, at);
+                    match self.bytes[at + 1..end].trim_ascii().is_empty() {
+                        true => at = end - 1,
+                        false => return at,
+                    }
+                }
+                b'#' if self.crosses => at = line_end(self.bytes, at) - 1,
+                b'\n' if self.crosses => {}
+                0..=b' ' if byte != b'\n' => {}
+                _ => return at,
+            }
+            at += 1;
+        }
+        at
+    }
+
+    /// Where the word ends that starts at `at`.
+    #[inline]
+    pub(in crate::file) fn word_end(&self, mut at: usize) -> usize {
+        while at < self.bytes.len() && !self.syntax.ends_before(self.bytes[at]) {
+            at += 1;
+        }
+        at
+    }
+
+    /// Whether no word goes on at `at`.
+    #[inline]
+    pub(in crate::file) fn is_word_end(&self, at: usize) -> bool {
+        self.bytes.get(at).is_none_or(|&byte| self.syntax.ends_before(byte))
     }
 
     /// Moves to the first token of the next row. False when there is none.
@@ -176,19 +250,20 @@ impl<'a> Cursor<'a> {
                 return false;
             }
             self.line += 1;
-            self.at = skip_blanks(bytes, self.at);
+            self.at = self.skip_blanks(self.at);
             match bytes.get(self.at) {
                 None | Some(b'\n' | b'#') => {}
-                Some(&first) if first == self.comment => {}
+                Some(&first) if first == self.syntax.comment => {}
                 Some(_) => return true,
             }
         }
     }
 
-    /// Moves to the next of `count` rows, `done` of which were read.
+    /// Moves to the next of `count` items, `done` of which were read: to the next row, or the next word where items do not keep
+    /// to rows.
     #[inline]
     pub(crate) fn row(&mut self, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
-        if self.next_row() {
+        if (self.syntax.items == Items::Words && self.is_within_row()) || self.next_row() {
             return Ok(());
         }
         Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
@@ -209,7 +284,7 @@ impl<'a> Cursor<'a> {
 
     /// The rest of the row, without blanks around it.
     pub(crate) fn rest(&mut self) -> &'a [u8] {
-        let end = line_end(self.bytes, self.at);
+        let end = self.row_end(self.at);
         let rest = self.bytes[self.at..end].trim_ascii();
         self.at = end - usize::from(self.bytes[..end].ends_with(b"\n"));
         rest
@@ -217,40 +292,82 @@ impl<'a> Cursor<'a> {
 
     /// Whether the next token of the row starts with a letter.
     pub(crate) fn is_at_letter(&self) -> bool {
-        self.bytes.get(skip_blanks(self.bytes, self.at)).is_some_and(u8::is_ascii_alphabetic)
+        self.bytes.get(self.skip_blanks(self.at)).is_some_and(u8::is_ascii_alphabetic)
     }
 
     /// Where the next token of the row starts.
     pub(crate) fn at(&self) -> usize {
-        skip_blanks(self.bytes, self.at)
+        self.skip_blanks(self.at)
     }
 
     /// Whether the row has no token left.
     #[inline]
     pub(crate) fn is_at_end(&self) -> bool {
-        let at = skip_blanks(self.bytes, self.at);
-        token_end(self.bytes, at) == at
+        let at = self.skip_blanks(self.at);
+        self.is_word_end(at)
+    }
+
+    /// Whether the row at hand has words left.
+    fn is_within_row(&self) -> bool {
+        self.line > 0 && !self.is_at_end()
+    }
+
+    /// Whether the items that follow may be read row by row, as far as that goes.
+    pub(crate) fn is_between_rows(&self) -> bool {
+        self.syntax.items != Items::Words || !self.is_within_row()
+    }
+
+    /// Reads an item that starts here: on this row or, if that cannot be and the syntax allows it, on those that follow too.
+    /// In a list of words the error of the row is then kept, as a number may be missing there.
+    pub(crate) fn item<T>(
+        &mut self,
+        read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
+        missing: &mut Option<ReadError>,
+    ) -> Result<T, ReadError> {
+        let mut longer = self.clone();
+        let error = match read(self) {
+            Err(error) if self.syntax.items != Items::Rows => error,
+            on_row => return on_row,
+        };
+        longer.crosses = true;
+        let read = read(&mut longer);
+        longer.crosses = false;
+        match self.syntax.items {
+            // If another item starts on the row that this one would end on, a number is missing.
+            Items::Records if read.is_err() || !longer.is_at_end() => return Err(error),
+            Items::Words if read.is_err() => return read,
+            Items::Words if missing.is_none() => *missing = Some(error),
+            _ => {}
+        }
+        longer.line = self.line;
+        self.go_to(longer.at);
+        read
     }
 
     /// Moves before the next token of the file, on this row or a later one. False when there is none.
     #[inline]
     pub(crate) fn next_word(&mut self) -> bool {
-        (self.line > 0 && !self.is_at_end()) || self.next_row()
+        self.is_within_row() || self.next_row()
     }
 
     /// The next token of the row, or none at its end.
     #[inline]
     pub(crate) fn token(&mut self) -> Option<&'a [u8]> {
         let bytes = self.bytes;
-        let start = skip_blanks(bytes, self.at);
-        self.at = token_end(bytes, start);
-        (self.at > start).then(|| &bytes[start..self.at])
+        let start = self.skip_blanks(self.at);
+        self.at = self.word_end(start);
+        let word = &bytes[start..self.at];
+        let word = match self.syntax.commas {
+            Commas::Trailing => word.strip_suffix(b",").unwrap_or(word),
+            _ => word,
+        };
+        (!word.is_empty()).then_some(word)
     }
 
     /// The next tokens of the row, as many as there are up to `count`, with what stands between them.
     pub(crate) fn tokens(&mut self, count: u64) -> &'a [u8] {
         let bytes = self.bytes;
-        let start = skip_blanks(bytes, self.at);
+        let start = self.skip_blanks(self.at);
         let mut end = start;
         for _ in 0..count {
             if self.token().is_none() {
@@ -263,105 +380,7 @@ impl<'a> Cursor<'a> {
 
     /// Whether the next token starts with this byte.
     pub(crate) fn is_at(&self, byte: u8) -> bool {
-        self.bytes.get(skip_blanks(self.bytes, self.at)) == Some(&byte)
-    }
-
-    /// Reads a number from zero up, called `what` in messages.
-    #[inline]
-    pub(crate) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
-        let bytes = self.bytes;
-        let start = skip_blanks(bytes, self.at);
-        let mut at = start;
-        let mut number = 0_u64;
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-            at += 1;
-        }
-        // So many digits cannot overflow. The rest is rare.
-        if (1..=19).contains(&(at - start)) && token_end(bytes, at) == at {
-            self.at = at;
-            return Ok(number);
-        }
-        let token = self.token();
-        token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
-    }
-
-    /// Reads a number that may be negative, called `what` in messages.
-    #[inline]
-    pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
-        let bytes = self.bytes;
-        let start = skip_blanks(bytes, self.at);
-        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
-        let mut at = first;
-        let mut number = 0_i64;
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
-            at += 1;
-        }
-        // So many digits cannot overflow. The rest is rare.
-        if (1..=18).contains(&(at - first)) && token_end(bytes, at) == at {
-            self.at = at;
-            return Ok(if first > start { -number } else { number });
-        }
-        let token = self.token();
-        let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
-        number.ok_or_else(|| self.unusable(token, what, SIGNED))
-    }
-
-    /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
-    pub(crate) fn integer_or(&mut self, absent: u64, what: &str) -> Result<u64, ReadError> {
-        match self.token() {
-            None => Ok(absent),
-            token => token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE)),
-        }
-    }
-
-    /// Reads how many vertices there are.
-    pub(crate) fn vertex_count(&mut self) -> Result<u64, ReadError> {
-        let count = self.integer("the number of vertices")?;
-        self.check_vertex_count(count)?;
-        Ok(count)
-    }
-
-    /// Fails where there are more vertices than 32-bit indices can tell apart.
-    pub(crate) fn check_vertex_count(&self, count: u64) -> Result<(), ReadError> {
-        if count > u64::from(u32::MAX) {
-            let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
-            return Err(self.error(problem, "Correct the count, or split the mesh"));
-        }
-        Ok(())
-    }
-
-    /// Reads one coordinate, `axis` of `owner` in messages.
-    #[inline]
-    pub(crate) fn coordinate(&mut self, axis: char, owner: impl Display) -> Result<f64, ReadError> {
-        let token = self.token();
-        let value = token.and_then(float).filter(|x| x.is_finite());
-        value.ok_or_else(|| {
-            self.unusable(token, format_args!("{axis} of {owner}"), "a finite number")
-        })
-    }
-
-    /// Reads a number that need not be finite, called `what` in messages.
-    pub(crate) fn real(&mut self, what: impl Display) -> Result<f64, ReadError> {
-        let token = self.token();
-        token.and_then(float).ok_or_else(|| self.unusable(token, what, "a number"))
-    }
-
-    /// Reads z, which need not be finite: programs write NaN where they know no depth. Returns where it stands, and z.
-    #[inline]
-    pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
-        Ok((self.at(), self.real(format_args!("z of {owner}"))?))
-    }
-
-    /// Reads x and y. Returns where x stands, and both.
-    #[inline]
-    pub(crate) fn point(
-        &mut self,
-        owner: impl Display + Copy,
-    ) -> Result<(usize, [f64; 2]), ReadError> {
-        let x_at = skip_blanks(self.bytes, self.at);
-        Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
+        self.bytes.get(self.skip_blanks(self.at)) == Some(&byte)
     }
 
     /// How many of `count` rows to reserve space for: not more than what follows can hold, as the count may be wrong.
@@ -374,20 +393,6 @@ impl<'a> Cursor<'a> {
     #[cold]
     pub(crate) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
         self.source.error_at(self.location(), problem, remedy)
-    }
-
-    #[cold]
-    fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
-        match token {
-            // Not even the end of the line follows.
-            None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
-                self.error(format!("{what} is missing"), CUT_OFF)
-            }
-            None => self.error(format!("{what} is missing"), CORRECT),
-            Some(token) => {
-                self.error(format!("{what} is `{}`, not {wanted}", quoted(token)), CORRECT)
-            }
-        }
     }
 }
 
@@ -403,18 +408,6 @@ mod tests {
         let mut cursor = Cursor::new(source);
         cursor.next_row();
         cursor
-    }
-
-    #[test]
-    fn signed_integers() {
-        let numbers = source(b"0 +17 -3 9223372036854775807 -9223372036854775808");
-        let mut cursor = row_of(&numbers);
-        for expected in [0, 17, -3, i64::MAX, i64::MIN] {
-            assert_eq!(cursor.signed("a tag").unwrap(), expected);
-        }
-        for wrong in ["-", "--1", "1.0", "9223372036854775808", "7a", ""] {
-            assert!(row_of(&source(wrong.as_bytes())).signed("a tag").is_err(), "{wrong}");
-        }
     }
 
     #[test]

@@ -21,32 +21,25 @@ pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
     shown
 }
 
-/// The first byte from `at` on that is no blank. A line feed does not count as one.
+/// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
+/// and y, or have a comma there.
 #[inline]
-pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
-    while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
-        at += 1;
-    }
-    at
-}
-
-/// Where the next token starts, on this line or a later one, behind a comment too: some formats break lines between x
-/// and y.
-#[inline]
-pub(crate) fn skip_to_token(bytes: &[u8], mut at: usize) -> usize {
+pub(crate) fn skip_to_number(bytes: &[u8], mut at: usize) -> usize {
     loop {
         match bytes.get(at) {
             Some(b'#') => at = line_end(bytes, at),
+            Some(b',' | b'\\') => at += 1,
             Some(&byte) if byte <= b' ' => at += 1,
             _ => return at,
         }
     }
 }
 
-/// Where the token ends that starts at `at`: at a blank, at a comment or at the end of the line.
+/// Where the number ends that starts at `at`: before the first byte that is part of none.
 #[inline]
-pub(crate) fn token_end(bytes: &[u8], mut at: usize) -> usize {
-    while at < bytes.len() && bytes[at] > b' ' && bytes[at] != b'#' {
+pub(crate) fn number_end(bytes: &[u8], mut at: usize) -> usize {
+    let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'+' | b'-');
+    while bytes.get(at).is_some_and(is_part) {
         at += 1;
     }
     at
@@ -74,65 +67,90 @@ pub(crate) fn integer(token: &[u8]) -> Option<u64> {
 
 #[inline]
 pub(crate) fn float(token: &[u8]) -> Option<f64> {
-    if let Some(number) = short_float(token) {
+    if let Some((number, end)) = short_float(token, 0)
+        && end == token.len()
+    {
         return Some(number);
     }
     let text = str::from_utf8(token).ok()?;
-    text.parse().ok().or_else(|| fortran_float(text))
+    text.parse().ok().or_else(|| {
+        // Fortran marks the exponents of double precision so.
+        let (mantissa, exponent) = text.split_once(['d', 'D'])?;
+        format!("{mantissa}e{exponent}").parse().ok()
+    })
 }
 
-/// The number if it is an integer of at most 53 bits by a power of ten that is a `f64`: then a single operation rounds it rightly
-/// (Clinger, How to read floating point numbers accurately, 1990). Most numbers of up to 16 digits are, and it takes a
-/// third of the time.
+/// The number that starts at `at`, and where it ends, if it is an integer of at most 53 bits by a power of ten that is a `f64`: then
+/// a single operation rounds it rightly (Clinger, How to read floating point numbers accurately, 1990). Most numbers of up to 16
+/// digits are, and it takes a third of the time.
 #[inline]
-fn short_float(token: &[u8]) -> Option<f64> {
+pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     const POWERS: [f64; 23] = [
         1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
         1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
     ];
-    let (is_negative, digits) = match token {
-        [b'-', rest @ ..] => (true, rest),
-        rest => (false, rest),
-    };
-    let (mut number, mut fraction, mut count, mut at) = (0_u64, None, 0, 0);
-    while let Some(&byte) = digits.get(at) {
-        match byte {
-            b'0'..=b'9' => {
-                number = number.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
-                count += 1;
-            }
-            b'.' if fraction.is_none() => fraction = Some(count),
-            _ => break,
+    let is_negative = bytes.get(at) == Some(&b'-');
+    let start = at + usize::from(is_negative);
+    let mut number = 0_u64;
+    let mut digits = |mut at: usize| {
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+            at += 1;
         }
-        at += 1;
+        at
+    };
+    let mut end = digits(start);
+    let (mut count, mut power) = (end - start, 0);
+    if bytes.get(end) == Some(&b'.') {
+        let point = end;
+        end = digits(point + 1);
+        power = point as i32 + 1 - end as i32;
+        count += end - point - 1;
     }
-    let exponent = match &digits[at..] {
-        [] => 0,
-        [b'e' | b'E', b'-', digit @ b'0'..=b'9'] => -i32::from(digit - b'0'),
-        [b'e' | b'E', b'-', tens @ b'0'..=b'9', ones @ b'0'..=b'9'] => {
-            -10 * i32::from(tens - b'0') - i32::from(ones - b'0')
-        }
-        [b'e' | b'E', b'+', tens @ b'0'..=b'9', ones @ b'0'..=b'9'] => {
-            10 * i32::from(tens - b'0') + i32::from(ones - b'0')
-        }
-        _ => return None,
-    };
     // So many digits, leading zeros among them, cannot overflow.
     if !(1..=19).contains(&count) || number > 1 << 53 {
         return None;
     }
-    let power = exponent - fraction.map_or(0, |before| count - before);
+    if let Some(b'e' | b'E') = bytes.get(end) {
+        let (sign, first) = match bytes.get(end + 1)? {
+            b'-' => (-1, end + 2),
+            b'+' => (1, end + 2),
+            _ => (1, end + 1),
+        };
+        let mut exponent = 0;
+        end = first;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(end)
+            && end < first + 4
+        {
+            exponent = 10 * exponent + i32::from(digit - b'0');
+            end += 1;
+        }
+        if end == first {
+            return None;
+        }
+        power += sign * exponent;
+    }
     let scale = *POWERS.get(power.unsigned_abs() as usize)?;
     let number = number as f64;
     let number = if power < 0 { number / scale } else { number * scale };
-    Some(if is_negative { -number } else { number })
+    Some((if is_negative { -number } else { number }, end))
 }
 
-/// The number if its exponent is marked with D, as Fortran does for double precision.
+/// The number if it is one as only Fortran writes and reads it: in quadruple precision, or with an exponent of three digits, for
+/// which it leaves the letter out.
 #[cold]
-fn fortran_float(text: &str) -> Option<f64> {
-    let (mantissa, exponent) = text.split_once(['d', 'D'])?;
-    format!("{mantissa}e{exponent}").parse().ok()
+pub(crate) fn fortran_float(token: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(token).ok()?;
+    let is_sign = |&at: &usize| matches!(text.as_bytes()[at], b'+' | b'-');
+    let (mantissa, exponent) = match text.split_once(['q', 'Q']) {
+        Some(parts) => parts,
+        None => text.split_at((1..text.len()).rfind(is_sign)?),
+    };
+    // Else a letter would be left out twice.
+    let is_plain = |part: &str| part.bytes().all(|b| !b.is_ascii_alphabetic());
+    (is_plain(mantissa) && is_plain(exponent))
+        .then(|| format!("{mantissa}e{exponent}").parse().ok())
+        .flatten()
 }
 
 #[cfg(test)]
@@ -166,6 +184,32 @@ mod tests {
         }
     }
 
+    #[test]
+    fn exponents_of_fortran() {
+        for (text, value) in
+            [("1.5-101", 1.5e-101), ("-.25+003", -250.0), ("2Q1", 20.0), ("1q-2", 0.01)]
+        {
+            assert_eq!(
+                (fortran_float(text.as_bytes()), float(text.as_bytes())),
+                (Some(value), None),
+                "{text}"
+            );
+        }
+        for wrong in ["", "-", "1-", "-1", "1e5-2", "1-2-3", "nan-3", "1Qx", "1,5"] {
+            assert_eq!(fortran_float(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_end_where_others_begin() {
+        for (text, end) in
+            [("1.5,2", 3), ("-1e+5<", 5), ("7#", 1), ("1D0\t", 3), ("+.5/x", 3), ("8", 1), ("", 0)]
+        {
+            assert_eq!(number_end(text.as_bytes(), 0), end, "{text}");
+        }
+        assert_eq!(skip_to_number(b"1 , # 2, 3\n\t4", 1), 12);
+    }
+
     /// Against the standard library, on numbers as they are written and on what may look like one.
     #[test]
     fn short_floats_are_those_of_the_standard_library() {
@@ -190,7 +234,8 @@ mod tests {
                 _ => format!("{:e}", random(1 << 30) as f64 / 10f64.powi(random(30) as i32)),
             };
             let expected = text.parse::<f64>().ok().map(f64::to_bits);
-            let found = short_float(text.as_bytes()).map(f64::to_bits);
+            let whole = short_float(text.as_bytes(), 0).filter(|&(_, end)| end == text.len());
+            let found = whole.map(|(number, _)| number.to_bits());
             assert!(found.is_none() || found == expected, "{text}");
             assert!(float(text.as_bytes()).map(f64::to_bits) == expected, "{text}");
             short += u32::from(found.is_some());

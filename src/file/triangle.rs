@@ -11,9 +11,16 @@ use crate::file::parallel_rows::take_rows;
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::regions::{Numbering, Regions};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::{float, integer};
 use crate::mesh::Mesh;
+
+/// Stands before the first row of one of the files.
+pub(crate) fn rows(source: &Source) -> Cursor<'_> {
+    // Triangle looks for the next number behind blanks, and so passes over a comma before them.
+    Cursor::new(source).of(Syntax::TRAILING)
+}
 
 /// Reads a mesh from its two files, and from its `.poly` if there is one.
 pub(crate) fn parse(
@@ -57,7 +64,7 @@ pub(crate) fn vertex_places(
         counted = at;
         let start = memchr::memrchr(b'\n', &node.bytes[..at]).map_or(0, |end| end + 1);
         let number = std::str::from_utf8(&node.bytes[start..at]).unwrap_or_default().trim();
-        let number = integer(number.as_bytes()).unwrap_or_default();
+        let number = integer(number.trim_end_matches(',').as_bytes()).unwrap_or_default();
         (Location::Line(line), number)
     };
     x_at.map(place).collect()
@@ -65,7 +72,7 @@ pub(crate) fn vertex_places(
 
 /// Line and number of the triangles with these indices, ascending, in a file that was read before.
 pub(crate) fn triangle_places(ele: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
-    let mut cursor = Cursor::new(ele);
+    let mut cursor = rows(ele);
     // The header comes before the triangles.
     cursor.next_row();
     let mut rows = 0;
@@ -113,7 +120,7 @@ impl Numbers {
 type Vertices = (Numbers, Vec<[f64; 2]>, Vec<usize>, Vec<String>);
 
 fn vertices(node: &Source) -> Result<Vertices, ReadError> {
-    let cursor = &mut Cursor::new(node);
+    let cursor = &mut rows(node);
     let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
     if numbers.count == 0 {
         return Err(cursor.error("no vertices are announced", "Write the mesh again"));
@@ -196,7 +203,7 @@ type Triangles = (Vec<[u32; 3]>, Option<Vec<u32>>);
 
 /// Reads the triangles, and the region of each if there are several.
 fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles, ReadError> {
-    let cursor = &mut Cursor::new(ele);
+    let cursor = &mut rows(ele);
     header(cursor, "triangles")?;
     let count = cursor.integer("the number of triangles")?;
     match cursor.integer_or(3, "the number of vertices per triangle")? {
@@ -253,7 +260,8 @@ impl<'a> Attributes<'a> {
 
 /// A text that is the same for all ways to write the same numbers.
 fn normalized(attributes: &[u8]) -> String {
-    let tokens = attributes.split(|&byte| byte <= b' ').filter(|token| !token.is_empty());
+    let is_between = |&byte: &u8| byte <= b' ' || byte == b',';
+    let tokens = attributes.split(is_between).filter(|token| !token.is_empty());
     let normalized = tokens.map(|token| match float(token) {
         // Adding zero takes the sign off a negative zero.
         Some(number) => format!("{:?} ", number + 0.0),
@@ -318,7 +326,7 @@ impl<'s> Segments<'s> {
         node: &'s Source,
         numbers: &Numbers,
     ) -> Result<Self, ReadError> {
-        let mut cursor = Cursor::new(poly);
+        let mut cursor = rows(poly);
         let listed = vertex_header(&mut cursor)?;
         // It may number its vertices from another number on than the mesh.
         let mut own = Numbers { first: numbers.first, count: listed };

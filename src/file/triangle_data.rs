@@ -5,13 +5,12 @@ use crate::file::field::PointField;
 use crate::file::heights::TextNumbers;
 use crate::file::point_data::{PointData, Wanted};
 use crate::file::source::Source;
-use crate::file::text::Cursor;
-use crate::file::triangle::{attribute_names, vertex_header};
+use crate::file::triangle::{attribute_names, rows, vertex_header};
 use crate::mesh::Precision;
 
 /// The wanted attributes of the vertices of a file that was read before.
 pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
-    let cursor = &mut Cursor::new(node);
+    let cursor = &mut rows(node);
     let count = vertex_header(cursor)?;
     let attributes = cursor.integer_or(0, "the number of attributes per vertex")?;
     let mut data = PointData::default();

@@ -6,9 +6,8 @@ use crate::file::group_table::GroupTable;
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 use crate::file::source::Source;
-use crate::file::text::Cursor;
 use crate::file::token::float;
-use crate::file::triangle::{Numbers, Segments, header, vertex_header, vertex_number};
+use crate::file::triangle::{Numbers, Segments, header, rows, vertex_header, vertex_number};
 
 /// The groups of a mesh whose files were read before.
 pub(crate) fn groups(
@@ -35,7 +34,7 @@ fn label(token: &[u8], zero_is_none: bool) -> Option<Label> {
 }
 
 fn attributes(ele: &Source, table: &mut GroupTable) -> Result<(), ReadError> {
-    let cursor = &mut Cursor::new(ele);
+    let cursor = &mut rows(ele);
     header(cursor, "triangles")?;
     let count = cursor.integer("the number of triangles")?;
     cursor.integer_or(3, "the number of vertices per triangle")?;
@@ -66,7 +65,7 @@ fn attributes(ele: &Source, table: &mut GroupTable) -> Result<(), ReadError> {
 
 /// Finds the markers of vertices. Returns how they are numbered.
 fn markers(node: &Source, table: &mut GroupTable) -> Result<Numbers, ReadError> {
-    let cursor = &mut Cursor::new(node);
+    let cursor = &mut rows(node);
     let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
     let attributes = cursor.integer_or(0, "the number of attributes per vertex")?;
     let marked = cursor.integer_or(0, "whether vertices have markers")? != 0;

@@ -7,6 +7,7 @@ mod data;
 mod errors;
 mod exodus;
 mod groups;
+mod layouts;
 mod long;
 mod made;
 mod names;

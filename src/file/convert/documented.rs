@@ -96,12 +96,12 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Medit],
-        "dimension 2 or 3",
+        "dimension 2 or 3, items anywhere on lines",
         [
             "edges, corners, required vertices and triangles, quadrilaterals",
             "reference",
             "references of vertices, edges, triangles and quadrilaterals; `Corners`, `RequiredVertices`, `RequiredTriangles`",
-            "one row an item",
+            "",
         ],
     ),
     row(
@@ -111,7 +111,7 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Obj],
-        "negative numbers, texture coordinates and normals",
+        "negative numbers, texture coordinates and normals, rows joined by a backslash",
         [
             "points, lines, polygons",
             "material, and group or object",
@@ -131,18 +131,23 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Off],
-        "text, with or without normals and colors",
+        "text, with or without normals and colors, vertices anywhere on lines",
         [
             "quadrilaterals",
             "–",
             "nothing",
-            "one row an item; no polygons of more than four corners",
+            "each face on a line of its own; no polygons of more than four corners",
         ],
     ),
     row(
         &[Format::Adcirc],
-        "text",
-        ["quadrilaterals", "–", "boundaries: `open1`, `land1`, `island2` and so on", ""],
+        "text as Fortran reads it: commas between numbers, items of several lines, exponents without a letter",
+        [
+            "quadrilaterals",
+            "–",
+            "boundaries: `open1`, `land1`, `island2` and so on",
+            "no repeat counts (`2*0.5`)",
+        ],
     ),
     row(
         &[Format::Sms2dm],
@@ -156,7 +161,7 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::FreeFem],
-        "text",
+        "text, items anywhere on lines",
         ["edges", "label", "labels of vertices, triangles and edges", ""],
     ),
     row(

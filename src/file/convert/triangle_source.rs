@@ -7,10 +7,9 @@ use crate::file::heights::TextNumbers;
 use crate::file::label::Label;
 use crate::file::sink::{Column, Element, Kind, Sink};
 use crate::file::source::Source;
-use crate::file::text::Cursor;
 use crate::file::token::float;
 use crate::file::triangle::{
-    Numbers, Segments, attribute_names, header, vertex_header, vertex_number,
+    Numbers, Segments, attribute_names, header, rows, vertex_header, vertex_number,
 };
 use crate::mesh::Precision;
 
@@ -30,7 +29,7 @@ pub(super) fn content(
 }
 
 fn vertices(node: &Source, sink: &mut Collector) -> Result<Numbers, ReadError> {
-    let cursor = &mut Cursor::new(node);
+    let cursor = &mut rows(node);
     let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
     let attributes = cursor.integer_or(0, "the number of attributes per vertex").unwrap_or(0);
     let attributes = cursor.capacity(attributes, 1) as u64;
@@ -79,7 +78,7 @@ fn triangles(
     numbers: &Numbers,
     sink: &mut Collector,
 ) -> Result<(), ReadError> {
-    let cursor = &mut Cursor::new(ele);
+    let cursor = &mut rows(ele);
     header(cursor, "triangles")?;
     let count = cursor.integer("the number of triangles")?;
     cursor.integer_or(3, "the number of vertices per triangle")?;

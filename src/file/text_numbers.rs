@@ -1,0 +1,203 @@
+//! Numbers of a text file.
+
+use crate::error::ReadError;
+use crate::file::syntax::Commas;
+use crate::file::text::{CORRECT, CUT_OFF, Cursor};
+use crate::file::token::{float, fortran_float, integer, quoted, short_float};
+use std::fmt::Display;
+
+const WHOLE: &str = "a whole number from 0 to 2^64-1";
+const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
+
+impl<'a> Cursor<'a> {
+    /// Reads a number from zero up, called `what` in messages.
+    #[inline]
+    pub(crate) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
+        let bytes = self.bytes;
+        let start = self.skip_blanks(self.at);
+        let mut at = start;
+        let mut number = 0_u64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=19).contains(&(at - start)) && self.is_word_end(at) {
+            self.at = at;
+            return Ok(number);
+        }
+        let token = self.token();
+        token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
+    }
+
+    /// Reads a number that may be negative, called `what` in messages.
+    #[inline]
+    pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
+        let bytes = self.bytes;
+        let start = self.skip_blanks(self.at);
+        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
+        let mut at = first;
+        let mut number = 0_i64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
+            at += 1;
+        }
+        // So many digits cannot overflow. The rest is rare.
+        if (1..=18).contains(&(at - first)) && self.is_word_end(at) {
+            self.at = at;
+            return Ok(if first > start { -number } else { number });
+        }
+        let token = self.token();
+        let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
+        number.ok_or_else(|| self.unusable(token, what, SIGNED))
+    }
+
+    /// Reads the whole number that the next token starts with, if that is all of it or `stop` follows. Else it stays before it.
+    #[inline]
+    pub(crate) fn signed_up_to(&mut self, stop: u8) -> Option<i64> {
+        let bytes = self.bytes;
+        let start = self.skip_blanks(self.at);
+        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
+        let mut at = first;
+        let mut number = 0_i64;
+        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
+            at += 1;
+        }
+        let ends = self.is_word_end(at) || bytes[at] == stop;
+        // So many digits cannot overflow.
+        ((1..=18).contains(&(at - first)) && ends).then(|| {
+            self.at = self.word_end(at);
+            if first > start { -number } else { number }
+        })
+    }
+
+    /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
+    pub(crate) fn integer_or(&mut self, absent: u64, what: &str) -> Result<u64, ReadError> {
+        match self.token() {
+            None => Ok(absent),
+            token => token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE)),
+        }
+    }
+
+    /// Reads how many vertices there are.
+    pub(crate) fn vertex_count(&mut self) -> Result<u64, ReadError> {
+        let count = self.integer("the number of vertices")?;
+        self.check_vertex_count(count)?;
+        Ok(count)
+    }
+
+    /// Fails where there are more vertices than 32-bit indices can tell apart.
+    pub(crate) fn check_vertex_count(&self, count: u64) -> Result<(), ReadError> {
+        if count > u64::from(u32::MAX) {
+            let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
+            return Err(self.error(problem, "Correct the count, or split the mesh"));
+        }
+        Ok(())
+    }
+
+    /// Reads one coordinate, `axis` of `owner` in messages.
+    #[inline]
+    pub(crate) fn coordinate(&mut self, axis: char, owner: impl Display) -> Result<f64, ReadError> {
+        if let Some(value) = self.short_number() {
+            return Ok(value);
+        }
+        let token = self.token();
+        let value = token.and_then(|token| self.float(token)).filter(|x| x.is_finite());
+        value.ok_or_else(|| {
+            self.unusable(token, format_args!("{axis} of {owner}"), "a finite number")
+        })
+    }
+
+    /// Reads a number that need not be finite, called `what` in messages.
+    #[inline]
+    pub(crate) fn real(&mut self, what: impl Display) -> Result<f64, ReadError> {
+        if let Some(value) = self.short_number() {
+            return Ok(value);
+        }
+        let token = self.token();
+        let value = token.and_then(|token| self.float(token));
+        value.ok_or_else(|| self.unusable(token, what, "a number"))
+    }
+
+    /// Reads a number as most are. If the next token is none of these, it stays before it.
+    #[inline]
+    fn short_number(&mut self) -> Option<f64> {
+        let (value, end) = short_float(self.bytes, self.skip_blanks(self.at))?;
+        self.is_word_end(end).then(|| {
+            self.at = end;
+            value
+        })
+    }
+
+    /// The number that a token is. Fortran writes exponents in more ways than others.
+    fn float(&self, token: &[u8]) -> Option<f64> {
+        let of_fortran = || match self.syntax.commas {
+            Commas::Blanks => fortran_float(token),
+            _ => None,
+        };
+        float(token).or_else(of_fortran)
+    }
+
+    /// Reads z, which need not be finite: programs write NaN where they know no depth. Returns where it stands, and z.
+    #[inline]
+    pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
+        Ok((self.at(), self.real(format_args!("z of {owner}"))?))
+    }
+
+    /// Reads x and y. Returns where x stands, and both.
+    #[inline]
+    pub(crate) fn point(
+        &mut self,
+        owner: impl Display + Copy,
+    ) -> Result<(usize, [f64; 2]), ReadError> {
+        let x_at = self.skip_blanks(self.at);
+        Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
+    }
+
+    #[cold]
+    fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
+        match token {
+            // Not even the end of the line follows.
+            None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
+                self.error(format!("{what} is missing"), CUT_OFF)
+            }
+            None => self.error(format!("{what} is missing"), CORRECT),
+            Some(token) if self.syntax.commas == Commas::Blanks && token.contains(&b'*') => {
+                let problem = format!("{what} is `{}`, a repeated number", quoted(token));
+                self.error(problem, "Write each number by itself: repeat counts are not read")
+            }
+            Some(token) => {
+                self.error(format!("{what} is `{}`, not {wanted}", quoted(token)), CORRECT)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::source::Source;
+
+    fn source(text: &[u8]) -> Source {
+        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None, welds: false }
+    }
+
+    fn row_of(source: &Source) -> Cursor<'_> {
+        let mut cursor = Cursor::new(source);
+        cursor.next_row();
+        cursor
+    }
+
+    #[test]
+    fn signed_integers() {
+        let numbers = source(b"0 +17 -3 9223372036854775807 -9223372036854775808");
+        let mut cursor = row_of(&numbers);
+        for expected in [0, 17, -3, i64::MAX, i64::MIN] {
+            assert_eq!(cursor.signed("a tag").unwrap(), expected);
+        }
+        for wrong in ["-", "--1", "1.0", "9223372036854775808", "7a", ""] {
+            assert!(row_of(&source(wrong.as_bytes())).signed("a tag").is_err(), "{wrong}");
+        }
+    }
+}
