@@ -97,6 +97,18 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         if before.get("z").is_some_and(is_flat) {
             before.remove("z");
         }
+        // Depths are heights with the other sign.
+        let turned = match (file.format(), format) {
+            (Format::Adcirc, Format::Sms2dm) => Some(("depth", "z")),
+            (Format::Sms2dm, Format::Adcirc) => Some(("z", "depth")),
+            _ => None,
+        };
+        if let Some((from, to)) = turned
+            && let Some(numbers) = before.remove(from)
+        {
+            let minus = |bits: u64| (0.0 - f64::from_bits(bits)).to_bits();
+            before.insert(to.to_owned(), numbers.into_iter().map(minus).collect());
+        }
         for (array, values) in before {
             let found = after.get(&array).or_else(|| after.get(&array.replace(' ', "_")));
             assert!(found == Some(&values), "{name}: {array}");
@@ -193,7 +205,7 @@ fn boundaries_of_a_grid_are_groups() {
     assert!(gmsh.contains("1 1 \"open1\"") && gmsh.contains("$NodeData\n1\n\"depth\""), "{gmsh}");
     let (sms, lost) = converted("in.14", GRID, Format::Sms2dm);
     assert!(sms.contains("NS 2 3 -4 \"land1\"\n"), "{sms}");
-    assert_eq!(lost, "data of vertices: depth");
+    assert_eq!(lost, "");
     let (back, lost) = converted("in.msh", &gmsh, Format::Adcirc);
     assert_eq!(lost, "names of groups of lines, which become numbers: open1, land1, island2");
     let tail = &back[back.find("1 = Number of open").unwrap()..];
@@ -261,4 +273,24 @@ fn damaged_files_are_converted_or_refused() {
         }
     }
     assert!(read > 300, "{read} conversions");
+}
+
+#[test]
+fn depths_of_grids_are_heights_of_sms() {
+    let grid = "t\n2 4\n1 0.0 0.0 1.5\n2 1.0 0.0 0.0\n3 1.0 1.0 -3.5\n4 0.0 1.0 NaN\n1 3 1 2 3\n2 3 1 3 4\n";
+    let folder = Folder::new(&[("a.14", grid)]);
+    let convert = |from: &str, format, to: &str| {
+        let conversion = Conversion::new(&folder.read(from), format).unwrap().unwrap();
+        conversion.write(&folder.path(to)).unwrap();
+        conversion.lost().to_vec()
+    };
+    assert_eq!(convert("a.14", Format::Sms2dm, "a.2dm"), [""; 0]);
+    let nodes = "ND 1 0.0 0.0 -1.5\nND 2 1.0 0.0 0.0\nND 3 1.0 1.0 3.5\nND 4 0.0 1.0 NaN\n";
+    assert!(folder.text("a.2dm").ends_with(nodes), "{}", folder.text("a.2dm"));
+    assert_eq!(convert("a.2dm", Format::Adcirc, "b.14"), [""; 0]);
+    assert!(folder.text("b.14").contains(&grid[2..]), "{}", folder.text("b.14"));
+    // Others are told of, as z of other formats may be anything.
+    assert_eq!(convert("a.14", Format::Off, "a.off"), ["data of vertices: depth"]);
+    assert_eq!(convert("a.2dm", Format::Off, "b.off"), [""; 0]);
+    assert_eq!(convert("b.off", Format::Adcirc, "c.14"), ["third coordinates"]);
 }

@@ -2,6 +2,7 @@
 
 use super::collector;
 use super::content::Content;
+use super::grids;
 use super::job::Job;
 use super::targets::{TARGETS, Target, Write};
 use super::triangle_source;
@@ -64,6 +65,7 @@ impl Conversion {
         };
         // As they are read, in the digits of the file.
         content.points.clone_from(&file.mesh().points);
+        grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
         Ok(Some(Conversion { content, target, lost }))
     }

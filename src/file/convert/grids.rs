@@ -1,9 +1,34 @@
 //! Writes grids of coastal models: SMS's `.2dm`, and those of ADCIRC and SCHISM.
 
+use super::content::{Content, Data};
 use super::job::Job;
+use crate::file::format::Format;
 use crate::file::sink::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
+
+/// Makes depths the third coordinates of a `.2dm`, and the other way round. SMS has z upwards, and opens a grid of ADCIRC with minus
+/// its depths as z.
+pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
+    // No zero is negative then.
+    let minus = |number: f64| 0.0 - number;
+    match (from, to) {
+        (Format::Adcirc, Format::Sms2dm) => {
+            if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
+                let depths = content.point_data.remove(at).values;
+                content.heights = depths.into_iter().map(minus).collect();
+            }
+        }
+        (Format::Sms2dm, Format::Adcirc) => {
+            let vertices = 0..content.points.len();
+            let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
+            (content.heights, content.height) = (Vec::new(), 0.0);
+            let name = "depth".to_owned();
+            content.point_data.push(Data { name, components: 1, is_real: true, values });
+        }
+        _ => {}
+    }
+}
 
 pub(crate) fn write_sms(job: &Job<'_>) -> String {
     let content = job.content;
