@@ -6,6 +6,7 @@ mod damage;
 mod data;
 mod errors;
 mod exodus;
+mod grouped;
 mod groups;
 mod layouts;
 mod long;
