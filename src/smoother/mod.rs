@@ -4,6 +4,7 @@ mod goal;
 mod running;
 mod ways;
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
@@ -34,7 +35,7 @@ pub enum Backend {
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
-    mesh: &'a Mesh,
+    mesh: Cow<'a, Mesh>,
     topology: Topology<'a>,
     problem: Problem,
     sliding: Option<Sliding>,
@@ -53,7 +54,21 @@ impl<'a> Smoother<'a> {
         let (mut topology, problem) = prepare(mesh)?;
         // Runs need the problem alone. Stars are found again if a vertex has to be set back.
         topology.forget_stars();
+        let mesh = Cow::Borrowed(mesh);
         Ok(Self { mesh, topology, problem, sliding: None, field: None, prepare: start.elapsed() })
+    }
+
+    /// The same with a copy of the mesh of its own, so that it can outlive the mesh it was made from: in a struct without lifetimes,
+    /// or in a task that is spawned.
+    pub fn into_owned(self) -> Smoother<'static> {
+        Smoother {
+            mesh: Cow::Owned(self.mesh.into_owned()),
+            topology: self.topology.into_owned(),
+            problem: self.problem,
+            sliding: self.sliding,
+            field: self.field,
+            prepare: self.prepare,
+        }
     }
 
     /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
@@ -110,7 +125,7 @@ impl<'a> Smoother<'a> {
         self.topology.check_count(points)?;
         let positions = self.problem.normalized(points, Vec::new());
         let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
-        let mut places = Places::new(self.mesh, field, &self.problem);
+        let mut places = Places::new(&self.mesh, field, &self.problem);
         places.follow(&positions)?;
         Ok(metric.ideal_squared() + mean_excess(metric, &places.problem, &positions))
     }

@@ -32,7 +32,7 @@ impl Smoother<'_> {
         options.check_for(&self.problem)?;
         Ways::check(self, options, from.is_some())?;
         let (device, fault) = self.checked(device, keeper).await?;
-        let mut about = resume::about(self.mesh, self.problem.targets(), options);
+        let mut about = resume::about(&self.mesh, self.problem.targets(), options);
         let resumed = from
             .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
             .transpose()?;
@@ -110,7 +110,7 @@ impl Smoother<'_> {
             &mut ended.positions,
         );
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        let mut points = self.problem.denormalize(self.mesh, &ended.positions);
+        let mut points = self.problem.denormalize(&self.mesh, &ended.positions);
         ways.slide_into(&mut points);
         for x in points.as_flattened_mut() {
             *x = options.stored.rounded(*x);

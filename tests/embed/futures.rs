@@ -90,6 +90,33 @@ fn futures_can_move_between_threads() {
     is_send(&device_mesh.read_points_async());
 }
 
+/// What a runtime asks of a task that it spawns.
+#[test]
+fn a_prepared_mesh_that_owns_all_it_needs_is_run_in_another_thread() {
+    fn spawn<T: Send + 'static>(
+        task: impl Future<Output = T> + Send + 'static,
+    ) -> std::thread::JoinHandle<T> {
+        std::thread::spawn(|| pollster::block_on(task))
+    }
+    let mesh = bad_plate(400);
+    let expected =
+        Smoother::new(&mesh).unwrap().run(&Options::default(), &Backend::Cpu, &mut go_on).unwrap();
+    let owned = Smoother::new(&mesh).unwrap().into_owned();
+    drop(mesh);
+    let task = spawn(async move { owned.run(&Options::default(), &Backend::Cpu, &mut go_on) });
+    assert_same(&expected, &task.join().unwrap().unwrap());
+
+    let owned = Smoother::new(&bad_plate(400)).unwrap().into_owned();
+    let app = App::new();
+    let gpu = app.another_gpu();
+    let device = gpu.device().clone();
+    let task = spawn(async move { owned.run_async(&Options::default(), &gpu, &mut go_on).await });
+    while !task.is_finished() {
+        device.poll(wgpu::PollType::Poll).unwrap();
+    }
+    assert!(task.join().unwrap().unwrap().sweeps > 0);
+}
+
 #[test]
 fn points_polled_by_the_application_are_those_read_by_blocking() {
     let mesh = bad_plate(600);
