@@ -112,13 +112,16 @@ pub struct Live {
 
 #[wasm_bindgen]
 impl Live {
-    /// Does a frame, and takes what has arrived of those before.
+    /// Takes what has arrived of the frames before, and does another one unless the device is behind: what the user does would show
+    /// later and later.
     pub fn frame(&mut self) -> Result<(), JsError> {
-        self.scene.frame();
         if let Some((values, points)) = self.scene.seen()? {
             self.numbers = [values.of(Metric::Imr), values.worst_imr, values.inverted as f32];
             self.points.clear();
             self.points.extend(points.as_flattened());
+        }
+        if self.scene.behind() < 3 {
+            self.scene.frame();
         }
         Ok(())
     }
