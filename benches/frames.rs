@@ -1,8 +1,9 @@
-//! Frames of an application: the time to encode one, and from its submission until the device is done.
+//! Frames of an application: the time to encode one, and from its submission until the device is done; and the time to make a mesh
+//! ready for them.
 //!
 //! `cargo bench --bench frames -- [VERTICES...]`, 2,000, 20,000 and 200,000 by default. A frame is an import, three sweeps, the
-//! objective and the export; `valid` adds five sweeps of untangling, which find nothing inverted; `all` adds a mask, a move of the hole, the last valid positions and two readbacks, and ends
-//! its sweeps by itself.
+//! objective and the export, `corrected` the same with three corrections from coarser levels; `valid` adds five sweeps of untangling, which find nothing inverted; `all` adds a mask, a move of the hole, the last valid positions and two readbacks, and ends
+//! its sweeps by itself. Behind each median is the least.
 
 #![allow(clippy::print_stdout)]
 
@@ -13,19 +14,21 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
-    DeviceMesh, Gpu, ObjectiveValues, Options, Readback, Sweeps, Topology, UntanglingSweeps,
-    VertexBuffer, signed_area,
+    DeviceMesh, Gpu, Method, ObjectiveValues, Options, Readback, Sweeps, Topology,
+    UntanglingSweeps, VertexBuffer, signed_area,
 };
 
 /// Frames that are measured, after as many that are not.
 const FRAMES: usize = 50;
+/// How often a mesh is made ready.
+const MESHES: usize = 10;
 
 fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![2000, 20_000, 200_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let gpu = Gpu::open(None).unwrap();
-    println!("{}: medians", gpu.adapter().name);
+    println!("{}: medians (and the least)", gpu.adapter().name);
     for vertices in sizes {
         let mesh = support::triangulate(&outline, vertices).unwrap();
         let buffer = |size: usize, usage| {
@@ -42,20 +45,37 @@ fn main() {
         let points: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
         gpu.queue().write_buffer(&vertex_buffer, 0, bytemuck::cast_slice(&points));
         let numbers = buffer(size_of::<ObjectiveValues>() + 4, usage);
+        let mut made = Vec::new();
+        for _ in 0..MESHES {
+            let start = Instant::now();
+            let mesh = DeviceMesh::new(&gpu, &mesh).unwrap();
+            made.push(start.elapsed());
+            drop(mesh);
+        }
         let device_mesh = DeviceMesh::new(&gpu, &mesh).unwrap();
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertex_buffer, 8)).unwrap();
 
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let objective = sweeps.bind_objective(&numbers, 0).unwrap();
-        let plain = median(&gpu, |encoder| {
+        let plain = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             sweeps.encode_sweeps(encoder, 3);
             objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
 
+        let options = Options { method: Method::Multilevel, ..Options::default() };
+        let mut corrected_sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let corrected_objective = corrected_sweeps.bind_objective(&numbers, 0).unwrap();
+        let corrected = times(&gpu, |encoder| {
+            bound.encode_import(encoder);
+            corrected_sweeps.encode_sweeps(encoder, 3);
+            corrected_objective.encode_objective(encoder);
+            bound.encode_export(encoder);
+        });
+
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
-        let valid = median(&gpu, |encoder| {
+        let valid = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             untangling.encode_untangle(encoder, 5);
             sweeps.encode_sweeps(encoder, 3);
@@ -79,7 +99,7 @@ fn main() {
         let last_valid = device_mesh.keep_last_valid().unwrap();
         let mut values = Readback::<ObjectiveValues>::new(&gpu, &numbers, 0, 1).unwrap();
         let mut positions = Readback::<[f32; 2]>::new(&gpu, &vertex_buffer, 0, count).unwrap();
-        let all = median(&gpu, |encoder| {
+        let all = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             mask.encode_mask(encoder);
             drag.encode_move(encoder);
@@ -92,32 +112,37 @@ fn main() {
             // What has arrived makes room for the next ones; positions are copied.
             let _ = (values.latest().unwrap(), positions.latest().unwrap());
         });
-        for (name, [encode, frame]) in [("plain", plain), ("valid", valid), ("all", all)] {
+        let [made, least] = middle_and_least(made).map(|time| 1e3 * time.as_secs_f64());
+        println!("{vertices:>7} made ready: {made:.2} ms ({least:.2})");
+        let kinds = [("plain", plain), ("corrected", corrected), ("valid", valid), ("all", all)];
+        for (name, [encode, frame]) in kinds {
+            let encode = encode.map(|time| 1e6 * time.as_secs_f64());
+            let frame = frame.map(|time| 1e3 * time.as_secs_f64());
             println!(
-                "{vertices:>7} {name:>5}: encode {:6.1} µs, frame {:8.2} ms",
-                1e6 * encode.as_secs_f64(),
-                1e3 * frame.as_secs_f64()
+                "{vertices:>7} {name:>9}: encode {:6.1} µs ({:6.1}), frame {:8.2} ms ({:8.2})",
+                encode[0], encode[1], frame[0], frame[1],
             );
         }
     }
 }
 
-/// The time to encode a frame, and until the device is done with it.
-fn median(gpu: &Gpu, mut encode: impl FnMut(&mut wgpu::CommandEncoder)) -> [Duration; 2] {
-    let mut times = [Vec::new(), Vec::new()];
+/// The time to encode a frame, and until the device is done with it: the median and the least of each.
+fn times(gpu: &Gpu, mut encode: impl FnMut(&mut wgpu::CommandEncoder)) -> [[Duration; 2]; 2] {
+    let mut taken = [Vec::new(), Vec::new()];
     for _ in 0..2 * FRAMES {
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let start = Instant::now();
         encode(&mut encoder);
-        times[0].push(start.elapsed());
+        taken[0].push(start.elapsed());
         let start = Instant::now();
         gpu.queue().submit([encoder.finish()]);
         gpu.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
-        times[1].push(start.elapsed());
+        taken[1].push(start.elapsed());
     }
-    times.map(|times| {
-        let mut times = times[FRAMES..].to_vec();
-        times.sort_unstable();
-        times[FRAMES / 2]
-    })
+    taken.map(|times| middle_and_least(times[FRAMES..].to_vec()))
+}
+
+fn middle_and_least(mut times: Vec<Duration>) -> [Duration; 2] {
+    times.sort_unstable();
+    [times[times.len() / 2], times[0]]
 }

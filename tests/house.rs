@@ -229,6 +229,22 @@ fn only_the_gpu_modules_name_wgpu() {
     }
 }
 
+/// The standard library has no clock in browsers: it panics there, where it compiles.
+#[test]
+fn only_the_command_asks_the_clock_of_the_standard_library() {
+    let clocks = |text: &str| {
+        let imports = text.split("std::time::").skip(1);
+        let named = imports.filter_map(|named| named.split(';').next());
+        named.filter(|named| named.contains("Instant") || named.contains("SystemTime")).count()
+    };
+    assert_eq!(clocks("use std::time::{Duration, Instant};"), 1);
+    assert_eq!(clocks("use std::time::Duration;\nuse web_time::Instant;"), 0);
+    for (module, text) in modules() {
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        assert_eq!(clocks(code), 0, "{module} asks the clock of the standard library");
+    }
+}
+
 #[test]
 fn no_dependency_needs_a_newer_rust_than_the_package_promises() {
     let output = Command::new(env!("CARGO"))

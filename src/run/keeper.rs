@@ -1,6 +1,8 @@
 //! What is kept of a run while it goes on, so that little is lost whatever happens.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::run::checkpoint::{About, Checkpoint};

@@ -6,7 +6,7 @@ use crate::gpu::device::blocking::blocking;
 /// What an adapter is called and how wgpu drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
-    /// The name, for example of the graphics card.
+    /// The name, for example of the graphics card. Browsers may keep it to themselves: "unnamed adapter" then.
     pub name: String,
     /// Driver and version.
     pub driver: String,
@@ -27,8 +27,12 @@ impl AdapterSummary {
         };
         let driver = [info.driver.trim(), info.driver_info.trim()];
         let driver: Vec<_> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+        let name = match info.name.as_str() {
+            "" => "unnamed adapter",
+            name => name,
+        };
         Self {
-            name: info.name.clone(),
+            name: name.to_owned(),
             driver: driver.join(" "),
             backend: info.backend.to_string(),
             kind,
@@ -83,4 +87,19 @@ async fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
         wgpu::DeviceType::Cpu => 4,
     });
     adapters
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::device::Gpu;
+
+    #[test]
+    fn an_adapter_without_a_name_is_told_as_unnamed() {
+        let gpu = Gpu::open(None).unwrap();
+        let info = gpu.device.adapter_info();
+        assert_eq!(AdapterSummary::new(&info), *gpu.adapter());
+        let unnamed = wgpu::AdapterInfo { name: String::new(), ..info };
+        assert_eq!(AdapterSummary::new(&unnamed).name, "unnamed adapter");
+    }
 }

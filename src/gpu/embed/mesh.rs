@@ -1,5 +1,7 @@
 //! A mesh that stays on an application's device.
 
+use std::borrow::Cow;
+
 use glam::DVec2;
 use wgpu::BufferUsages as Usage;
 
@@ -67,7 +69,15 @@ impl DeviceMesh {
     }
 
     fn made(gpu: &Gpu, mesh: &Mesh, targets: Option<&Targets>) -> Result<Self, SmoothError> {
-        let unconstrained = Mesh { fixed: Vec::new(), ..mesh.clone() };
+        // Fixed vertices are laid out as free ones, and held by pins.
+        let unconstrained = match mesh.fixed.is_empty() {
+            true => Cow::Borrowed(mesh),
+            false => Cow::Owned(Mesh {
+                points: mesh.points.clone(),
+                triangles: mesh.triangles.clone(),
+                fixed: Vec::new(),
+            }),
+        };
         let (topology, mut problem) = prepare(&unconstrained)?;
         if let Some(targets) = targets {
             targets.check_count(mesh.points.len())?;

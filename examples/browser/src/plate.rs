@@ -1,0 +1,71 @@
+//! A mesh made in code: a square plate with a hole in it, its vertices badly placed.
+
+use gpu_smooth::Mesh;
+
+/// A plate of 2 by 2 around 0, 0 with a round hole of radius 0.35 in it.
+#[derive(Clone)]
+pub(crate) struct Plate {
+    pub(crate) mesh: Mesh,
+    /// The vertices of the hole.
+    pub(crate) hole: Vec<u32>,
+}
+
+/// How far vertices are from where they should be, in parts of the distance between them. Somewhere above a quarter triangles invert.
+const BADLY: f64 = 0.2;
+
+impl Plate {
+    /// A plate of about this many vertices.
+    pub(crate) fn new(vertices: usize) -> Self {
+        // Rings from the hole to the outside, 4.5 times as many vertices around as there are rings. Some are in the corners.
+        let rings = ((vertices as f64 / 4.5).sqrt() as u32).max(4);
+        let around = (vertices as u32 / rings).max(16) / 8 * 8;
+        let mut random = Random(1);
+        let mut points = Vec::new();
+        for ring in 0..=rings {
+            for i in 0..around {
+                let is_inside = 0 < ring && ring < rings;
+                let mut shift = || if is_inside { BADLY * random.next() } else { 0.0 };
+                let (i, ring) = (f64::from(i) + shift(), f64::from(ring) + shift());
+                points.push(at(i / f64::from(around), ring / f64::from(rings)));
+            }
+        }
+        let mut triangles = Vec::new();
+        for ring in 0..rings {
+            for i in 0..around {
+                let of = |ring, i| ring * around + i % around;
+                let [a, b, c, d] =
+                    [of(ring, i), of(ring + 1, i), of(ring + 1, i + 1), of(ring, i + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        let hole = (0..around).collect();
+        Self { mesh: Mesh { points, triangles, fixed: Vec::new() }, hole }
+    }
+
+    /// Vertices inside, one of `each`.
+    pub(crate) fn some(&self, each: usize) -> impl Iterator<Item = u32> + '_ {
+        let (around, all) = (self.hole.len(), self.mesh.points.len());
+        (around as u32..(all - around) as u32).step_by(each)
+    }
+}
+
+/// The point at this part of the way around, and of that from the hole to the outside.
+fn at(around: f64, outward: f64) -> [f64; 2] {
+    let angle = std::f64::consts::TAU * around;
+    let direction = [angle.cos(), angle.sin()];
+    // The edge of the square in this direction.
+    let far = 1.0 / direction[0].abs().max(direction[1].abs());
+    let radius = 0.35 + (far - 0.35) * outward;
+    direction.map(|x| radius * x)
+}
+
+/// Numbers from -1 to 1 that look random.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> f64 {
+        // Knuth's MMIX.
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

@@ -1,0 +1,144 @@
+//! The mesh on the device with all that is bound to it, and its frames.
+
+use gpu_smooth::wgpu::{self, BufferUsages as Usage};
+use gpu_smooth::{
+    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Method, ObjectiveValues,
+    Options, Readback, SmoothError, Sweeps, UntanglingSweeps, VertexBuffer,
+};
+
+use crate::plate::{Plate, Random};
+
+/// The microseconds that sweeps may take in each frame on the device, and how many they may be, each with its correction.
+const BUDGET: (u64, u32) = (5000, 6);
+/// A drag makes no triangle worse than this inverse mean ratio.
+const WORST: f64 = 8.0;
+/// Where the share of a drag stands in the buffer of numbers, after the objectives.
+const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
+
+pub(crate) struct Scene {
+    gpu: Gpu,
+    bound: BoundVertices,
+    sweeps: Sweeps,
+    untangling: UntanglingSweeps,
+    budget: Budget,
+    objective: BoundObjective,
+    drag: BoundMove,
+    /// Where the user has taken the hole, while it is held.
+    held: Option<[f32; 2]>,
+    home: Vec<[f32; 2]>,
+    vertices: wgpu::Buffer,
+    targets: wgpu::Buffer,
+    values: Readback<ObjectiveValues>,
+    positions: Readback<[f32; 2]>,
+    frames: u32,
+}
+
+impl Scene {
+    /// Makes all that frames need, and compiles the kernels: what can fail, fails here. In a browser corrected sweeps have to
+    /// be awaited.
+    pub(crate) async fn new(gpu: &Gpu, plate: &Plate) -> Result<Self, SmoothError> {
+        let mesh = &plate.mesh;
+        let options = Options { method: Method::Multilevel, tolerance: 1e-5, ..Options::default() };
+        let device_mesh = DeviceMesh::new(gpu, mesh)?;
+        let buffer = |label, size, usage| {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let count = mesh.points.len();
+        let single = |v: usize| mesh.points[v].map(|x| x as f32);
+        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+        let vertices = buffer("vertices", 8 * count as u64, usage);
+        let content: Vec<[f32; 2]> = (0..count).map(single).collect();
+        gpu.queue().write_buffer(&vertices, 0, bytemuck::cast_slice(&content));
+        let numbers = buffer("numbers", SHARE + 4, usage);
+        let targets = buffer("targets", 8 * plate.hole.len() as u64, usage);
+
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
+        let sweeps = Sweeps::until_converged_async(&device_mesh, &options).await?;
+        // Browsers round timestamps, to a tenth of a millisecond or so.
+        let budget = Budget::micros(BUDGET.0).at_most(BUDGET.1);
+        let budget = match gpu.device().features().contains(Gpu::optional_features()) {
+            true => budget.timed_by(gpu)?,
+            false => budget,
+        };
+        let to = VertexBuffer::new(&targets, 8);
+        Ok(Self {
+            untangling: UntanglingSweeps::new(&device_mesh)?,
+            objective: sweeps.bind_objective(&numbers, 0)?,
+            drag: device_mesh.bind_move(&plate.hole, &to, WORST, (&numbers, SHARE))?,
+            held: None,
+            home: plate.hole.iter().map(|&v| single(v as usize)).collect(),
+            values: Readback::new(gpu, &numbers, 0, 1)?,
+            positions: Readback::new(gpu, &vertices, 0, count)?,
+            frames: 0,
+            gpu: gpu.clone(),
+            bound,
+            sweeps,
+            budget,
+            vertices,
+            targets,
+        })
+    }
+
+    /// Encodes and submits a frame; the browser does it when it can. Nothing waits.
+    pub(crate) fn frame(&mut self) {
+        let (device, queue) = (self.gpu.device(), self.gpu.queue());
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.bound.encode_import(&mut encoder);
+        if let Some(by) = self.held {
+            let moved = |place: &[f32; 2]| [place[0] + by[0], place[1] + by[1]];
+            let to: Vec<[f32; 2]> = self.home.iter().map(moved).collect();
+            queue.write_buffer(&self.targets, 0, bytemuck::cast_slice(&to));
+            self.drag.encode_move(&mut encoder);
+        }
+        self.untangling.encode_untangle(&mut encoder, 3);
+        self.sweeps.encode_within(&mut encoder, &mut self.budget);
+        self.objective.encode_objective(&mut encoder);
+        self.bound.encode_export(&mut encoder);
+        self.values.encode_readback(&mut encoder);
+        self.positions.encode_readback(&mut encoder);
+        queue.submit([encoder.finish()]);
+        self.frames += 1;
+    }
+
+    /// Where the user takes the hole, from where the mesh had it; `None` when it is let go.
+    pub(crate) fn hold(&mut self, by: Option<[f32; 2]>) {
+        self.held = by;
+    }
+
+    /// Throws one vertex in nine far from its place, as a kernel of the application might.
+    pub(crate) fn tear(&mut self, plate: &Plate) {
+        let mut random = Random(2);
+        for v in plate.some(9) {
+            let [x, y] = plate.mesh.points[v as usize];
+            let place = [x + 0.3 * random.next(), y + 0.3 * random.next()].map(|x| x as f32);
+            let at = 8 * u64::from(v);
+            self.gpu.queue().write_buffer(&self.vertices, at, bytemuck::bytes_of(&place));
+        }
+    }
+
+    /// What the last frames that have arrived left: how good the mesh is, and its vertices. `None` until the first has arrived.
+    pub(crate) fn seen(&mut self) -> Result<Option<(ObjectiveValues, &[[f32; 2]])>, SmoothError> {
+        let values = self.values.latest()?.map(|values| values[0]);
+        let positions = self.positions.latest()?;
+        Ok(values.zip(positions))
+    }
+
+    /// How many sweeps the next frame has time for.
+    pub(crate) fn sweeps(&self) -> u32 {
+        self.budget.sweeps()
+    }
+
+    pub(crate) fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// How many frames are under way that have not been seen.
+    pub(crate) fn behind(&self) -> u32 {
+        self.values.age().map_or(self.frames, |age| age as u32)
+    }
+}
