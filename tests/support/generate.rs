@@ -2,7 +2,7 @@
 
 use super::check::{area, boundary, is_ccw, is_valid, min_angle};
 use super::outline::Outline;
-use super::trig::on_circle;
+use super::trig::{on_circle, sin_turns};
 use gpu_smooth::Mesh;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
@@ -82,6 +82,38 @@ pub fn hub(around: usize, ratio: f64) -> Mesh {
     mesh.points.push([0.0, 0.0]);
     let turn = |i: u32| [ring + i, ring + (i + 1) % around as u32, center];
     mesh.triangles.extend((0..around as u32).map(turn));
+    mesh
+}
+
+/// The same with so many rings in equal distances between the unit circle and the vertex in the middle: the more stretched, the
+/// nearer.
+pub fn hub_evenly(around: usize, rings: usize) -> Mesh {
+    // Of this ratio there are rings enough.
+    let mut mesh = hub(around, (-6.0 * rings as f64 / around as f64).exp());
+    let all = (mesh.points.len() - 1) / around;
+    assert!(all >= rings, "{all} rings instead of {rings}");
+    let last = (rings * around) as u32;
+    // The triangles within the last ring that is wanted are left out, and a fan takes their place.
+    mesh.triangles.retain(|t| t.iter().all(|&v| v < last));
+    mesh.points.truncate(last as usize);
+    for (i, point) in mesh.points.iter_mut().enumerate() {
+        let radius = 1.0 - (i / around) as f64 / rings as f64;
+        let now = point[0].hypot(point[1]);
+        *point = point.map(|x| x * radius / now);
+    }
+    mesh.points.push([0.0, 0.0]);
+    let ring = last - around as u32;
+    let turn = |i: u32| [ring + i, ring + (i + 1) % around as u32, last];
+    mesh.triangles.extend((0..around as u32).map(turn));
+    mesh
+}
+
+/// The mesh of [`layered`] with its rows in waves: one over its width, of so many edges.
+pub fn wavy_layer(columns: usize, ratio: f64, height: f64) -> Mesh {
+    let mut mesh = layered(columns, ratio);
+    for point in &mut mesh.points {
+        point[1] += height * sin_turns(point[0] / columns as f64);
+    }
     mesh
 }
 

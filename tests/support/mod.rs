@@ -22,7 +22,7 @@ pub use check::{
     same_orientations, worst_imr,
 };
 pub use disturb::{distort_smooth, perturb_random};
-pub use generate::{graded, hub, lattice, layered, triangulate};
+pub use generate::{graded, hub, hub_evenly, lattice, layered, triangulate, wavy_layer};
 pub use outline::Outline;
 pub use rearrange::{renumbered, shuffled_windings, transformed};
 pub use recipe::Recipe;

@@ -221,10 +221,13 @@ impl Engine for GpuEngine<'_> {
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         // The old levels go first: both at once would take more memory than the mesh itself.
-        (self.secants, self.levels) = (None, None);
-        let Self { gpu, problem, mesh, dispatches, .. } = self;
-        self.levels =
-            Some(Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost)?);
+        self.levels = None;
+        let Self { gpu, problem, mesh, dispatches, secants, .. } = self;
+        let levels = Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost)?;
+        if let Some(secants) = secants {
+            secants.bind_to(gpu, mesh, &dispatches.params, &levels)?;
+        }
+        self.levels = Some(levels);
         self.hierarchy = Some(hierarchy);
         Ok(())
     }

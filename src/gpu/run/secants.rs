@@ -79,18 +79,24 @@ impl Secants {
             .map(|(label, size)| {
                 zeroed(gpu, label, size, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)
             });
-            let (positions, beyond) = mesh.bind_positions();
-            let mut resources =
-                vec![params.as_entire_binding(), uniform::<SecantOp>(&ops), positions];
-            let vectors = [&levels.gradient, &levels.direction, &steps, &changes, &low_starts];
-            resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
-            resources.push(sums.as_entire_binding());
-            resources.extend(beyond);
-            let form = mesh.parts.form();
-            let bind_group = gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources);
-            (bind_group, ops, [steps, changes, low_starts, sums])
+            let buffers = [steps, changes, low_starts, sums];
+            let bind_group = bound(gpu, mesh, params, levels, &ops, &buffers);
+            (bind_group, ops, buffers)
         })?;
         Ok(Some(Self { bind_group, ops, buffers, stride, close, sum, bend, multiply, open, op }))
+    }
+
+    /// Binds the pairs to other levels of the same mesh.
+    pub(crate) fn bind_to(
+        &mut self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        params: &wgpu::Buffer,
+        levels: &Levels,
+    ) -> Result<(), GpuError> {
+        let Self { ops, buffers, .. } = self;
+        self.bind_group = scoped(&gpu.device, || bound(gpu, mesh, params, levels, ops, buffers))?;
+        Ok(())
     }
 
     /// The names of the buffers in a state of the engine, and how many pairs of floats each has there.
@@ -184,4 +190,24 @@ impl Secants {
             dispatch(pass);
         });
     }
+}
+
+/// The bind group of pairs: `buffers` are the steps, changes, low starts and sums.
+fn bound(
+    gpu: &Gpu,
+    mesh: &MeshBuffers,
+    params: &wgpu::Buffer,
+    levels: &Levels,
+    ops: &wgpu::Buffer,
+    buffers: &[wgpu::Buffer; 4],
+) -> wgpu::BindGroup {
+    let [steps, changes, low_starts, sums] = buffers;
+    let (positions, beyond) = mesh.bind_positions();
+    let mut resources = vec![params.as_entire_binding(), uniform::<SecantOp>(ops), positions];
+    let vectors = [&levels.gradient, &levels.direction, steps, changes, low_starts];
+    resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
+    resources.push(sums.as_entire_binding());
+    resources.extend(beyond);
+    let form = mesh.parts.form();
+    gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources)
 }

@@ -13,12 +13,14 @@ impl Corrections<'_> {
             Stage::Without { since } => (2, since, 0.0, 0, 0),
         };
         let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
+        let levels = [self.built as u64, self.fitted as u64];
         let flags = [self.settled, self.accelerated, self.is_left_out()].map(u64::from);
         let slope = [self.slope.is_some().into(), self.slope.unwrap_or(0.0).to_bits()];
         let mut words = vec![stage, at as u64, length.to_bits()];
         words.extend(counts.into_iter().chain(flags).chain(slope));
         words.extend(self.estimates.map(f64::to_bits));
         words.extend([self.alternated, self.sharpness].map(u64::from));
+        words.extend(levels);
         words.extend(self.lowered.iter().map(|f| f.to_bits()));
         words
     }
@@ -41,9 +43,11 @@ impl Corrections<'_> {
                 ref estimates @ ..,
                 alternated,
                 sharpness,
+                built,
+                fitted,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 7 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 9 + ESTIMATES }>()
         else {
             return false;
         };
@@ -65,6 +69,8 @@ impl Corrections<'_> {
             Some(taken),
             Some(proposed),
             Some(refused),
+            Some(built),
+            Some(fitted),
             Some(at),
         ) = (
             small(attempts),
@@ -72,6 +78,8 @@ impl Corrections<'_> {
             small(taken),
             small(proposed),
             small(refused),
+            small(&built).filter(|&n| (n as usize) < evaluations.max(1)),
+            small(&fitted).filter(|&n| (n as usize) < evaluations.max(1)),
             u32::try_from(*at).ok(),
         )
         else {
@@ -88,6 +96,7 @@ impl Corrections<'_> {
             _ => return false,
         };
         (self.attempts, self.alternated, self.taken) = (attempts, alternated, taken);
+        (self.built, self.fitted) = (built as usize, fitted as usize);
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         self.was_left_out = left_out != 0;
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));

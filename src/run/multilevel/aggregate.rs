@@ -45,6 +45,19 @@ impl Aggregates {
         Self { of, count: count as usize }
     }
 
+    /// Lets each unknown that is in no group join that of the first of these neighbors that is in one.
+    pub(crate) fn with_the_rest<N: Iterator<Item = u32>>(
+        mut self,
+        neighbors: impl Fn(usize) -> N,
+    ) -> Self {
+        let left_over: Vec<usize> = (0..self.of.len()).filter(|&k| self.of[k] == NONE).collect();
+        for k in left_over {
+            let near = neighbors(k).map(|n| self.of[n as usize]).find(|&group| group != NONE);
+            self.of[k] = near.unwrap_or(NONE);
+        }
+        self
+    }
+
     /// The members of each group as compressed rows: where each group starts, with one past the last, and all members.
     pub(crate) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let grouped = || self.of.iter().enumerate().filter(|(_, group)| **group != NONE);
@@ -88,6 +101,21 @@ mod tests {
             assert!(inside.len() >= 2);
             assert!(inside.iter().all(|&k| groups.of[k as usize] as usize == group));
         }
+    }
+
+    #[test]
+    fn whoever_is_left_over_joins_a_neighbor() {
+        // A path of four, and a vertex that none of them takes for a neighbor.
+        let neighbors = |k: usize| {
+            let (before, after) = (k.checked_sub(1), Some(k + 1).filter(|&n| n < 4));
+            before.into_iter().chain(after).filter(move |_| k < 4).map(|n| n as u32)
+        };
+        let groups = Aggregates::new(5, neighbors);
+        assert_eq!(groups.of[4], NONE);
+        let count = groups.count;
+        let all = groups.with_the_rest(|_| [4, 3, 0].into_iter());
+        assert_eq!((all.count, all.of[4]), (count, all.of[3]));
+        assert!((all.of[4] as usize) < count);
     }
 
     #[test]

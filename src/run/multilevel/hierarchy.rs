@@ -32,8 +32,8 @@ pub(crate) struct Hierarchy {
     member_start: Vec<u32>,
     member: Vec<u32>,
     root: Vec<f32>,
-    /// The roots that the levels were built from, if they were fitted to others since.
-    built_from: Option<Vec<f32>>,
+    /// The roots that the levels were built from and fitted to before `root`, in that order.
+    earlier: Vec<Vec<f32>>,
     inverse_diagonal: Vec<f32>,
     levels: Vec<Level>,
 }
@@ -72,17 +72,15 @@ impl Hierarchy {
 
     /// Builds the levels with weights by the square roots that `roots` gives for the free vertices.
     fn with_roots(problem: &Problem, roots: impl FnOnce() -> Vec<f32> + Send) -> Self {
-        let free = problem.free_count();
-        let free_neighbors = |v| neighbors(problem, v).filter(move |&k| (k as usize) < free);
         // Aggregation is serial, so the weights are computed beside it.
-        let (aggregates, root) = rayon::join(|| Aggregates::new(free, free_neighbors), roots);
+        let (aggregates, root) = rayon::join(|| aggregates(problem), roots);
         let (member_start, member) = aggregates.members();
         let mut hierarchy = Self {
             aggregates,
             member_start,
             member,
             root,
-            built_from: None,
+            earlier: Vec::new(),
             inverse_diagonal: Vec::new(),
             levels: Vec::new(),
         };
@@ -105,7 +103,7 @@ impl Hierarchy {
             mean(&self.member[start[aggregate] as usize..start[aggregate + 1] as usize])
         });
         let before = std::mem::replace(&mut self.root, root);
-        self.built_from.get_or_insert(before);
+        self.earlier.push(before);
         self.inverse_diagonal = self.diagonal_inverted(problem);
         for Level { operator, inverse_diagonal, coarser } in &mut self.levels {
             operator.scale_couplings(&factors);
@@ -119,10 +117,10 @@ impl Hierarchy {
         self
     }
 
-    /// All that it takes to make the same levels again: the roots that they were built from, and those that they were
-    /// fitted to, if they were.
+    /// All that it takes to make the same levels again: the roots that they were built from, and then those that they were
+    /// fitted to, one after the other.
     pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
-        self.built_from.iter().chain([&self.root]).cloned().collect()
+        self.earlier.iter().chain([&self.root]).cloned().collect()
     }
 
     /// The levels of a [`recipe`](Self::recipe); `None` if it is empty or of another mesh.
@@ -252,6 +250,20 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
         });
         operator = coarse;
     }
+}
+
+/// The aggregates of the free vertices. Where weights are equal, the share that [`STRONG`] bounds is one over the geometric
+/// mean of the numbers of neighbors. So a vertex of fifty makes no aggregate with all its neighbors: their corrections would
+/// be one, and the prolongation to it could not be smoothed.
+fn aggregates(problem: &Problem) -> Aggregates {
+    let free = problem.free_count();
+    let degree = |v: u32| problem.ring_of(v).len() as f32;
+    let free_neighbors = |v: usize| neighbors(problem, v).filter(move |&k| (k as usize) < free);
+    let strong_neighbors = |v: usize| {
+        let most = 1.0 / (STRONG * STRONG * degree(v as u32));
+        free_neighbors(v).filter(move |&k| degree(k) <= most)
+    };
+    Aggregates::new(free, strong_neighbors).with_the_rest(free_neighbors)
 }
 
 /// All neighbors of a free vertex.

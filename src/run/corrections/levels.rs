@@ -1,0 +1,79 @@
+//! When the coarser levels are built, and fitted to a mesh that has changed.
+
+use super::Corrections;
+use crate::error::GpuError;
+use crate::run::engine::Engine;
+use crate::run::history::History;
+use crate::run::multilevel::Hierarchy;
+use crate::run::yielding::yield_now;
+
+/// Number of corrections tried after which the levels are fitted to the stiffness of the mesh again, if that has changed. Once
+/// corrections are accelerated, they are whenever it has: vertices then move far, and levels that stay as they were built gain
+/// little (a layer that opens up took three times the sweeps).
+const REFIT_AFTER: u32 = 2;
+/// The stiffness is taken to have changed if the excess of f has dropped by more than this share since the levels were built or
+/// fitted.
+const REFIT_IF: f64 = 0.15;
+/// Once corrections are accelerated, the levels are built anew when the excess of f has dropped by more than this share since they
+/// were built: the factors by which they are fitted are only close to the Galerkin operators. So there are at most four fits
+/// between, whose roots are kept for checkpoints.
+const REBUILD_IF: f64 = 0.5;
+/// How levels come to stand for the present stiffness of the mesh.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    Build,
+    Fit,
+}
+
+impl Corrections<'_> {
+    /// What becomes of the levels before the next correction, of which `proposed` were tried in this stage. `now` is the index
+    /// of the last evaluation.
+    pub(super) fn change_of_levels(
+        &self,
+        history: &History,
+        now: usize,
+        proposed: u32,
+    ) -> Option<Change> {
+        let excess = self.excess(history, now);
+        let dropped = |since: usize, share: f64| {
+            let before = self.excess(history, since);
+            before - excess > share * before
+        };
+        match proposed {
+            0 => Some(Change::Build),
+            _ if self.accelerated && dropped(self.built, REBUILD_IF) => Some(Change::Build),
+            _ if !self.accelerated && proposed != REFIT_AFTER => None,
+            _ => dropped(self.fitted, REFIT_IF).then_some(Change::Fit),
+        }
+    }
+
+    /// Builds the levels or fits them to the present stiffness, and hands them to the engine. Returns whether it has room for
+    /// them. `now` is the index of the last evaluation.
+    pub(super) async fn change_levels(
+        &mut self,
+        engine: &mut impl Engine,
+        change: Change,
+        now: usize,
+    ) -> Result<bool, GpuError> {
+        yield_now().await;
+        // Levels that are not used again are freed before new ones are built.
+        let before = engine.take_hierarchy().filter(|_| change == Change::Fit);
+        self.fitted = now;
+        if before.is_none() {
+            self.built = now;
+        }
+        let roots = engine.stiffness_roots(self.sharpness).await?;
+        let hierarchy = match before {
+            Some(before) => before.fitted_to(self.problem, roots),
+            None => Hierarchy::new(self.problem, roots),
+        };
+        yield_now().await;
+        match engine.set_hierarchy(hierarchy) {
+            Err(error @ GpuError::Limit { .. }) => {
+                self.left_out = Some(error);
+                Ok(false)
+            }
+            set => set.map(|()| true),
+        }
+    }
+}
