@@ -62,7 +62,9 @@ fn hard_meshes() -> Vec<(&'static str, Mesh)> {
         ("graded over 1e6", perturbed(&support::graded(30, 1e-6), 1.0)),
         ("a vertex of 50", perturbed(&support::hub(50, 1e-2), 1.0)),
         ("a vertex of 200", perturbed(&support::hub(200, 1e-1), 1.0)),
+        ("rings in equal distances", perturbed(&support::hub_evenly(50, 40), 1.0)),
         ("a layer of 1:30", perturbed(&support::layered(90, 30.0), 0.3)),
+        ("a layer of 1:100", perturbed(&support::wavy_layer(90, 100.0, 3.0), 0.3)),
     ]
 }
 

@@ -46,7 +46,7 @@ impl Checkpoint {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// The checkpoint as bytes, with a checksum: about 16 bytes for each vertex, up to 60 once sweeps are corrected from coarser
+    /// The checkpoint as bytes, with a checksum: about 16 bytes for each vertex, up to 76 once sweeps are corrected from coarser
     /// levels.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Self { about, saved } = self;

@@ -48,13 +48,13 @@ pub(crate) enum Strategy<'a> {
     /// Sweeps alone.
     Sweeps,
     /// Sweeps corrected from coarser levels.
-    Corrected(Corrections<'a>),
+    Corrected(Box<Corrections<'a>>),
 }
 
 impl<'a> Strategy<'a> {
     pub(crate) fn new(problem: &'a Problem, plan: &'a Plan, corrected: bool) -> Self {
         match corrected {
-            true => Strategy::Corrected(Corrections::new(problem, plan)),
+            true => Strategy::Corrected(Box::new(Corrections::new(problem, plan))),
             false => Strategy::Sweeps,
         }
     }

@@ -36,8 +36,8 @@ pub(crate) struct EngineState {
     pub(crate) positions: Vec<DVec2>,
     /// The positions in the best state, where that may not be the last one.
     pub(crate) best: Option<Vec<DVec2>>,
-    /// What the coarser levels were built from, and then what they were last fitted to. Empty if there are none, or if the
-    /// state is not whole.
+    /// What the coarser levels were built from, and then what they were fitted to, one after the other. Empty if there are none,
+    /// or if the state is not whole.
     pub(crate) roots: Vec<Vec<f32>>,
     /// What only an engine of the same kind understands.
     pub(crate) own: Vec<(String, Vec<u8>)>,

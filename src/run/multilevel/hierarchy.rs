@@ -282,3 +282,46 @@ fn usable(mut roots: Vec<f32>) -> Vec<f32> {
     }
     roots
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::prepare;
+    use crate::mesh::Mesh;
+
+    #[test]
+    fn a_vertex_of_many_shares_its_aggregate_with_a_few() {
+        let (around, rings) = (30u32, 6u32);
+        let mut mesh = Mesh::default();
+        for ring in 0..rings {
+            for i in 0..around {
+                let turn = (f64::from(i) + 0.5 * f64::from(ring % 2)) / f64::from(around);
+                let (y, x) = (std::f64::consts::TAU * turn).sin_cos();
+                let radius = f64::from(rings - ring);
+                mesh.points.push([radius * x, radius * y]);
+            }
+        }
+        let at = |ring: u32, i: u32| ring * around + i % around;
+        for ring in 0..rings - 1 {
+            for i in 0..around {
+                let (a, b) = (at(ring, i), at(ring, i + 1));
+                let (c, d) = (at(ring + 1, i), at(ring + 1, i + 1));
+                let even = [[a, b, c], [b, d, c]];
+                let odd = [[a, b, d], [a, d, c]];
+                mesh.triangles.extend(if ring % 2 == 0 { even } else { odd });
+            }
+        }
+        let center = mesh.points.len() as u32;
+        mesh.points.push([0.0, 0.0]);
+        let last = rings - 1;
+        mesh.triangles.extend((0..around).map(|i| [at(last, i), at(last, i + 1), center]));
+        let problem = prepare(&mesh).unwrap().1;
+        let hub = (0..problem.free_count())
+            .find(|&v| problem.ring_of(v as u32).len() == around as usize)
+            .unwrap();
+        let groups = aggregates(&problem);
+        assert!(groups.of.iter().all(|&group| group != NONE));
+        let with_hub = groups.of.iter().filter(|&&group| group == groups.of[hub]).count();
+        assert!(with_hub < around as usize / 2, "{with_hub} vertices");
+    }
+}
