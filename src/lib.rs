@@ -102,6 +102,7 @@ mod mesh;
 mod metric;
 mod outcome;
 mod parallel;
+mod periodic;
 mod quality;
 mod resume;
 mod run;
@@ -153,6 +154,7 @@ pub use measure::{
 pub use mesh::{Mesh, Precision};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
+pub use periodic::{Motion, Periodic};
 pub use quality::Quality;
 pub use run::{
     Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,

@@ -79,6 +79,8 @@ pub struct Slid {
     pub vertices: usize,
     /// Number of those that have moved.
     pub moved: usize,
+    /// Number of pairs among those that might slide, of which both move together; see [`Slide::periodic`](crate::Slide::periodic).
+    pub pairs: usize,
     /// Number of rounds of sweeps over free vertices and along the curves.
     pub rounds: u32,
     /// How far the lines between vertices are from those in the mesh before the run, in its unit.

@@ -6,11 +6,12 @@ use crate::file::numbers::{FoundPlaces, Places};
 use crate::file::parsed::{Parsed, fixed_note};
 use crate::file::records::{NodeRecords, TriangleRecords};
 use crate::file::regions::{Numbering, Regions};
-use crate::file::sink::{Copies, Element, Kind, Layout, Reader, Sink};
+use crate::file::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::{FoundTags, TagMap};
 use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
+use crate::periodic::Periodic;
 
 /// Reads a mesh.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
@@ -174,8 +175,38 @@ impl Sink for Assembler {
         Ok(())
     }
 
-    fn periodic(&mut self) {
-        self.curves.is_periodic = true;
+    fn asks_for_pairs(&self) -> bool {
+        true
+    }
+
+    fn pairs(&mut self, pairs: Option<Vec<Pairs>>) {
+        let Curves { held, periodic, motions, has_unknown_pairs, .. } = &mut self.curves;
+        *has_unknown_pairs |= pairs.is_none();
+        let mut unlisted = 0;
+        for Pairs { motion, nodes } in pairs.into_iter().flatten() {
+            motions.extend(motion.filter(|_| nodes.is_empty()));
+            let index = |node: u64| self.map.as_ref().and_then(|map| map.index(node));
+            let mut pairs = Vec::with_capacity(nodes.len());
+            for [a, b] in nodes {
+                match (index(a), index(b)) {
+                    (Some(a), Some(b)) => pairs.push([a, b]),
+                    (a, b) => {
+                        // What is known of such a pair does not slide.
+                        unlisted += 1;
+                        held.extend(a.into_iter().chain(b));
+                    }
+                }
+            }
+            if !pairs.is_empty() {
+                periodic.push(Periodic { pairs, motion });
+            }
+        }
+        if unlisted > 0 {
+            let list = self.vertices_of;
+            self.note(&format!(
+                "{unlisted} periodic pairs name a node that {list} does not list: they do not slide"
+            ));
+        }
     }
 
     fn note(&mut self, note: &str) {

@@ -1,5 +1,7 @@
 //! The lines of a mesh file along which vertices may slide, and the vertices that do not.
 
+use crate::periodic::{Motion, Periodic};
+
 /// Lines of a file, and the vertices that it holds for other reasons than lying on one.
 #[derive(Default)]
 pub(crate) struct Curves {
@@ -7,8 +9,12 @@ pub(crate) struct Curves {
     pub(crate) lines: Vec<[u32; 2]>,
     /// Points, corners, vertices of quadrilaterals and the like, and what a user has fixed.
     pub(crate) held: Vec<u32>,
-    /// Whether vertices of some lines belong together in pairs.
-    pub(crate) is_periodic: bool,
+    /// Vertices that belong together in pairs.
+    pub(crate) periodic: Vec<Periodic>,
+    /// Motions that take vertices of the boundary to others, which are not listed.
+    pub(crate) motions: Vec<Motion>,
+    /// Whether vertices belong together in pairs that could not be read.
+    pub(crate) has_unknown_pairs: bool,
 }
 
 /// The edges between triangles of different regions, ascending.

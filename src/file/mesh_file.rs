@@ -14,6 +14,7 @@ use crate::file::source::Source;
 use crate::file::triangle;
 use crate::file::triangle_names::Names;
 use crate::mesh::{Mesh, Precision};
+use crate::periodic::{Motion, Periodic};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -325,10 +326,22 @@ impl MeshFile {
         &self.curves.held
     }
 
-    /// Whether the file says that its model is periodic, so that vertices of the boundary belong together in pairs: it has a section
-    /// `$Periodic` of gmsh, or an `NPERIODIC` of SU2 above 1.
-    pub fn is_periodic(&self) -> bool {
-        self.curves.is_periodic
+    /// The vertices that belong together in pairs, as where a model is periodic: those of gmsh's `$Periodic`. For
+    /// [`Slide::periodic`](crate::Slide::periodic).
+    pub fn periodic(&self) -> &[Periodic] {
+        &self.curves.periodic
+    }
+
+    /// The motions of a periodic model that take vertices of the boundary to others, which the file does not list: those of SU2's
+    /// `NPERIODIC`. For [`Slide::pair_by`](crate::Slide::pair_by).
+    pub fn periodic_motions(&self) -> &[Motion] {
+        &self.curves.motions
+    }
+
+    /// Whether the file says that its model is periodic, but not in a way that could be read: any vertices of the boundary may belong
+    /// together in pairs.
+    pub fn has_unknown_pairs(&self) -> bool {
+        self.curves.has_unknown_pairs
     }
 
     /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. In any order,

@@ -52,6 +52,7 @@ mod solution;
 mod source;
 mod stl;
 mod su2;
+mod su2_motions;
 mod syntax;
 mod tags;
 mod text;

@@ -8,6 +8,7 @@ use crate::file::parallel_rows::take_rows;
 use crate::file::records::{NodeRecords, TriangleRecords};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
+use crate::periodic::Motion;
 
 /// The kinds of elements: triangles to smooth, and others whose vertices stay fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,8 +156,13 @@ pub(crate) trait Sink {
             self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
         })
     }
-    /// Takes notice that the file has vertices that belong together in pairs, as where a model is periodic.
-    fn periodic(&mut self) {}
+    /// Whether it asks for vertices that belong together in pairs, as where a model is periodic. If not, readers may leave out the call
+    /// below.
+    fn asks_for_pairs(&self) -> bool {
+        false
+    }
+    /// Takes what the file says of such vertices; `None` if that could not be read.
+    fn pairs(&mut self, _pairs: Option<Vec<Pairs>>) {}
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
 
@@ -205,6 +211,15 @@ pub(crate) trait Sink {
     fn leaves_out(&mut self, _what: &str) {}
     /// Takes the numbers of the array that was announced last and is wanted.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}
+}
+
+/// Nodes that belong together in pairs.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Pairs {
+    /// The motion that takes the first of each pair to the second, if the file gives it.
+    pub(crate) motion: Option<Motion>,
+    /// The tags of both nodes of each pair; none if the file gives the motion alone.
+    pub(crate) nodes: Vec<[u64; 2]>,
 }
 
 /// The numbers of an array of point data.

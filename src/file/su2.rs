@@ -12,6 +12,7 @@ use crate::file::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
 use crate::file::source::Source;
+use crate::file::su2_motions::Motions;
 use crate::file::syntax::Syntax;
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::{integer, quoted};
@@ -41,9 +42,10 @@ impl Walk for Su2 {
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and how many there are.
         let (mut zones, mut points) = (vec![0], 0_u64);
-        let mut marker = None;
+        let (mut marker, mut motions) = (None, None::<Motions>);
         while cursor.next_row() {
-            let (key, value) = key_and_value(cursor);
+            let (key, all) = key_and_values(cursor);
+            let value = first(all);
             match key {
                 b"NDIME" => match integer(value) {
                     Some(2) => {}
@@ -86,11 +88,16 @@ impl Walk for Su2 {
                     }
                     lists.push(List { cursor: start, ahead, count, zone, marker });
                 }
-                // The first of them is no transformation.
+                // The first of them is no motion.
                 b"NPERIODIC"
                     if !sink.asks_for_data() && integer(value).is_some_and(|count| count > 1) =>
                 {
-                    sink.periodic();
+                    motions.get_or_insert_default();
+                }
+                b"PERIODIC_CENTER" | b"PERIODIC_ROTATION" | b"PERIODIC_TRANSLATION"
+                    if !sink.asks_for_data() =>
+                {
+                    motions.as_mut().into_iter().for_each(|motions| motions.read(key, all));
                 }
                 b"NMARK" | b"NZONE" | b"IZONE" => {}
                 // Counts of other lists, boxes of free-form deformation.
@@ -101,6 +108,9 @@ impl Walk for Su2 {
             }
         }
         sink.end_nodes(cursor)?;
+        if let Some(motions) = motions {
+            sink.pairs(motions.finish());
+        }
         if zones.len() > 1 {
             let label = |zone| Some(Label::Tag(zone + 1));
             sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
@@ -178,23 +188,27 @@ fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small
 /// Moves past the row between the count of a marker's elements and these that says where another process has copies of them.
 fn skip_send_to(cursor: &mut Cursor<'_>) {
     let mut next = cursor.clone();
-    if next.next_row() && key_and_value(&mut next).0 == b"SEND_TO" {
+    if next.next_row() && key_and_values(&mut next).0 == b"SEND_TO" {
         *cursor = next;
     }
 }
 
-/// The two sides of the equals sign of a row. The row itself and nothing if there is none.
-fn key_and_value<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
+/// The two sides of the equals sign of a row, without a comment. The row itself and nothing if there is none.
+fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
     let row = cursor.rest();
     match memchr::memchr(b'=', row) {
         None => (row, &[]),
         Some(at) => {
-            let value = row[at + 1..].trim_ascii();
-            let is_end = |&byte: &u8| byte <= b' ' || byte == b'%';
-            let end = value.iter().position(is_end).unwrap_or(value.len());
-            (row[..at].trim_ascii(), &value[..end])
+            let values = row[at + 1..].split(|&byte| byte == b'%').next().unwrap_or_default();
+            (row[..at].trim_ascii(), values.trim_ascii())
         }
     }
+}
+
+/// The first of some values.
+fn first(values: &[u8]) -> &[u8] {
+    let end = values.iter().position(|&byte| byte <= b' ').unwrap_or(values.len());
+    &values[..end]
 }
 
 fn number(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> Result<u64, ReadError> {

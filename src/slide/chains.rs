@@ -1,8 +1,11 @@
 //! The chains of vertices that curves go through, from corner to corner.
 
+use std::collections::BTreeSet;
+
 use glam::DVec2;
 
 use crate::slide::options::Slide;
+use crate::slide::partners::{Partner, Partners};
 use crate::topology::Topology;
 
 /// A curve turns at a vertex if it does so by more than this, in radians, besides what the rounding of coordinates may do.
@@ -17,30 +20,64 @@ pub(crate) struct Chain {
     pub(crate) is_closed: bool,
     /// For each edge, whether it is part of a straight run of several edges.
     pub(crate) straight: Vec<bool>,
+    /// The partners of the vertices, in the same order, if they belong together in pairs with those of another curve.
+    pub(crate) image: Option<Vec<u32>>,
 }
 
-/// The chains that have a vertex to slide, in an order that depends on the numbers of vertices alone.
-pub(crate) fn chains(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide) -> Vec<Chain> {
+/// The chains that have a vertex to slide, in an order that depends on the numbers of vertices alone, and the number of pairs that
+/// stay as they are not alike. Of two chains whose vertices belong together in pairs, only one is returned.
+pub(crate) fn chains(
+    points: &[[f64; 2]],
+    topology: &Topology<'_>,
+    slide: &Slide,
+) -> (Vec<Chain>, usize) {
     let edges = Edges::of(topology, slide);
+    let at = |v: u32| DVec2::from(points[v as usize]);
+    let shortest = |v: u32| {
+        let lengths = edges.at(v).iter().map(|&(_, other)| at(v).distance(at(other)));
+        lengths.reduce(f64::min).unwrap_or(0.0)
+    };
+    let partners = Partners::new(&slide.periodic, points, shortest);
     let mut held = slide.held.clone();
     held.sort_unstable();
-    let at = |v: u32| DVec2::from(points[v as usize]);
     // The angle by which the curve turns at a vertex, if it has one curve alone.
     let turn = |v: u32| match edges.at(v) {
         &[(_, a), (_, b)] => Some(turn_between(at(a), at(v), at(b))),
         _ => None,
     };
-    let is_flat = |v: u32| turn(v).is_some_and(|turn| turn.is_flat());
+    // What partners are is one thing, whatever rounding makes of either.
+    let with_partner = |v: u32| std::iter::once(v).chain(partners.of(v).map(|to| to.vertex));
+    let is_flat = |v: u32| with_partner(v).all(|v| turn(v).is_some_and(|turn| turn.is_flat()));
     let is_straight = |a: u32, b: u32| is_flat(a) || is_flat(b);
-    let is_corner = |v: u32| match turn(v) {
+    let is_corner_itself = |v: u32| match turn(v) {
         None => true,
         Some(turn) => {
             let bends = || edges.at(v).iter().all(|&(_, other)| is_straight(v, other));
             held.binary_search(&v).is_ok()
                 || turn.angle.to_degrees() > slide.corner_angle
-                || !turn.is_flat() && bends()
+                || !is_flat(v) && bends()
         }
     };
+    let must_stay =
+        |v: u32| partners.stays(v) || with_partner(v).any(|vertex| is_corner_itself(vertex));
+    // Whether the curve of a vertex's partner goes to both sides of it as that of the vertex does, and is of the same pairs.
+    let is_matched = |v: u32, Partner { vertex: partner, motion }: Partner| {
+        let goes_on = |from: u32, to: u32| {
+            let pair = [at(from), at(to)];
+            Partners::agree(motion, pair, shortest(v).min(shortest(partner)))
+                && (partners.are_pair(from, to) || must_stay(from) && must_stay(to))
+        };
+        let has_both = |&t: &u32| topology.triangles()[t as usize].contains(&partner);
+        match (edges.at(v), edges.at(partner)) {
+            (&[(_, a), (_, b)], &[(_, c), (_, d)]) => {
+                (goes_on(a, c) && goes_on(b, d) || goes_on(a, d) && goes_on(b, c))
+                    && !topology.star(v).iter().any(has_both)
+            }
+            _ => false,
+        }
+    };
+    let is_corner =
+        |v: u32| must_stay(v) || partners.of(v).is_some_and(|partner| !is_matched(v, partner));
     let mut chains = Vec::new();
     let mut walked = vec![false; points.len()];
     let mut add = |start: u32, next: u32, walked: &mut Vec<bool>| {
@@ -60,7 +97,7 @@ pub(crate) fn chains(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide
         if vertices.len() > 2 {
             let ends = vertices.iter().skip(1).chain(is_closed.then_some(&vertices[0]));
             let straight = vertices.iter().zip(ends).map(|(&a, &b)| is_straight(a, b)).collect();
-            chains.push(Chain { vertices, is_closed, straight });
+            chains.push(Chain { vertices, is_closed, straight, image: None });
         }
     };
     for &(v, next) in edges.0.iter().filter(|&&(v, _)| is_corner(v)) {
@@ -74,7 +111,54 @@ pub(crate) fn chains(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide
             add(v, next, &mut walked);
         }
     }
-    chains
+    let image = |chain: &Chain| {
+        let inner = usize::from(!chain.is_closed);
+        let of = |&v: &u32| partners.of(v).map(|partner| partner.vertex);
+        let mut image: Option<Vec<u32>> =
+            chain.vertices[inner..chain.vertices.len() - inner].iter().map(of).collect();
+        if let (Some(image), false) = (&mut image, chain.is_closed) {
+            // The ends of the other chain: the neighbor where the motion takes that of this one.
+            let end = |end: u32, last: u32| {
+                let Partner { vertex, motion } = partners.of(last)?;
+                let there = |v: &u32| at(*v).distance(motion.at(at(end)));
+                let neighbors = edges.at(vertex).iter().map(|&(_, other)| other);
+                neighbors.min_by(|a, b| there(a).total_cmp(&there(b)))
+            };
+            let all = &chain.vertices;
+            let count = all.len();
+            image.insert(0, end(all[0], all[1])?);
+            image.push(end(all[count - 1], all[count - 2])?);
+        }
+        image
+    };
+    (joined(chains, image), partners.unlike)
+}
+
+/// The chains of which none is the image of another one before it, each with its own. A chain that is its own image is left out.
+fn joined(chains: Vec<Chain>, image: impl Fn(&Chain) -> Option<Vec<u32>>) -> Vec<Chain> {
+    let inner = |vertices: &[u32], is_closed: bool| match is_closed {
+        true => vertices.to_vec(),
+        false => vertices[1..vertices.len() - 1].to_vec(),
+    };
+    let mut taken = BTreeSet::new();
+    let mut kept = Vec::new();
+    for mut chain in chains {
+        chain.image = image(&chain);
+        if let Some(image) = &chain.image {
+            let own = inner(&chain.vertices, chain.is_closed);
+            let other = inner(image, chain.is_closed);
+            if own.iter().chain(&other).any(|v| taken.contains(v)) {
+                continue;
+            }
+            taken.extend(own.iter().copied());
+            if other.iter().any(|v| taken.contains(v)) {
+                continue;
+            }
+            taken.extend(other);
+        }
+        kept.push(chain);
+    }
+    kept
 }
 
 /// How a curve turns at a vertex.

@@ -36,7 +36,7 @@ pub(crate) struct Place {
 
 impl Curve {
     pub(crate) fn new(points: &[[f64; 2]], chain: &Chain, slide: &Slide) -> Self {
-        let Chain { vertices, is_closed, straight } = chain;
+        let Chain { vertices, is_closed, straight, .. } = chain;
         let again = is_closed.then_some(&vertices[0]);
         let knots: Vec<DVec2> =
             vertices.iter().chain(again).map(|&v| points[v as usize].into()).collect();
@@ -84,6 +84,17 @@ impl Curve {
         };
         let bounds = (0..knots.len()).map(bound).collect();
         Self { knots, params, slopes, bounds, is_closed: *is_closed }
+    }
+
+    /// The curve through the partners of a chain's vertices, which tells the same places by the same parameters as the chain's own.
+    pub(crate) fn of_partners(
+        &self,
+        points: &[[f64; 2]],
+        (chain, partners): (&Chain, &[u32]),
+        slide: &Slide,
+    ) -> Self {
+        let chain = Chain { vertices: partners.to_vec(), image: None, ..chain.clone() };
+        Self { params: self.params.clone(), ..Self::new(points, &chain, slide) }
     }
 
     /// The parameter of each given vertex.
@@ -170,8 +181,8 @@ impl Curve {
             }
             let piece = at.rem_euclid(pieces as isize) as usize;
             let (p, length) = (self.knots[piece], self.params[piece + 1] - self.params[piece]);
-            let along = (self.knots[piece + 1] - p) / length;
-            let way = (point - p).dot(along);
+            let line = self.knots[piece + 1] - p;
+            let way = (point - p).dot(line) / line.length_squared() * length;
             let is_within = -tolerance <= way && way <= length + tolerance;
             let param = self.params[piece] + way.clamp(0.0, length);
             let is_there = is_within && self.at(param).point.distance(point) <= tolerance;
@@ -199,7 +210,7 @@ mod tests {
             [3.0 + sin, cos]
         }));
         let straight = (0..9).map(|piece| piece < 3).collect();
-        let chain = Chain { vertices: (0..10).collect(), is_closed: false, straight };
+        let chain = Chain { vertices: (0..10).collect(), is_closed: false, straight, image: None };
         (Curve::new(&points, &chain, &Slide::default()), points)
     }
 
@@ -254,8 +265,8 @@ mod tests {
             [cos, sin]
         };
         let points: Vec<[f64; 2]> = (0..12).map(at).collect();
-        let chain =
-            Chain { vertices: (0..12).collect(), is_closed: true, straight: vec![false; 12] };
+        let straight = vec![false; 12];
+        let chain = Chain { vertices: (0..12).collect(), is_closed: true, straight, image: None };
         let curve = Curve::new(&points, &chain, &Slide::default());
         let edge = curve.period() / 12.0;
         for param in [-0.3, 0.2, 5.0] {

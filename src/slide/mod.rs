@@ -6,7 +6,11 @@ mod chains;
 mod curve;
 mod newton;
 mod options;
+mod pairing;
+mod partners;
 mod patch;
+mod rigid;
+mod side;
 mod sliding;
 
 pub(crate) use acceleration::Acceleration;

@@ -5,7 +5,8 @@ use glam::DVec2;
 use crate::layout::Problem;
 use crate::run::{Step, line_search};
 use crate::slide::curve::{Curve, Place};
-use crate::slide::patch::{Fan, Patch};
+use crate::slide::patch::Patch;
+use crate::slide::side::Side;
 
 /// The largest share of the way to a neighbor on the curve that a step may go.
 const NEAREST: f64 = 0.8;
@@ -47,51 +48,63 @@ impl Reach {
 /// How much rounding may add to the distance from where a vertex was given, as a share of it.
 const ROUNDING: f64 = 1e-9;
 
-/// One Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls below `floor`. Returns the new parameter and position of
-/// the vertex, if it moves.
+/// One Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls below `floor`. Returns the
+/// new parameter of the vertices, if they move: those at `k` on one curve or on two that share their parameters, for which the step is
+/// that of the sum over both patches, and one that neither patch forbids.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
-    fan: &Fan,
-    (curve, window, reach): (&Curve, Window, Reach),
+    (sides, k): (&[Side], usize),
+    (window, reach): (Window, Reach),
     (step, floor): (&Step, f64),
-) -> Option<(f64, DVec2)> {
+) -> Option<f64> {
     let Window { low, at, high } = window;
-    let (center, scale) = problem.normalization();
-    let Place { first, second, .. } = curve.at(at);
-    let (first, second) = (first * scale, second * scale);
-    let patch = Patch { problem, positions, fan, step, floor };
-    let here = positions[fan.own() as usize];
-    let sum = patch.derivatives(here);
-    let gradient = DVec2::from(sum.gradient);
-    let [xx, xy, yy] = sum.hessian;
-    let hessian = DVec2::new(xx * first.x + xy * first.y, xy * first.x + yy * first.y);
-    let slope = gradient.dot(first);
-    let curvature = (hessian.dot(first) + gradient.dot(second)).abs();
-    let newton = -slope / curvature;
+    let patches = || {
+        sides.iter().filter_map(|side| {
+            let fan = side.fans[k].as_ref()?;
+            Some((side, Patch { problem, positions, fan, step, floor }))
+        })
+    };
+    let (mut slope, mut curvature, mut sum, mut degree) = (0.0, 0.0, 0.0, 0);
+    let mut limit = step.shape_guard;
+    for (side, patch) in patches() {
+        let Place { first, second, .. } = side.at(problem, at);
+        let here = positions[patch.fan.own() as usize];
+        let shown = patch.derivatives(here);
+        let gradient = DVec2::from(shown.gradient);
+        let [xx, xy, yy] = shown.hessian;
+        let hessian = DVec2::new(xx * first.x + xy * first.y, xy * first.x + yy * first.y);
+        slope += gradient.dot(first);
+        curvature += hessian.dot(first) + gradient.dot(second);
+        sum += shown.value;
+        degree += patch.fan.degree();
+        if limit.is_finite() {
+            limit = limit.max(patch.worst_shape(here));
+        }
+    }
+    let newton = -slope / curvature.abs();
     if !newton.is_finite() {
         return None;
     }
     let way = newton.clamp(NEAREST * (low - at), NEAREST * (high - at));
     let way = reach.shortened(way, at);
-    let squares = sum.value + fan.degree() as f64 * step.metric.ideal_squared();
-    let most = sum.value + squares * SLACK;
-    let limit = match step.shape_guard.is_finite() {
-        true => step.shape_guard.max(patch.worst_shape(here)),
-        false => f64::INFINITY,
+    let squares = sum + degree as f64 * step.metric.ideal_squared();
+    let most = sum + squares * SLACK;
+    let objective = |to: f64| {
+        patches().try_fold(0.0, |sum, (side, patch)| {
+            let curve = &side.curve;
+            let is_allowed = curve.is_near([low, to, high]) && reach.allows(curve, to);
+            let value = || patch.objective(side.at(problem, to).point, limit);
+            is_allowed.then(value).flatten().map(|value| sum + value)
+        })
     };
     let mut length = 1.0;
     for _ in 0..line_search::TRIALS {
         let to = at + way * length;
-        let position = (curve.at(to).point - center) * scale;
-        let value = match curve.is_near([low, to, high]) && reach.allows(curve, to) {
-            true => patch.objective(position, limit),
-            false => None,
-        };
         let wanted = line_search::SUFFICIENT_DECREASE * slope * way * length;
-        match value {
+        match objective(to) {
             Some(value) if value <= most + wanted => {
-                return (to != at && low < to && to < high).then_some((to, position));
+                return (to != at && low < to && to < high).then_some(to);
             }
             Some(_) => length *= line_search::SHORTEN,
             None => length *= line_search::SHORTEN_INFEASIBLE,

@@ -1,6 +1,7 @@
 //! What slides, and how far it may leave the curve that is given.
 
 use crate::error::{MeshError, SmoothError};
+use crate::periodic::Periodic;
 
 /// Which vertices slide along the curve they are on, and how curves are continued between their vertices; set by
 /// [`Smoother::set_slide`](crate::Smoother::set_slide).
@@ -21,11 +22,15 @@ pub struct Slide {
     pub lines: Vec<[u32; 2]>,
     /// Vertices that do not slide. In any order, repeats allowed.
     pub held: Vec<u32>,
+    /// Vertices that belong together in pairs: both of a pair slide, such that the motion goes on to take one to the other, or neither.
+    /// Those of no motion or of several pairs stay. [`Self::pair_sides`] and [`Self::pair_by`] find pairs.
+    pub periodic: Vec<Periodic>,
 }
 
 impl Default for Slide {
     fn default() -> Self {
-        Self { corner_angle: 40.0, hausdorff: None, lines: Vec::new(), held: Vec::new() }
+        let (lines, held, periodic) = (Vec::new(), Vec::new(), Vec::new());
+        Self { corner_angle: 40.0, hausdorff: None, lines, held, periodic }
     }
 }
 
@@ -37,7 +42,8 @@ impl Slide {
 
     /// Checks the numbers, and that there are all the vertices it lists.
     pub(crate) fn check(&self, vertices: usize) -> Result<(), SmoothError> {
-        let mut listed = self.held.iter().chain(self.lines.as_flattened());
+        let pairs = self.periodic.iter().flat_map(|periodic| periodic.pairs.as_flattened());
+        let mut listed = self.held.iter().chain(self.lines.as_flattened()).chain(pairs);
         if let Some(&vertex) = listed.find(|&&v| v as usize >= vertices) {
             return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
         }

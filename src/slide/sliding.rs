@@ -6,14 +6,14 @@ use crate::layout::Problem;
 use crate::mesh::Precision;
 use crate::run::Step;
 use crate::slide::chains::chains;
-use crate::slide::curve::Curve;
 use crate::slide::newton::{self, Reach, Window};
 use crate::slide::options::Slide;
-use crate::slide::patch::Fan;
+use crate::slide::side::Side;
 use crate::topology::Topology;
 
 impl Slide {
-    /// The vertices that are not free and have moved, but not along a curve that they were on, or past a neighbor there: ascending.
+    /// The vertices that are not free and have moved, but not along a curve that they were on, or past a neighbor there, or not as far as
+    /// the vertex that they belong together with: ascending.
     /// `before` are the vertices as they were given, `after` as they are, stored with so many digits. Vertices that one of the lists
     /// does not have are left out.
     pub fn astray(
@@ -47,37 +47,32 @@ impl Slide {
 
 /// How often vertices may give way to others that did.
 const GIVE_WAY: u32 = 5;
+/// How far the parameters of partners may be from each other, in what rounding does to a coordinate.
+const TOGETHER: f64 = 4.0;
 
-/// Where the vertices of each curve are on it.
+/// Where the vertices of each curve are on it. Two curves whose vertices belong together in pairs share theirs.
 pub(crate) type Params = Vec<Vec<f64>>;
 
 /// The curves of a mesh, with the vertices that slide on them.
 #[derive(Clone, Debug)]
 pub(crate) struct Sliding {
     tracks: Vec<Track>,
+    /// Number of pairs that stay as they are not alike.
+    unlike: usize,
 }
 
-/// A curve and its vertices, in their order. Only those with a fan slide: all but the ends of a curve that is not closed.
+/// A curve, and the one whose vertices belong together with its own in pairs if there is one.
 #[derive(Clone, Debug)]
 struct Track {
-    curve: Curve,
-    /// The numbers of the vertices in the mesh.
-    vertices: Vec<u32>,
-    fans: Vec<Option<Fan>>,
+    sides: Vec<Side>,
 }
 
 impl Sliding {
     /// Finds the curves of a mesh with its vertices at `points`.
     pub(crate) fn new(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide) -> Self {
-        let track = |chain| {
-            let curve = Curve::new(points, &chain, slide);
-            let last = chain.vertices.len() - 1;
-            let slides = |k: usize| chain.is_closed || k != 0 && k != last;
-            let fan = |(k, &v): (usize, &u32)| slides(k).then(|| Fan::new(topology, v));
-            let fans = chain.vertices.iter().enumerate().map(fan).collect();
-            Track { curve, vertices: chain.vertices, fans }
-        };
-        Self { tracks: chains(points, topology, slide).into_iter().map(track).collect() }
+        let (chains, unlike) = chains(points, topology, slide);
+        let track = |chain| Track { sides: Side::of(points, topology, slide, chain) };
+        Self { tracks: chains.into_iter().map(track).collect(), unlike }
     }
 
     /// The same curves, with vertices numbered as a problem does.
@@ -86,7 +81,8 @@ impl Sliding {
         for (new, &v) in (0..).zip(problem.vertices()) {
             number[v as usize] = new;
         }
-        for fan in self.tracks.iter_mut().flat_map(|track| &mut track.fans).flatten() {
+        let sides = self.tracks.iter_mut().flat_map(|track| &mut track.sides);
+        for fan in sides.flat_map(|side| &mut side.fans).flatten() {
             fan.renumber(&number);
         }
         self
@@ -94,34 +90,51 @@ impl Sliding {
 
     /// Number of vertices that slide.
     pub(crate) fn count(&self) -> usize {
-        self.tracks.iter().flat_map(|track| &track.fans).flatten().count()
+        let sides = self.tracks.iter().flat_map(|track| &track.sides);
+        sides.flat_map(|side| &side.fans).flatten().count()
+    }
+
+    /// How many pairs of them there are, and how many pairs stay as they are not alike.
+    pub(crate) fn pairs(&self) -> [usize; 2] {
+        let second = self.tracks.iter().flat_map(|track| track.sides.get(1));
+        [second.flat_map(|side| &side.fans).flatten().count(), self.unlike]
     }
 
     /// Where the vertices were given.
     pub(crate) fn start(&self) -> Params {
-        self.tracks.iter().map(|track| track.curve.params().to_vec()).collect()
+        self.tracks.iter().map(|track| track.start().to_vec()).collect()
     }
 
     /// The vertices that have left the place where they were given, with their numbers in the mesh, and where they are.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
-        let of_track = |(track, params): (&Track, &Vec<f64>)| {
-            let all = track.vertices.iter().zip(params).zip(track.curve.params());
+        let of_side = |(side, params): (&Side, &[f64])| {
+            let all = side.vertices.iter().zip(params).zip(side.curve.params());
             let moved = all.filter(|((_, now), was)| now != was);
-            moved.map(|((&v, &now), _)| (v, track.curve.at(now).point.into())).collect::<Vec<_>>()
+            moved.map(|((&v, &now), _)| (v, side.curve.at(now).point.into())).collect::<Vec<_>>()
         };
-        self.tracks.iter().zip(params).flat_map(of_track).collect()
+        self.sides(params).flat_map(of_side).collect()
     }
 
-    /// A number for each vertex of each curve, by its number in the mesh.
+    /// All curves, each with the parameters of its vertices.
+    fn sides<'a>(&'a self, params: &'a Params) -> impl Iterator<Item = (&'a Side, &'a [f64])> {
+        let all = self.tracks.iter().zip(params);
+        all.flat_map(|(track, params)| track.sides.iter().map(move |side| (side, &params[..])))
+    }
+
+    /// The least of a number of each vertex, by its number in the mesh, and of its partner, for each vertex of each curve.
     pub(crate) fn for_each_vertex(&self, of: impl Fn(u32) -> f64) -> Params {
-        let of_track = |track: &Track| track.vertices.iter().map(|&v| of(v)).collect();
+        let least = |track: &Track, k: usize| {
+            let all = track.sides.iter().map(|side| of(side.vertices[k]));
+            all.fold(f64::INFINITY, f64::min)
+        };
+        let of_track = |track: &Track| (0..track.count()).map(|k| least(track, k)).collect();
         self.tracks.iter().map(of_track).collect()
     }
 
     /// By how much parameters changed, in lengths of an edge that was given.
     pub(crate) fn change(&self, before: &Params, after: &Params) -> Vec<f64> {
         let of_track = |((track, before), after): ((&Track, &Vec<f64>), &Vec<f64>)| {
-            let start = track.curve.params();
+            let start = track.start();
             let edge = |k: usize| {
                 let window = track.window(start, k);
                 0.5 * (window.high - window.low)
@@ -141,16 +154,16 @@ impl Sliding {
         (safe, reach): (&Params, &Params),
         positions: &mut [DVec2],
     ) -> bool {
-        let (center, scale) = problem.normalization();
         let mut all = self.tracks.iter().zip(params).zip(safe.iter().zip(reach));
         all.all(|((track, params), (safe, reach))| {
-            let sliding = || (0..track.fans.len()).filter(|&k| track.fans[k].is_some());
+            let sliding = || (0..track.count()).filter(|&k| track.slides(k));
             let is_sound = |params: &[f64], k: usize| {
                 let Window { low, at, high } = track.window(params, k);
-                low < at
-                    && at < high
-                    && track.curve.is_near([low, at, high])
-                    && track.reach(reach, k).allows(&track.curve, at)
+                let is_sound = |side: &Side| {
+                    side.curve.is_near([low, at, high])
+                        && track.reach(reach, k).allows(&side.curve, at)
+                };
+                low < at && at < high && track.sides.iter().all(is_sound)
             };
             for _ in 0..GIVE_WAY {
                 let bad: Vec<usize> = sliding().filter(|&k| !is_sound(params, k)).collect();
@@ -159,12 +172,7 @@ impl Sliding {
                 }
                 bad.into_iter().for_each(|k| params[k] = safe[k]);
             }
-            for (k, fan) in track.fans.iter().enumerate() {
-                if let Some(fan) = fan {
-                    let point = track.curve.at(params[k]).point;
-                    positions[fan.own() as usize] = (point - center) * scale;
-                }
-            }
+            (0..track.count()).for_each(|k| track.follow(problem, k, params[k], positions));
             sliding().all(|k| is_sound(params, k))
         })
     }
@@ -172,16 +180,19 @@ impl Sliding {
     /// How far the lines between vertices are from those between the vertices as they were given, in the unit of the mesh.
     pub(crate) fn off(&self, params: &Params) -> f64 {
         let of_track = |(track, params): (&Track, &Vec<f64>)| {
-            let edges = (0..params.len()).filter(|&k| track.fans[k].is_some() || k == 0);
+            let edges = (0..params.len()).filter(|&k| track.slides(k) || k == 0);
             let next = |k| track.neighbor(k, 1, |i| params.get(i).copied());
-            let off = edges.filter_map(|k| next(k).map(|next| track.curve.off(params[k], next)));
-            off.fold(0.0, f64::max)
+            let off = |low: f64, high: f64| {
+                track.sides.iter().map(|side| side.curve.off(low, high)).fold(0.0, f64::max)
+            };
+            edges.filter_map(|k| next(k).map(|next| off(params[k], next))).fold(0.0, f64::max)
         };
         self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
     }
 
     /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step along its curve, no
     /// farther from where it was given than `reach` says, in the unit of the mesh, and such that no altitude falls below `floor`.
+    /// Partners move together.
     pub(crate) fn sweep(
         &self,
         problem: &Problem,
@@ -192,60 +203,119 @@ impl Sliding {
     ) {
         for ((track, params), reach) in self.tracks.iter().zip(params).zip(reach) {
             let count = params.len();
-            for k in (0..count).chain((0..count).rev()) {
-                let Some(fan) = &track.fans[k] else { continue };
-                let window = track.window(params, k);
-                let place = (&track.curve, window, track.reach(reach, k));
-                let moved = newton::visit(problem, positions, fan, place, (step, floor));
-                if let Some((param, position)) = moved {
+            for k in (0..count).chain((0..count).rev()).filter(|&k| track.slides(k)) {
+                let place = (track.window(params, k), track.reach(reach, k));
+                let vertices = (&track.sides[..], k);
+                let moved = newton::visit(problem, positions, vertices, place, (step, floor));
+                if let Some(param) = moved {
                     params[k] = param;
-                    positions[fan.own() as usize] = position;
+                    track.follow(problem, k, param, positions);
                 }
             }
         }
     }
 
     /// Of vertices with these numbers in the mesh, ascending, those that are not on their curve, or not between the neighbors they were
-    /// given on it, with the vertices at `points`. Coordinates may be wrong by `rounding`.
+    /// given on it, or not where their partner is on its curve, with the vertices at `points`. Coordinates may be wrong by `rounding`.
     pub(crate) fn astray(&self, vertices: &[u32], points: &[[f64; 2]], rounding: f64) -> Vec<u32> {
         let mut astray = vertices.to_vec();
         for track in &self.tracks {
-            let own = |(k, &v): (usize, &u32)| {
-                let at = DVec2::from(points[v as usize]);
-                let was = track.curve.params()[k];
-                let has_moved = vertices.binary_search(&v).is_ok();
-                if has_moved { track.curve.find(at, k, rounding) } else { Some(was) }
+            let found_on = |side: &Side| {
+                let own = |(k, &v): (usize, &u32)| {
+                    let at = DVec2::from(points[v as usize]);
+                    let has_moved = vertices.binary_search(&v).is_ok();
+                    match has_moved {
+                        true => side.curve.find(at, k, rounding),
+                        false => Some(side.curve.params()[k]),
+                    }
+                };
+                side.vertices.iter().enumerate().map(own).collect::<Vec<Option<f64>>>()
             };
-            let found: Vec<Option<f64>> = track.vertices.iter().enumerate().map(own).collect();
-            let mut good = Vec::new();
-            for (k, fan) in track.fans.iter().enumerate() {
+            let found: Vec<Vec<Option<f64>>> = track.sides.iter().map(found_on).collect();
+            let is_between = |found: &[Option<f64>], k: usize| {
                 let neighbor = |to: isize| track.neighbor(k, to, |i| found[i]);
-                if let (Some(_), Some(at)) = (fan, found[k])
-                    && neighbor(-1).is_none_or(|before| before < at)
-                    && neighbor(1).is_none_or(|after| at < after)
-                {
-                    good.push(track.vertices[k]);
-                }
-            }
+                found[k].is_some_and(|at| {
+                    neighbor(-1).is_none_or(|before| before < at)
+                        && neighbor(1).is_none_or(|after| at < after)
+                })
+            };
+            let together = |k: usize| {
+                let [first, second] = match &found[..] {
+                    [first, second] => [first[k], second[k]],
+                    _ => return true,
+                };
+                let apart = |(a, b): (f64, f64)| (a - b).abs();
+                first.zip(second).map(apart).is_some_and(|apart| apart <= TOGETHER * rounding)
+            };
+            let good = |k: &usize| {
+                track.slides(*k) && found.iter().all(|found| is_between(found, *k)) && together(*k)
+            };
+            let good = (0..track.count()).filter(good);
+            let own = |k: usize| track.sides.iter().map(move |side| side.vertices[k]);
+            let mut good: Vec<u32> = good.flat_map(own).collect();
             good.sort_unstable();
             astray.retain(|v| good.binary_search(v).is_err());
         }
         astray
     }
+
+    /// Sets vertices back to where they were given whose partner is there, of points in the order of the mesh. Returns how many.
+    pub(crate) fn return_partners(&self, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
+        let mut returned = 0;
+        for track in &self.tracks {
+            let [first, second] = match &track.sides[..] {
+                [first, second] => [&first.vertices, &second.vertices],
+                _ => continue,
+            };
+            for (&a, &b) in first.iter().zip(second) {
+                let [a, b] = [a, b].map(|v| v as usize);
+                let has_moved = [a, b].map(|v| points[v] != before[v]);
+                if has_moved[0] != has_moved[1] {
+                    let v = if has_moved[0] { a } else { b };
+                    points[v] = before[v];
+                    returned += 1;
+                }
+            }
+        }
+        returned
+    }
 }
 
 impl Track {
+    /// The parameters where the vertices were given.
+    fn start(&self) -> &[f64] {
+        self.sides[0].curve.params()
+    }
+
+    /// Number of vertices of each curve.
+    fn count(&self) -> usize {
+        self.sides[0].vertices.len()
+    }
+
+    fn slides(&self, k: usize) -> bool {
+        self.sides[0].slides(k)
+    }
+
+    /// Brings the vertices of a parameter, if they slide, to where it is.
+    fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
+        for side in &self.sides {
+            if let Some(fan) = &side.fans[k] {
+                positions[fan.own() as usize] = side.at(problem, param).point;
+            }
+        }
+    }
+
     /// What is known of the vertex before (-1) or after (1) another one, as a parameter that goes on around a closed curve.
     fn neighbor(&self, k: usize, to: isize, known: impl Fn(usize) -> Option<f64>) -> Option<f64> {
-        let (at, count) = (k as isize + to, self.vertices.len() as isize);
+        let (at, count) = (k as isize + to, self.count() as isize);
         let turns = at.div_euclid(count);
         let param = known(at.rem_euclid(count) as usize)?;
-        Some(param + turns as f64 * self.curve.period())
+        Some(param + turns as f64 * self.sides[0].curve.period())
     }
 
     /// How far a vertex may go.
     fn reach(&self, reach: &[f64], k: usize) -> Reach {
-        Reach { start: self.curve.params()[k], most: reach[k] }
+        Reach { start: self.start()[k], most: reach[k] }
     }
 
     /// Where a vertex is on its curve, and its neighbors.

@@ -39,6 +39,8 @@ pub struct Smoother<'a> {
     topology: Topology<'a>,
     problem: Problem,
     sliding: Option<Sliding>,
+    /// How many pairs slide, and how many stay as they are not alike.
+    pairs: [usize; 2],
     /// The targets of places, if targets do not belong to vertices.
     field: Option<TargetField>,
     prepare: Duration,
@@ -54,8 +56,8 @@ impl<'a> Smoother<'a> {
         let (mut topology, problem) = prepare(mesh)?;
         // Runs need the problem alone. Stars are found again if a vertex has to be set back.
         topology.forget_stars();
-        let mesh = Cow::Borrowed(mesh);
-        Ok(Self { mesh, topology, problem, sliding: None, field: None, prepare: start.elapsed() })
+        let (mesh, sliding, pairs, field) = (Cow::Borrowed(mesh), None, [0; 2], None);
+        Ok(Self { mesh, topology, problem, sliding, pairs, field, prepare: start.elapsed() })
     }
 
     /// The same with a copy of the mesh of its own, so that it can outlive the mesh it was made from: in a struct without lifetimes,
@@ -66,6 +68,7 @@ impl<'a> Smoother<'a> {
             topology: self.topology.into_owned(),
             problem: self.problem,
             sliding: self.sliding,
+            pairs: self.pairs,
             field: self.field,
             prepare: self.prepare,
         }
@@ -103,7 +106,7 @@ impl<'a> Smoother<'a> {
     /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a vertex is listed that the mesh does
     /// not have.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
-        self.sliding = None;
+        (self.sliding, self.pairs) = (None, [0; 2]);
         let Some(slide) = slide else { return Ok(0) };
         let vertices = self.mesh.points.len();
         slide.check(vertices)?;
@@ -111,8 +114,15 @@ impl<'a> Smoother<'a> {
         let sliding = sliding.numbered(&self.problem, vertices);
         self.topology.forget_stars();
         let count = sliding.count();
+        self.pairs = sliding.pairs();
         self.sliding = (count > 0).then_some(sliding);
         Ok(count)
+    }
+
+    /// Of the pairs of vertices that belong together ([`Slide::periodic`]), how many slide, and how many stay because no translation or
+    /// rotation takes one to the other as it does most of the pairs listed with it.
+    pub fn pairs(&self) -> [usize; 2] {
+        self.pairs
     }
 
     /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
@@ -161,12 +171,20 @@ impl<'a> Smoother<'a> {
 
     /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and
     /// returns how many; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
-    /// again after [`Self::run`].
+    /// again after [`Self::run`]. Of pairs that slide, both vertices are set back.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex. Nothing is moved then.
     pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
-        certify(&self.topology, &self.mesh.points, points)
+        let before = &self.mesh.points;
+        let mut returned = certify(&self.topology, before, points)?;
+        let Some(sliding) = &self.sliding else { return Ok(returned) };
+        loop {
+            match sliding.return_partners(before, points) {
+                0 => return Ok(returned),
+                more => returned += more + certify(&self.topology, before, points)?,
+            }
+        }
     }
 
     /// Smooths the mesh. Blocks until the run ends. `observe` is called every few sweeps and can end the run;

@@ -116,9 +116,12 @@ impl Smoother<'_> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
-        if options.keep_altitude {
-            returned += altitude::restore(&self.topology, &self.mesh.points, &mut points);
-            returned += self.certify(&mut points)?;
+        while options.keep_altitude {
+            let low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
+            returned += low + self.certify(&mut points)?;
+            if low == 0 {
+                break;
+            }
         }
         let judged = self.problem.normalized(&points, ended.positions);
         ways.follow(&judged)?;

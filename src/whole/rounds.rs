@@ -168,6 +168,7 @@ impl<'s> Rounds<'s> {
         Slid {
             vertices: self.sliding.count(),
             moved,
+            pairs: self.sliding.pairs()[0],
             rounds: self.count,
             off: if gains { self.sliding.off(&self.params) } else { 0.0 },
             area: area(points) / area(before) - 1.0,

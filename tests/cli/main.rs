@@ -24,6 +24,7 @@ mod many;
 mod moving;
 mod options;
 mod output;
+mod periodic;
 mod picture;
 mod plate;
 mod progress;

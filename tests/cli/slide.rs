@@ -4,7 +4,7 @@ use super::{Folder, assert_holds, number, support};
 use gpu_smooth::Mesh;
 
 /// A square of two materials, 8 by 4 fields, whose vertices on lines are off their places along them.
-fn square() -> (Mesh, Vec<i32>) {
+pub(super) fn square() -> (Mesh, Vec<i32>) {
     let mut random = support::SplitMix64::new(2);
     let (mut points, mut triangles, mut materials) = (Vec::new(), Vec::new(), Vec::new());
     for row in 0..=4_u32 {
@@ -130,50 +130,4 @@ fn a_bound_and_the_guard_of_the_worst_are_kept_and_reported() {
     let [before, after] =
         ["before", "after"].map(|state| number(&report[state]["worst_movable_imr"]));
     assert!(after <= before, "{before} {after}");
-}
-
-/// The square as a file of gmsh, with a section that says that its sides belong together in pairs.
-#[test]
-fn the_boundary_of_a_periodic_model_stays() {
-    let (mesh, materials) = square();
-    let nodes = mesh.points.iter().zip(1..).map(|([x, y], tag)| format!("{tag} {x} {y} 0\n"));
-    let elements = mesh.triangles.iter().zip(materials).zip(1..);
-    let elements = elements
-        .map(|(([a, b, c], m), tag)| format!("{tag} 2 2 {m} {m} {} {} {}\n", a + 1, b + 1, c + 1));
-    let text = format!(
-        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n",
-        mesh.points.len(),
-        nodes.collect::<String>(),
-        mesh.triangles.len(),
-        elements.collect::<String>(),
-    );
-    let periodic = format!("{text}$Periodic\n1\n1 2 4\n1\n9 1\n$EndPeriodic\n");
-    let points = mesh.points.iter().map(|[x, y]| format!("{x} {y}\n")).collect::<String>();
-    let listed = mesh.triangles.iter().map(|[a, b, c]| format!("5 {a} {b} {c}\n"));
-    let su2 = |pairs: u32| {
-        let (triangles, count) = (listed.clone().collect::<String>(), mesh.triangles.len());
-        let points = format!("NPOIN= {}\n{points}", mesh.points.len());
-        format!("NDIME= 2\nNELEM= {count}\n{triangles}{points}NMARK= 0\nNPERIODIC= {pairs}\n")
-    };
-    let folder = Folder::new(&[
-        ("in.msh", &text),
-        ("periodic.msh", &periodic),
-        ("one.su2", &su2(1)),
-        ("two.su2", &su2(2)),
-    ]);
-    let run = folder.line("one.su2 out.su2 --engine cpu --slide");
-    assert_holds(&run.err, &["--slide: 20 vertices"]);
-    let run = folder.line("two.su2 out.su2 --engine cpu --slide");
-    assert_holds(
-        &run.err,
-        &["no vertex can slide", "the boundary stays, as the model is periodic"],
-    );
-    let run = folder.line("in.msh out.msh --engine cpu --slide");
-    assert_holds(&run.out, &["21 of 21 vertices on lines slid"]);
-    let run = folder.line("periodic.msh out.msh --engine cpu --slide");
-    assert_holds(
-        &run.err,
-        &["--slide: 3 vertices", "the boundary stays, as the model is periodic"],
-    );
-    assert_holds(&run.out, &["3 of 3 vertices on lines slid"]);
 }

@@ -18,6 +18,7 @@ mod limit;
 mod multilevel;
 mod not_finite;
 mod optimum;
+mod periodic;
 mod random;
 mod requests;
 mod resumed;

@@ -55,7 +55,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
     }
     if !show.quiet {
-        tell::say(&summary(&after, old, new, (moved, proof.slid)));
+        tell::say(&summary(&after, old, new, (moved, proof.slid, proof.pairs)));
         for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
         {
             tell::say(&format!("{sha256}  {path}"));
@@ -72,7 +72,7 @@ fn summary(
     after: &MeshFile,
     old: &[[f64; 2]],
     new: &[[f64; 2]],
-    (moved, slid): (&[u32], usize),
+    (moved, slid, pairs): (&[u32], usize, usize),
 ) -> String {
     let distance = |&vertex: &u32| {
         let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
@@ -81,7 +81,14 @@ fn summary(
     let slides = match slid {
         0 => String::new(),
         1 => "1 vertex slid along its line; ".to_owned(),
-        n => format!("{n} vertices slid along their lines; "),
+        n => format!(
+            "{n} vertices slid along their lines{}; ",
+            match pairs {
+                0 => String::new(),
+                1 => ", two of them as a periodic pair together".to_owned(),
+                n => format!(", {n} periodic pairs of them together"),
+            }
+        ),
     };
     let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let triangles = after.mesh().triangles.len();

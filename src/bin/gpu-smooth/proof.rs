@@ -3,6 +3,7 @@
 use gpu_smooth::{BadTriangle, Difference, MeshError, MeshFile, Slide, Topology};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 
 use crate::riding::Riding;
 
@@ -16,6 +17,8 @@ pub(crate) struct Proof {
     pub(crate) held: Vec<u32>,
     /// How many of those that may not move freely slid along their lines.
     pub(crate) slid: usize,
+    /// How many periodic pairs of them slid together.
+    pub(crate) pairs: usize,
     /// Triangles that are inverted or flat in the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
 }
@@ -29,7 +32,7 @@ impl Proof {
     ) -> Result<Self, MeshError> {
         let fields = [mine.fields(), theirs.fields()];
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
-        let mut slid = 0;
+        let (mut slid, mut pairs) = (0, 0);
         let difference = before.difference_besides(after, fields);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
@@ -41,11 +44,13 @@ impl Proof {
             if let Some(slide) = slide {
                 let astray = slide.astray(&topology, old, new, after.precision());
                 slid = held.len() - astray.len();
+                held.retain(|v| astray.binary_search(v).is_err());
+                pairs = pairs_among(slide, &held);
                 held = astray;
             }
             bad = topology.bad_triangles(new)?;
         }
-        Ok(Self { difference, moved, held, slid, bad })
+        Ok(Self { difference, moved, held, slid, pairs, bad })
     }
 
     /// What is wrong, in a sentence; `None` if nothing is.
@@ -68,6 +73,14 @@ impl Proof {
         }
         (!problems.is_empty()).then(|| problems.join(", "))
     }
+}
+
+/// How many periodic pairs there are among these vertices, ascending.
+fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
+    let has = |v: &u32| vertices.binary_search(v).is_ok();
+    let all = slide.periodic.iter().flat_map(|periodic| &periodic.pairs);
+    let among = all.filter(|pair| pair.iter().all(has));
+    among.map(|&[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len()
 }
 
 /// A file, and the hash of its bytes as `sha256sum` prints it.

@@ -167,6 +167,8 @@ pub(crate) struct SlideReport {
     pub(crate) vertices: usize,
     /// Those that did.
     pub(crate) moved: usize,
+    /// Periodic pairs among those that might slide, of which both vertices move together.
+    pub(crate) pairs: usize,
     /// Rounds of sweeps, each followed by sweeps along the lines.
     pub(crate) rounds: u32,
     /// How far the lines are from those before, in the unit of the mesh.
@@ -176,8 +178,8 @@ pub(crate) struct SlideReport {
 }
 
 impl From<Slid> for SlideReport {
-    fn from(Slid { vertices, moved, rounds, off, area }: Slid) -> Self {
-        Self { vertices, moved, rounds, off, area_change: area }
+    fn from(Slid { vertices, moved, pairs, rounds, off, area }: Slid) -> Self {
+        Self { vertices, moved, pairs, rounds, off, area_change: area }
     }
 }
 
@@ -415,13 +417,18 @@ impl Report {
 
     /// What slid and what that did to the domain, in a sentence.
     pub(crate) fn slides(&self) -> Option<String> {
-        let SlideReport { vertices, moved, off, area_change, .. } = self.slid.as_ref()?;
+        let SlideReport { vertices, moved, pairs, off, area_change, .. } = self.slid.as_ref()?;
+        let pairs = match pairs {
+            0 => "",
+            1 => ", a periodic pair together",
+            n => &format!(", {n} periodic pairs together"),
+        };
         let area = match 100.0 * area_change {
             change if change.abs() < 1e-9 => "stayed the same".to_owned(),
             change => format!("changed by {change:+.2e} %"),
         };
         Some(format!(
-            "{moved} of {vertices} vertices on lines slid along them; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
+            "{moved} of {vertices} vertices on lines slid along them{pairs}; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
         ))
     }
 

@@ -21,6 +21,10 @@ pub(crate) struct SlideArgs {
     /// How far lines may leave those of IN, in the unit of the mesh [default: a tenth of the edge there]
     #[arg(long, value_name = "DISTANCE", requires = "slide", help_heading = HEADING, value_parser = distance, allow_negative_numbers = true)]
     hausdorff: Option<f64>,
+    /// Two sides of the boundary that a translation or a rotation takes to one another: their vertices slide together. For files that do
+    /// not list such pairs themselves, as gmsh's do; may be given several times
+    #[arg(long, value_name = "NAME,NAME", requires = "slide", help_heading = HEADING, value_parser = two_names)]
+    periodic: Vec<[String; 2]>,
 }
 
 fn angle(text: &str) -> Result<f64, String> {
@@ -31,20 +35,68 @@ fn distance(text: &str) -> Result<f64, String> {
     number(text, |length| length > 0.0 && length.is_finite(), "a length above 0")
 }
 
+/// The names of two groups, with a comma between them.
+fn two_names(text: &str) -> Result<[String; 2], String> {
+    match text.split_once(',').map(|(a, b)| [a.trim(), b.trim()]) {
+        Some([a, b]) if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
+        _ => Err("the names or tags of two groups are needed, with a comma between them".into()),
+    }
+}
+
 impl SlideArgs {
     /// What slides in a mesh, if anything is to.
     pub(crate) fn slide(&self, file: &MeshFile) -> Result<Option<Slide>, String> {
         if !self.slide {
             return Ok(None);
         }
-        let mut held = file.held_vertices().to_vec();
-        if file.is_periodic() {
-            let topology =
-                Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
-            held.extend(topology.boundary_edges().into_iter().flatten());
-        }
         let Self { corner_angle, hausdorff, .. } = *self;
-        Ok(Some(Slide { corner_angle, hausdorff, lines: file.lines(), held }))
+        let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
+        let mut slide = Slide { corner_angle, hausdorff, lines: file.lines(), held, periodic };
+        let motions = file.periodic_motions();
+        if self.periodic.is_empty() && motions.is_empty() && !file.has_unknown_pairs() {
+            return Ok(Some(slide));
+        }
+        let topology =
+            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
+        let points = &file.mesh().points;
+        for &motion in motions {
+            slide.pair_by(&topology, points, motion);
+        }
+        self.pair(file, &topology, &mut slide)?;
+        if has_lost_pairs(file, &slide) {
+            slide.held.extend(topology.boundary_edges().into_iter().flatten());
+        }
+        Ok(Some(slide))
+    }
+
+    /// Adds the pairs of `--periodic`.
+    fn pair(
+        &self,
+        file: &MeshFile,
+        topology: &Topology<'_>,
+        slide: &mut Slide,
+    ) -> Result<(), String> {
+        if self.periodic.is_empty() {
+            return Ok(());
+        }
+        let groups = file.groups().map_err(|error| error.to_string())?;
+        for names @ [a, b] in &self.periodic {
+            let refusal = |problem: &str| {
+                format!("{}: --periodic {}: {problem}", file.path().display(), names.join(","))
+            };
+            let find = |name: &str| {
+                let list = "`gpu-smooth groups` lists what can be named";
+                groups.find(name).map_err(|error| refusal(&format!("{error}. {list}")))
+            };
+            let sides = [find(a)?.vertices(), find(b)?.vertices()];
+            if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
+                return Err(refusal(
+                    "no translation or rotation takes all vertices of one to those of the other: \
+                     name two sides of the boundary with as many vertices",
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Lets vertices of a mesh slide. Returns a remark on it.
@@ -55,18 +107,36 @@ impl SlideArgs {
     ) -> Result<Option<String>, String> {
         let Some(slide) = self.slide(file)? else { return Ok(None) };
         let count = smoother.set_slide(Some(&slide)).map_err(|error| error.to_string())?;
-        let periodic = match file.is_periodic() {
-            true => "; the boundary stays, as the model is periodic",
-            false => "",
+        let [pairs, unlike] = smoother.pairs();
+        let mut text = match count {
+            0 => "--slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),
+            1 => "--slide: 1 vertex on the boundary or another line may slide".to_owned(),
+            n => format!("--slide: {n} vertices on the boundary and other lines may slide"),
         };
-        Ok(Some(match count {
-            0 => format!(
-                "--slide: no vertex can slide, as all on lines are corners or fixed{periodic}"
-            ),
-            1 => format!("--slide: 1 vertex on the boundary or another line may slide{periodic}"),
+        match pairs {
+            0 => {}
+            1 => text += ", 2 of them as a periodic pair",
+            n => text += &format!(", {} of them in {n} periodic pairs", 2 * n),
+        }
+        if has_lost_pairs(file, &slide) {
+            text += "; the boundary stays, as the model is periodic and its pairs are not known: \
+                     --periodic MARKER,MARKER names them";
+        }
+        match unlike {
+            0 => {}
+            1 => text += "; 1 pair stays, as it is not like the others",
             n => {
-                format!("--slide: {n} vertices on the boundary and other lines may slide{periodic}")
+                text += &format!(
+                    "; {n} pairs stay, as no translation or rotation takes one vertex to the other"
+                );
             }
-        }))
+        }
+        Ok(Some(text))
     }
+}
+
+/// Whether a file is periodic and no pairs of it are known.
+fn has_lost_pairs(file: &MeshFile, slide: &Slide) -> bool {
+    let has_some = file.has_unknown_pairs() || !file.periodic_motions().is_empty();
+    has_some && slide.periodic.is_empty()
 }

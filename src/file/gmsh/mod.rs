@@ -11,6 +11,7 @@ mod binary40;
 mod data;
 mod kind;
 mod model;
+mod periodic;
 mod text2;
 mod text4;
 mod text40;
@@ -156,8 +157,8 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
             name => {
-                if name == b"Periodic" {
-                    sink.periodic();
+                if name == b"Periodic" && sink.asks_for_pairs() {
+                    sink.pairs(encoding.and_then(|encoding| periodic::read(cursor, encoding)));
                 }
                 let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
                 if sink.asks_for_data() && !is_told {

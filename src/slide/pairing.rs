@@ -1,0 +1,151 @@
+//! Pairs of vertices found from where they are.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::periodic::{Motion, Periodic};
+use crate::slide::options::Slide;
+use crate::slide::partners::Partners;
+use crate::slide::rigid::Rigid;
+use crate::topology::Topology;
+
+/// The direction along which vertices are looked up: across the axes and other lines on which sides usually are. At most of length 1.
+const ACROSS: DVec2 = DVec2::new(0.796, 0.605);
+
+impl Slide {
+    /// Adds the pairs of vertices on the boundary of which a motion takes one to where the other is, with the vertices at `points`.
+    /// Returns how many it found: none if the motion is neither a translation nor a rotation, or leaves all where they are.
+    pub fn pair_by(
+        &mut self,
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        motion: Motion,
+    ) -> usize {
+        let boundary = Boundary::of(topology, points);
+        let Some(rigid) = Rigid::of(motion) else { return 0 };
+        let all: Vec<u32> = boundary.next.keys().copied().collect();
+        let mut pairs = boundary.pairs(rigid, &all, &all);
+        pairs.retain(|[a, b]| a != b);
+        let found = pairs.len();
+        if found > 0 {
+            self.periodic.push(Periodic { pairs, motion: Some(motion) });
+        }
+        found
+    }
+
+    /// Adds the pairs of vertices on two sides of the boundary, if one translation or rotation takes all vertices of one to those of the
+    /// other, with the vertices at `points`; what is inside on one side is then outside on the other. Returns how many it found, none if
+    /// there is no such motion. Of the vertices, in any order, those that are not on the boundary are left out.
+    pub fn pair_sides(
+        &mut self,
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        sides: [&[u32]; 2],
+    ) -> usize {
+        let boundary = Boundary::of(topology, points);
+        let [from, to] = sides.map(|side| boundary.listed(side));
+        let [mut ahead, mut back] = [boundary.runs(&from), boundary.runs(&to)];
+        if from.len() != to.len() || ahead.is_empty() {
+            return 0;
+        }
+        // The boundary goes along the other side in the opposite direction.
+        back.iter_mut().for_each(|run| run.reverse());
+        let run = ahead.swap_remove(0);
+        let matching = back.iter().filter(|other| other.len() == run.len());
+        for other in matching {
+            let pairs: Vec<[u32; 2]> = run.iter().zip(other).map(|(&a, &b)| [a, b]).collect();
+            let placed = |&[a, b]: &[u32; 2]| {
+                let edge = boundary.edge(a).min(boundary.edge(b));
+                ([boundary.at(a), boundary.at(b)], Partners::AGREE * edge)
+            };
+            let places: Vec<_> = pairs.iter().map(placed).collect();
+            let Some(rigid) = Rigid::of_pairs(None, &places) else { continue };
+            let pairs = boundary.pairs(rigid, &from, &to);
+            if pairs.len() == from.len() {
+                let found = pairs.len();
+                self.periodic.push(Periodic { pairs, motion: None });
+                return found;
+            }
+        }
+        0
+    }
+}
+
+/// The boundary of a mesh.
+struct Boundary<'p> {
+    points: &'p [[f64; 2]],
+    /// The vertex after each, with the mesh on the left, and the shorter one of the edges there; of several, any.
+    next: BTreeMap<u32, (u32, f64)>,
+}
+
+impl<'p> Boundary<'p> {
+    fn of(topology: &Topology<'_>, points: &'p [[f64; 2]]) -> Self {
+        let mut boundary = Self { points, next: BTreeMap::new() };
+        let mut edges = topology.boundary_edges();
+        edges.sort_unstable();
+        for &[from, to] in &edges {
+            let length = boundary.at(from).distance(boundary.at(to));
+            boundary.next.insert(from, (to, length));
+        }
+        for [from, to] in edges {
+            let length = boundary.at(from).distance(boundary.at(to));
+            if let Some((_, edge)) = boundary.next.get_mut(&to) {
+                *edge = edge.min(length);
+            }
+        }
+        boundary
+    }
+
+    fn at(&self, vertex: u32) -> DVec2 {
+        self.points[vertex as usize].into()
+    }
+
+    /// The length of the shorter edge at a vertex.
+    fn edge(&self, vertex: u32) -> f64 {
+        self.next.get(&vertex).map_or(0.0, |&(_, edge)| edge)
+    }
+
+    /// Those of some vertices that are on the boundary, ascending, each once.
+    fn listed(&self, vertices: &[u32]) -> Vec<u32> {
+        let mut listed: Vec<u32> =
+            vertices.iter().copied().filter(|v| self.next.contains_key(v)).collect();
+        listed.sort_unstable();
+        listed.dedup();
+        listed
+    }
+
+    /// The runs of vertices along the boundary, from end to end, of some that are listed, ascending. A run that is closed is left out.
+    fn runs(&self, listed: &[u32]) -> Vec<Vec<u32>> {
+        let after = |v: u32| {
+            let &(next, _) = self.next.get(&v)?;
+            listed.binary_search(&next).is_ok().then_some(next)
+        };
+        let mut has_before: Vec<u32> = listed.iter().filter_map(|&v| after(v)).collect();
+        has_before.sort_unstable();
+        let starts = listed.iter().filter(|v| has_before.binary_search(v).is_err());
+        let run = |&start: &u32| {
+            let run = std::iter::successors(Some(start), |&v| after(v));
+            run.take(listed.len()).collect()
+        };
+        starts.map(run).collect()
+    }
+
+    /// The pairs of which a motion takes the first, one of `from`, to where the second is, one of `to`.
+    fn pairs(&self, motion: Rigid, from: &[u32], to: &[u32]) -> Vec<[u32; 2]> {
+        let along = |point: DVec2| point.dot(ACROSS);
+        let mut sorted: Vec<(f64, u32)> = to.iter().map(|&v| (along(self.at(v)), v)).collect();
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let of = |&v: &u32| {
+            let there = motion.at(self.at(v));
+            let far = Partners::AGREE * self.edge(v);
+            let (low, high) = (along(there) - far, along(there) + far);
+            let start = sorted.partition_point(|&(way, _)| way < low);
+            let near = sorted[start..].iter().take_while(|&&(way, _)| way <= high);
+            let distance = |u: &u32| self.at(*u).distance(there);
+            let nearest = near.map(|&(_, u)| u).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            nearest.filter(|u| distance(u) <= far).map(|u| [v, u])
+        };
+        from.iter().filter_map(of).collect()
+    }
+}

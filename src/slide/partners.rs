@@ -1,0 +1,107 @@
+//! Which vertices of curves belong together in pairs, and which of those stay.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec2;
+
+use crate::periodic::Periodic;
+use crate::slide::rigid::Rigid;
+
+/// The vertex that another belongs together with, and the motion from there to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Partner {
+    pub(crate) vertex: u32,
+    pub(crate) motion: Rigid,
+}
+
+/// The pairs of a mesh.
+#[derive(Debug, Default)]
+pub(crate) struct Partners {
+    links: BTreeMap<u32, Vec<Partner>>,
+    /// Vertices that stay, as they are of no pair or of several.
+    stay: BTreeSet<u32>,
+    /// Number of pairs that the motion of the others does not take to one another.
+    pub(crate) unlike: usize,
+}
+
+impl Partners {
+    /// How far the second vertex of a pair may be from where the motion of all takes the first, in edges there.
+    pub(crate) const AGREE: f64 = 1e-4;
+
+    /// Sorts out the pairs that are given for vertices at `points`. `edge` is the length of a curve's edges at a vertex; of a vertex on no
+    /// curve it is 0.
+    pub(crate) fn new(
+        periodic: &[Periodic],
+        points: &[[f64; 2]],
+        edge: impl Fn(u32) -> f64,
+    ) -> Self {
+        let mut partners = Self::default();
+        for Periodic { pairs, motion } in periodic {
+            let placed = |&[a, b]: &[u32; 2]| {
+                let ends = [a, b].map(|v| DVec2::from(points[v as usize]));
+                (ends, Self::AGREE * edge(a).min(edge(b)))
+            };
+            let places: Vec<_> = pairs.iter().map(placed).collect();
+            let motion = Rigid::of_pairs(*motion, &places);
+            for (&[a, b], place) in pairs.iter().zip(&places) {
+                match motion.filter(|motion| motion.takes(place)) {
+                    Some(motion) => {
+                        partners.link(a, Partner { vertex: b, motion });
+                        partners.link(b, Partner { vertex: a, motion: motion.inverse() });
+                    }
+                    None => {
+                        // That a vertex off all curves moves by itself harms no other pair.
+                        partners.unlike += 1;
+                        partners.stay.extend([a, b]);
+                    }
+                }
+            }
+        }
+        partners.settle();
+        partners
+    }
+
+    fn link(&mut self, vertex: u32, to: Partner) {
+        let links = self.links.entry(vertex).or_default();
+        if to.vertex == vertex {
+            self.stay.insert(vertex);
+        } else if links.iter().all(|link| link.vertex != to.vertex) {
+            links.push(to);
+        }
+    }
+
+    /// Lets vertices of several pairs stay, and all that belong together with one that stays.
+    fn settle(&mut self) {
+        let several = self.links.iter().filter(|(_, links)| links.len() > 1);
+        self.stay.extend(several.map(|(&vertex, _)| vertex));
+        let mut new: Vec<u32> = self.stay.iter().copied().collect();
+        while let Some(vertex) = new.pop() {
+            for link in self.links.get(&vertex).into_iter().flatten() {
+                if self.stay.insert(link.vertex) {
+                    new.push(link.vertex);
+                }
+            }
+        }
+    }
+
+    /// Whether a vertex stays whatever its place.
+    pub(crate) fn stays(&self, vertex: u32) -> bool {
+        self.stay.contains(&vertex)
+    }
+
+    /// The partner of a vertex, if it has one.
+    pub(crate) fn of(&self, vertex: u32) -> Option<Partner> {
+        self.links.get(&vertex)?.first().copied()
+    }
+
+    /// Whether two vertices are a pair.
+    pub(crate) fn are_pair(&self, a: u32, b: u32) -> bool {
+        self.links.get(&a).into_iter().flatten().any(|link| link.vertex == b)
+    }
+
+    /// Whether a point near a vertex is where the motion to its partner takes another one, as closely as pairs have to agree where edges
+    /// have this length.
+    pub(crate) fn agree(motion: Rigid, pair: [DVec2; 2], edge: f64) -> bool {
+        motion.takes(&(pair, Self::AGREE * edge))
+    }
+}

@@ -1,0 +1,114 @@
+//! Rigid motions of the plane, and which one takes points to others.
+
+use glam::DVec2;
+
+use crate::periodic::Motion;
+
+/// How far a given motion may be from a rigid one, in lengths of its columns.
+const RIGID: f64 = 1e-6;
+/// The most pairs from which a motion is sought.
+const SAMPLES: usize = 16;
+
+/// A translation or a rotation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rigid {
+    /// Cosine and sine of the angle.
+    turn: DVec2,
+    from: DVec2,
+    /// Where `from` goes.
+    to: DVec2,
+}
+
+impl Rigid {
+    fn translation([from, to]: [DVec2; 2]) -> Self {
+        Self { turn: DVec2::X, from, to }
+    }
+
+    /// The motion that takes two points to two others, if these are as far from each other.
+    fn through([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], tolerance: f64) -> Option<Self> {
+        let (before, after) = (c - a, d - b);
+        let is_rigid = (before.length() - after.length()).abs() <= tolerance;
+        // The quotient of both as complex numbers.
+        let turn = DVec2::new(before.dot(after), before.perp_dot(after)).try_normalize()?;
+        is_rigid.then_some(Self { turn, from: a, to: b })
+    }
+
+    /// A motion that is given, if it is rigid.
+    pub(crate) fn of([x, y]: Motion) -> Option<Self> {
+        let [first, second] = [0, 1].map(|k| DVec2::new(x[k], y[k]));
+        let is_rigid =
+            (first.length() - 1.0).abs() <= RIGID && second.distance(first.perp()) <= RIGID;
+        let to = DVec2::new(x[2], y[2]);
+        (is_rigid && to.is_finite()).then(|| Self {
+            turn: first.normalize(),
+            from: DVec2::ZERO,
+            to,
+        })
+    }
+
+    /// Where a point goes.
+    pub(crate) fn at(self, point: DVec2) -> DVec2 {
+        self.to + self.turn.rotate(point - self.from)
+    }
+
+    /// The way back.
+    pub(crate) fn inverse(self) -> Self {
+        Self { turn: DVec2::new(self.turn.x, -self.turn.y), from: self.to, to: self.from }
+    }
+
+    /// The motion that takes the first point of most of these pairs to the second, within the tolerance of each: what is given if no other
+    /// serves more, then translations, then what two pairs tell.
+    pub(crate) fn of_pairs(given: Option<Motion>, pairs: &[([DVec2; 2], f64)]) -> Option<Self> {
+        let count = pairs.len();
+        let step = count.div_ceil(SAMPLES).max(1);
+        let samples = || (0..count).step_by(step);
+        let translations = samples().map(|i| Self::translation(pairs[i].0));
+        let turned = samples().filter_map(|i| {
+            let (first, tolerance) = pairs[i];
+            Self::through(first, pairs[(i + count.div_ceil(2)) % count].0, tolerance)
+        });
+        let mut best = None;
+        for motion in given.and_then(Self::of).into_iter().chain(translations).chain(turned) {
+            let agree = pairs.iter().filter(|pair| motion.takes(pair)).count();
+            if best.is_none_or(|(most, _)| agree > most) {
+                best = Some((agree, motion));
+            }
+            if agree == count {
+                break;
+            }
+        }
+        best.map(|(_, motion)| motion)
+    }
+
+    /// Whether the first point of a pair goes to the second, within its tolerance.
+    pub(crate) fn takes(self, ([from, to], tolerance): &([DVec2; 2], f64)) -> bool {
+        self.at(*from).distance(*to) <= *tolerance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_motion_of_most_pairs_is_found() {
+        let (sin, cos) = 0.7_f64.sin_cos();
+        let matrix = [[cos, -sin, 3.0], [sin, cos, -1.0]];
+        let there = Rigid::of(matrix).unwrap();
+        let points = (0..40).map(|k| DVec2::new(f64::from(k), f64::from(k % 7)));
+        let mut pairs: Vec<_> = points.map(|p| ([p, there.at(p)], 1e-9)).collect();
+        // A few that are not of it, and the first of all is one of them.
+        for k in [0, 16, 21] {
+            pairs[k].0[1] += DVec2::new(0.1, 0.0);
+        }
+        for given in [None, Some(matrix), Some([[1.0, 0.0, 5.0], [0.0, 1.0, 0.0]])] {
+            let found = Rigid::of_pairs(given, &pairs).unwrap();
+            assert_eq!(pairs.iter().filter(|pair| found.takes(pair)).count(), 37, "{given:?}");
+            let p = DVec2::new(-2.0, 9.0);
+            assert!(found.inverse().at(found.at(p)).distance(p) < 1e-12);
+        }
+        assert!(Rigid::of([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]).is_none());
+        assert!(Rigid::of([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]).is_none(), "a reflection");
+        assert!(Rigid::of([[f64::NAN; 3]; 2]).is_none() && Rigid::of_pairs(None, &[]).is_none());
+    }
+}
