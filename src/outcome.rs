@@ -66,7 +66,7 @@ pub struct Improved {
     /// The worst triangle with a free vertex after the last sweep, and as returned: an inverse mean ratio, an angle in degrees, or an
     /// altitude in the unit of the mesh.
     pub worst: [f64; 2],
-    /// Number of triangles that are worse than that and have no free vertex, so that nothing can be done for them.
+    /// Number of triangles that are worse than that and have no vertex that is free or may slide, so that nothing can be done for them.
     pub stuck: usize,
     /// The objective by the base metric after the last sweep, and as returned.
     pub f: [f64; 2],

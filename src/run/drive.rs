@@ -41,6 +41,9 @@ pub enum Phase {
     Reference,
     /// The smoothing of the mesh.
     Smoothing,
+    /// The stage after the last sweep in which the worst triangles are improved
+    /// ([`Options::improve_worst`](crate::Options::improve_worst)): it goes from pass to pass, and no sweep is done.
+    Improving,
 }
 
 /// Whether the sweeps of a run are corrected.

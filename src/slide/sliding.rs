@@ -8,6 +8,7 @@ use crate::run::Step;
 use crate::slide::chains::chains;
 use crate::slide::newton::{self, Reach, Window};
 use crate::slide::options::Slide;
+use crate::slide::patch::Fan;
 use crate::slide::side::Side;
 use crate::topology::Topology;
 
@@ -92,6 +93,15 @@ impl Sliding {
     pub(crate) fn count(&self) -> usize {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         sides.flat_map(|side| &side.fans).flatten().count()
+    }
+
+    /// The vertices that slide, as a problem numbers them, ascending.
+    pub(crate) fn vertices(&self) -> Vec<u32> {
+        let sides = self.tracks.iter().flat_map(|track| &track.sides);
+        let fans = sides.flat_map(|side| &side.fans).flatten();
+        let mut vertices: Vec<u32> = fans.map(Fan::own).collect();
+        vertices.sort_unstable();
+        vertices
     }
 
     /// How many pairs of them there are, and how many pairs stay as they are not alike.

@@ -14,6 +14,7 @@ use crate::run::{
     Checkpoint, Goal, JITTER, Keeper, Keeping, NOISE, Objectives, Observer, Options, Phase,
     ROUNDING, Stop,
 };
+use crate::slide::Sliding;
 use crate::whole::{Attempt, Ended, Improving, altitude};
 
 use super::Smoother;
@@ -62,7 +63,7 @@ impl Smoother<'_> {
         let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing, done: 0 };
         let mut ways = Ways::new(self, options);
         let ended = ways.sweep(run, (options, target), resumed, &mut keeping, observe).await?;
-        let outcome = self.judged(options, (initial, goal), ended, ways)?;
+        let outcome = self.judged(options, (initial, goal), ended, ways, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
     }
@@ -93,6 +94,7 @@ impl Smoother<'_> {
         (initial, goal): (f64, Option<GoalOutcome>),
         mut ended: Ended,
         mut ways: Ways<'_>,
+        observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let base = options.scheme.base();
         let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);
@@ -102,13 +104,8 @@ impl Smoother<'_> {
             false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
         };
         let swept = f(best_sweep);
-        let improving = Improving::after(
-            ended.stop,
-            options,
-            ways.problem(),
-            ways.bounds(),
-            &mut ended.positions,
-        );
+        let improving =
+            Improving::after(&mut ended, options, ways.problem(), ways.bounds(), observe);
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         let mut points = self.problem.denormalize(&self.mesh, &ended.positions);
         ways.slide_into(&mut points);
@@ -140,9 +137,10 @@ impl Smoother<'_> {
         }
         let slid = ways.slid(gains, &points);
         let best = if gains { written } else { initial };
+        let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         let improved = improving.map(|improving| {
             let positions = if gains { &judged } else { self.problem.positions() };
-            improving.outcome(problem, (positions, best), gains)
+            improving.outcome(problem, (positions, best), &slides, gains)
         });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);

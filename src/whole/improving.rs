@@ -5,9 +5,10 @@ use glam::DVec2;
 use crate::cpu::mean_excess;
 use crate::layout::Problem;
 use crate::outcome::Improved;
-use crate::run::{NOISE, Options, Stop, WorstBy};
+use crate::run::{NOISE, Observer, Options, Phase, Progress, Stop, WorstBy};
 use crate::whole::altitude;
-use crate::worst::{Badness, Rules, improve, worst_movable};
+use crate::whole::attempt::Ended;
+use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
 
 /// How much rounding may add to the worst inverse mean ratio, as a share.
 const ROUNDING: f64 = 1e-9;
@@ -24,24 +25,26 @@ pub(crate) struct Improving {
 }
 
 impl Improving {
-    /// Improves the worst triangles of a mesh with its vertices at `positions`, where a run has stopped, if its options ask for that. No
-    /// vertex goes farther than `bounds` from where the run began.
+    /// Improves the worst triangles of a mesh where a run has ended, if its options ask for that. No vertex goes farther than `bounds` from
+    /// where the run began. Where the observer ends it, the run counts as cancelled.
     pub(crate) fn after(
-        stop: Stop,
+        ended: &mut Ended,
         options: &Options,
         problem: &Problem,
         bounds: Option<&[f64]>,
-        positions: &mut [DVec2],
+        observe: &mut (impl Observer + ?Sized),
     ) -> Option<Self> {
         let badness = Badness(options.improve_worst?);
-        if matches!(stop, Stop::Cancelled | Stop::NotFinite) {
+        if matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) {
             return None;
         }
         let base = options.scheme.base();
         let f = |positions: &[DVec2]| base.ideal_squared() + mean_excess(base, problem, positions);
+        let sweep = ended.history.len() as u32 - 1;
+        let Ended { positions, stop, .. } = ended;
         let before = f(positions);
-        let (worst_before, _) = worst_movable(problem, badness, positions);
-        let (worst_shape, _) = worst_movable(problem, Badness(WorstBy::Imr), positions);
+        let worst_before = worst_movable(problem, badness, positions);
+        let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions);
         let rules = Rules {
             badness,
             step: options.plan().base_step(1.0),
@@ -49,25 +52,35 @@ impl Improving {
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds,
         };
-        let vertices = improve(problem, &rules, positions);
+        let goes_on = |positions: &[DVec2]| {
+            let progress = Progress { phase: Phase::Improving, sweep, f: f(positions) };
+            let is_left = observe(&progress).is_break();
+            if is_left {
+                *stop = Stop::Cancelled;
+            }
+            !is_left
+        };
+        let vertices = improve(problem, &rules, positions, goes_on);
         Some(Self { badness, vertices, worst: worst_before, f: [before, f(positions)] })
     }
 
     /// Whether the worst triangle is better than in the mesh before the run.
     pub(crate) fn is_better(&self, problem: &Problem, positions: &[DVec2]) -> bool {
-        let worst = |positions| worst_movable(problem, self.badness, positions).0;
+        let worst = |positions| worst_movable(problem, self.badness, positions);
         self.vertices > 0 && worst(positions) < worst(problem.positions()) * (1.0 - NOISE)
     }
 
     /// What is to be told of the stage, with the vertices at `positions` as they are written, where the objective is f. Nothing came of it if
-    /// that is the mesh before the run.
+    /// that is the mesh before the run. `slides` are the vertices that may slide, as the problem numbers them, ascending.
     pub(crate) fn outcome(
         &self,
         problem: &Problem,
         (positions, f): (&[DVec2], f64),
+        slides: &[u32],
         is_written: bool,
     ) -> Improved {
-        let (now, stuck) = worst_movable(problem, self.badness, positions);
+        let now = worst_movable(problem, self.badness, positions);
+        let stuck = stuck(problem, self.badness, positions, slides);
         let [now, before] = [now, self.worst].map(|worst| self.badness.meaning(worst, problem));
         let by = self.badness.0;
         match is_written {

@@ -7,4 +7,4 @@ mod stage;
 
 pub(crate) use badness::Badness;
 pub(crate) use patch::Rules;
-pub(crate) use stage::{improve, worst_movable};
+pub(crate) use stage::{improve, stuck, worst_movable};

@@ -22,19 +22,36 @@ const PASSES: u32 = 10;
 /// or one in which the worst badness of the mesh fell by less than this share. Of imr it is half as much.
 const LEAST_GAIN: f64 = 0.01;
 
-/// The largest badness of a triangle with a free vertex, and the number of triangles without one that are worse.
-pub(crate) fn worst_movable(
+/// The largest badness of a triangle with a free vertex.
+pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
+    worst_of(problem, &all(problem, badness, positions))
+}
+
+fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
+    let movable = problem.triangles().iter().zip(badness).filter(|(t, _)| is_movable(problem, t));
+    movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
+}
+
+/// Whether a triangle has a free vertex.
+fn is_movable(problem: &Problem, triangle: &[u32; 3]) -> bool {
+    triangle.iter().any(|&v| (v as usize) < problem.free_count())
+}
+
+/// The number of triangles worse than the worst that has a free vertex, none of whose vertices is free or among those that slide,
+/// ascending.
+pub(crate) fn stuck(
     problem: &Problem,
     badness: Badness,
     positions: &[DVec2],
-) -> (f64, usize) {
+    slides: &[u32],
+) -> usize {
     let all = all(problem, badness, positions);
-    let free = problem.free_count() as u32;
-    let can_move = |t: usize| problem.triangles()[t].iter().any(|&v| v < free);
-    let movable = all.iter().enumerate().filter(|(t, _)| can_move(*t));
-    let worst = movable.map(|(_, badness)| *badness).fold(0.0, f64::max);
-    let is_worse = |(t, badness): &(usize, &f64)| **badness > worst && !can_move(*t);
-    (worst, all.iter().enumerate().filter(is_worse).count())
+    let worst = worst_of(problem, &all);
+    let stays = |t: &[u32; 3]| {
+        !is_movable(problem, t) && t.iter().all(|v| slides.binary_search(v).is_err())
+    };
+    let pairs = problem.triangles().iter().zip(&all);
+    pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
 }
 
 /// The badness of every triangle.
@@ -50,9 +67,14 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
 }
 
 /// Improves the worst triangles of a mesh with its vertices at `positions`: each patch around some of them by itself, for as long as the
-/// worst of all becomes less bad. No triangle becomes worse than the worst of its patch was. Returns the number of vertices that
-/// have moved.
-pub(crate) fn improve(problem: &Problem, rules: &Rules<'_>, positions: &mut [DVec2]) -> usize {
+/// worst of all becomes less bad and, asked before each pass, `goes_on` says so. No triangle becomes worse than the worst of its patch
+/// was. Returns the number of vertices that have moved.
+pub(crate) fn improve(
+    problem: &Problem,
+    rules: &Rules<'_>,
+    positions: &mut [DVec2],
+    mut goes_on: impl FnMut(&[DVec2]) -> bool,
+) -> usize {
     let free = problem.free_count() as u32;
     let mut has_moved = vec![false; free as usize];
     let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MOST);
@@ -71,7 +93,7 @@ pub(crate) fn improve(problem: &Problem, rules: &Rules<'_>, positions: &mut [DVe
         }
         let worst = bad.iter().map(|&t| badness[t as usize]).fold(0.0, f64::max);
         let is_better = worst < last * (1.0 - LEAST_GAIN);
-        if !is_better {
+        if !is_better || !goes_on(positions) {
             break;
         }
         last = worst;

@@ -2,7 +2,11 @@
 
 use crate::support::{self, check};
 use crate::{backends, distorted, name, plate, run, with_points};
-use gpu_smooth::{Backend, Change, Mesh, Metric, Options, Outcome, Smoother, Targets, WorstBy};
+use gpu_smooth::{
+    Backend, Change, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop,
+    Targets, WorstBy,
+};
+use std::ops::ControlFlow;
 
 /// The least angle of a triangle, in degrees, by the law of cosines.
 fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
@@ -142,4 +146,63 @@ fn what_cannot_be_improved_stays() {
     let mut leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
     let outcome = smoother.run(&options, &Backend::Cpu, &mut leave).unwrap();
     assert_eq!(outcome.improved, None);
+}
+
+#[test]
+fn the_stage_ends_where_the_observer_says_so() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
+    let whole = run(&smoother, &options, &Backend::Cpu);
+    let passes_before_it_ends = |most: u32| {
+        let mut passes = 0;
+        let mut observe = |progress: &Progress| {
+            passes += u32::from(progress.phase == Phase::Improving);
+            match passes > most {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        let outcome = smoother.run(&options, &Backend::Cpu, &mut observe).unwrap();
+        (outcome, passes)
+    };
+    let (outcome, passes) = passes_before_it_ends(u32::MAX);
+    assert_eq!((outcome.stop, &outcome.points), (whole.stop, &whole.points));
+    assert!(passes > 1, "{passes}");
+    let (outcome, _) = passes_before_it_ends(0);
+    let told = outcome.improved.unwrap();
+    assert_eq!((outcome.stop, told.vertices), (Stop::Cancelled, 0));
+    assert_eq!(told.worst[0], told.worst[1]);
+    // What a pass has gained is kept.
+    let (outcome, _) = passes_before_it_ends(1);
+    let told = outcome.improved.unwrap();
+    assert_eq!(outcome.stop, Stop::Cancelled);
+    assert!(told.vertices > 0 && told.worst[1] < told.worst[0], "{told:?}");
+}
+
+/// A triangle on the boundary without a free vertex is stuck only if none of its corners may slide.
+#[test]
+fn a_triangle_whose_corners_may_slide_is_not_stuck() {
+    // Six fields in two rows around a free vertex, and a flat triangle on top of one side, in whose straight outline one vertex slides.
+    let mut points: Vec<[f64; 2]> =
+        (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
+    points.push([0.0, 0.0]);
+    let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
+    // Beyond the side from 0 to 1, whose far corner is halfway along an outline from 0 on.
+    let [a, b] = [points[0], points[1]];
+    let out = [a[0] + 0.5, a[1]];
+    let far = [a[0] + 1.0, a[1]];
+    points.extend([out, far]);
+    triangles.extend([[0, 7, 1], [7, 8, 1]]);
+    assert!(b[1] > 0.0);
+    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let stuck = |smoother: &Smoother| {
+        let options = Options { max_sweeps: 0, ..Options::default() };
+        improved(smoother, WorstBy::Imr, options, &Backend::Cpu).improved.unwrap().stuck
+    };
+    assert_eq!(stuck(&smoother), 2);
+    let slide = Slide { corner_angle: 20.0, ..Slide::default() };
+    assert_eq!(smoother.set_slide(Some(&slide)).unwrap(), 1);
+    assert_eq!(stuck(&smoother), 0);
 }

@@ -212,6 +212,7 @@ impl State {
                 match phase {
                     Phase::Reference => format!("finding the optimum: sweep {sweep}  {figures}"),
                     Phase::Smoothing => format!("sweep {sweep}/{}  {figures}", self.max_sweeps),
+                    Phase::Improving => format!("improving the worst triangles: f {f:.7}"),
                 }
             }
             (stage, _) => {
