@@ -99,6 +99,11 @@ impl Background {
         linear(spot.found.corners.map(of), spot.found.weights)
     }
 
+    /// The least and the largest first coordinate of the background.
+    pub(crate) fn breadth(&self) -> [f64; 2] {
+        [self.seeds.low[0], self.seeds.low[0] + self.seeds.size[0]]
+    }
+
     /// How long the background is in the longer of its directions.
     pub(crate) fn extent(&self) -> f64 {
         self.seeds.size[0].max(self.seeds.size[1])

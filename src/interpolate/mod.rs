@@ -4,5 +4,5 @@ mod background;
 mod interpolation;
 mod locate;
 
-pub(crate) use background::Background;
+pub(crate) use background::{Background, Spot};
 pub use interpolation::Interpolation;

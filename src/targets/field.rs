@@ -1,10 +1,11 @@
 //! Targets of places, on a mesh of their own.
 
 use crate::error::MeshError;
-use crate::interpolate::Background;
+use crate::interpolate::{Background, Spot};
 use crate::mesh::Mesh;
 use crate::parallel::collect;
 use crate::targets::Targets;
+use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
 
 /// What elements are to look like at each place: targets at the vertices of some mesh, which may be the one that is smoothed or
@@ -26,7 +27,12 @@ pub struct TargetField {
     background: Background,
     /// The logarithm of the target map of each vertex of the background.
     logarithms: Vec<Tensor>,
+    /// What coordinates are, if targets are in lengths there.
+    surface: Surface,
 }
+
+/// A full turn, in degrees.
+const TURN: f64 = 360.0;
 
 /// The places that are not within the mesh of a [`TargetField`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,7 +53,56 @@ impl TargetField {
         targets.check_count(mesh.points.len())?;
         let maps = targets.maps();
         let logarithms = collect(maps.len(), |v| maps[v].ln());
-        Ok(Self { background: Background::new(mesh)?, logarithms })
+        Ok(Self { background: Background::new(mesh)?, logarithms, surface: Surface::Plane })
+    }
+
+    /// The same field where coordinates are those of a surface: what was wanted in lengths of the surface, at each place in its
+    /// coordinates. Longitudes that differ by whole turns tell the same place. So a mesh and the one that carries its targets may each
+    /// have its longitudes in a range of its own, and be continued across the line where longitudes start again as a
+    /// [`Chart`](crate::Chart) does. Not for targets that are in coordinates already, by [`Targets::seen_on`] or otherwise.
+    pub fn seen_on(self, surface: Surface) -> Self {
+        Self { surface, ..self }
+    }
+
+    /// Finds places: of those that whole turns lead to, the one that is within the background or nearest to it.
+    fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
+        if self.surface == Surface::Plane {
+            return self.background.find(places);
+        }
+        let [west, east] = self.background.breadth();
+        // How far a longitude is from those of the background, which is known before the place there is looked for.
+        let apart = |x: f64| (west - x).max(x - east).max(0.0);
+        let turned = |i: usize| {
+            let [x, y] = places[i];
+            // A place among the background's longitudes is looked for there first, as it is.
+            let east_of_west = x + TURN * ((west - x) / TURN).ceil();
+            let mut turns = [x, east_of_west, east_of_west - TURN, east_of_west + TURN];
+            turns.sort_by(|a, b| apart(*a).total_cmp(&apart(*b)));
+            turns.map(|x| [x, y])
+        };
+        let turned = collect(places.len(), turned);
+        let mut spots = self.background.find(&turned.iter().map(|t| t[0]).collect::<Vec<_>>())?;
+        let rounding = self.rounding();
+        for next in 1..4 {
+            let may_be_nearer = |&i: &usize| {
+                let [before, turn] = [next - 1, next].map(|k| turned[i][k][0]);
+                let outside = spots[i].outside;
+                outside > rounding && apart(turn) < outside && turn != before
+            };
+            let left: Vec<usize> = (0..places.len()).filter(may_be_nearer).collect();
+            let others: Vec<[f64; 2]> = left.iter().map(|&i| turned[i][next]).collect();
+            for (i, spot) in left.into_iter().zip(self.background.find(&others)?) {
+                if spot.outside < spots[i].outside {
+                    spots[i] = spot;
+                }
+            }
+        }
+        Ok(spots)
+    }
+
+    /// By how much rounding may put a place outside of the background.
+    fn rounding(&self) -> f64 {
+        1e-9 * self.background.extent()
     }
 
     /// The targets of these places.
@@ -55,14 +110,18 @@ impl TargetField {
     /// # Errors
     /// [`MeshError::NotFinite`] for a place that is not finite.
     pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, Outside), MeshError> {
-        let spots = self.background.find(places)?;
+        let spots = self.find(places)?;
         let map = |i: usize| {
             let value =
                 |k: usize| self.background.value(&spots[i], |v| self.logarithms[v as usize].0[k]);
-            Tensor([0, 1, 2].map(value)).exp()
+            let map = Tensor([0, 1, 2].map(value)).exp();
+            match self.surface {
+                Surface::Plane => map,
+                surface => map.squared().stretched(surface.lengths(places[i][1])).sqrt(),
+            }
         };
         let maps = collect(spots.len(), map);
-        let rounding = 1e-9 * self.background.extent();
+        let rounding = self.rounding();
         let far = spots.iter().map(|spot| spot.outside).filter(|outside| *outside > rounding);
         let outside = far.fold(Outside::default(), |all, outside| Outside {
             count: all.count + 1,

@@ -108,6 +108,9 @@ impl Targets {
             return Err(MeshError::PointCount { given: points.len(), expected: self.maps.len() });
         }
         surface.check(points, triangles)?;
+        if surface == Surface::Plane {
+            return Ok(self);
+        }
         for (map, &[_, y]) in self.maps.iter_mut().zip(points) {
             *map = map.squared().stretched(surface.lengths(y)).sqrt();
         }

@@ -107,3 +107,69 @@ fn what_is_across_the_line_is_refused_with_the_way_out_elsewhere() {
         .line("in.gr3 out.gr3 --engine cpu --surface sphere -q")
         .refused(&["in.gr3:6: triangle 1 has a pole of the sphere inside of it", "projection"]);
 }
+
+/// The sizes of a background are the same whichever way it has its longitudes, and whether it goes around the globe or not.
+#[test]
+fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
+    // Depths are sizes, of which none is 0; longitudes are from -180 or from 0 on.
+    let rewritten = |text: &str, from: f64| {
+        let row = |row: &str| match row.split(' ').collect::<Vec<_>>()[..] {
+            [number, x, y, depth] => {
+                let [x, depth] = [x, depth].map(|number| number.parse::<f64>().unwrap());
+                format!("{number} {} {y} {}\n", (x - from).rem_euclid(360.0) + from, depth + 100.0)
+            }
+            _ => format!("{row}\n"),
+        };
+        text.lines().map(row).collect::<String>()
+    };
+    let part = rewritten(&band(9, false), -180.0);
+    // There nothing is across a line.
+    let turned = rewritten(&band(9, false), 0.0);
+    let view = |text: &str| {
+        let rows: Vec<Vec<f64>> = text
+            .lines()
+            .skip(2)
+            .filter_map(|row| row.split(' ').map(|x| x.parse().ok()).collect())
+            .collect();
+        let triangles = rows.iter().filter(|row| row.len() == 5);
+        let one = |row: &Vec<f64>| {
+            let corners = [2, 3, 4].map(|k| &rows[row[k] as usize - 1]);
+            let places = corners.map(|row| format!("{},{},0", row[1], row[2])).join(",");
+            format!("ST({places}){{{}}};\n", corners.map(|row| row[3].to_string()).join(","))
+        };
+        format!("View \"sizes\" {{\n{}}};\n", triangles.map(one).collect::<String>())
+    };
+    let folder = Folder::new(&[
+        ("in.gr3", &part),
+        ("turned.gr3", &turned),
+        ("globe.gr3", &rewritten(&band(COLUMNS, true), -180.0)),
+        ("sizes.pos", &view(&part)),
+    ]);
+    let f = |mesh: &str, target: &str| {
+        let options = "--engine cpu --surface sphere --report r.json";
+        let run = folder.line(&format!("{mesh} out.gr3 {options} --target {target}"));
+        assert_eq!(run.code, Some(0), "{target}: {}", run.err);
+        assert!(!run.err.contains("outside of"), "{}", run.err);
+        let report = folder.json("r.json");
+        assert!(number(&report["certificate"]["moved"]) > 25.0);
+        let f = &report["target"]["f"];
+        [number(&f[0]), number(&f[1])]
+    };
+    let own = f("in.gr3", "size=depth --target-of place");
+    assert!(own[1] < own[0], "{own:?}");
+    for (mesh, target) in [
+        ("in.gr3", "size=in.gr3:depth"),
+        ("in.gr3", "size=turned.gr3:depth"),
+        ("turned.gr3", "size=in.gr3:depth"),
+        ("in.gr3", "size=sizes.pos"),
+        ("turned.gr3", "size=sizes.pos"),
+    ] {
+        let f = f(mesh, target);
+        assert!((0..2).all(|k| (f[k] / own[k] - 1.0).abs() < 1e-6), "{target}: {f:?} {own:?}");
+    }
+    // Around the globe with a pole, of which other vertices are off their places.
+    let around = f("in.gr3", "size=globe.gr3:depth");
+    assert!((around[0] / own[0] - 1.0).abs() < 0.1, "{around:?} {own:?}");
+    let both = f("globe.gr3", "size=globe.gr3:depth");
+    assert!(both[1] < both[0], "{both:?}");
+}

@@ -3,8 +3,8 @@
 use crate::support;
 use crate::{backends, history, name, run};
 use gpu_smooth::{
-    Backend, Desired, Goal, Mesh, Metric, Options, Slide, SmoothError, Smoother, Stop, TargetField,
-    Targets,
+    Backend, Desired, Goal, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop,
+    Surface, TargetField, Targets,
 };
 use std::ops::ControlFlow;
 
@@ -93,4 +93,45 @@ fn what_does_not_go_with_a_field_is_refused() {
     refused(&smoother, &Options { scheme: Metric::Edge.into(), ..Options::default() });
     smoother.set_slide(Some(&Slide::default())).unwrap();
     refused(&smoother, &Options::default());
+}
+
+/// A strip from 170 to 190 degrees east, as a chart has it, with sizes that grow to the east.
+#[test]
+fn places_around_the_globe_are_found_whichever_way_longitudes_are_written() {
+    let mut points = Vec::new();
+    let mut triangles = Vec::new();
+    for column in 0..=10_u32 {
+        let x = 170.0 + 2.0 * f64::from(column);
+        points.extend([[x, 0.0], [x, 5.0]]);
+        if column < 10 {
+            let a = 2 * column;
+            triangles.extend([[a, a + 2, a + 3], [a, a + 3, a + 1]]);
+        }
+    }
+    let sizes: Vec<f64> = points.iter().map(|[x, _]| (0.1 * (x - 170.0)).exp()).collect();
+    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let field = TargetField::new(&mesh, &Targets::sizes(&sizes).unwrap()).unwrap();
+    let places = [[171.0, 1.0], [179.5, 4.0], [180.5, 2.0], [189.0, 3.0]];
+    let written = places.map(|[x, y]| [if x > 180.0 { x - 360.0 } else { x }, y]);
+    let (flat, outside) = field.at(&written).unwrap();
+    assert_eq!(outside.count, 2);
+    let field = field.seen_on(Surface::Sphere);
+    let (wanted, outside) = field.at(&places).unwrap();
+    assert_eq!(outside.count, 0);
+    assert_ne!(flat, wanted, "a degree of longitude is shorter there");
+    for turns in [-360.0, 0.0, 360.0, 720.0] {
+        let turned = written.map(|[x, y]| [x + turns, y]);
+        let (found, outside) = field.at(&turned).unwrap();
+        assert_eq!(outside.count, 0, "{turns}");
+        assert_eq!(found, wanted, "{turns}");
+    }
+    // Outside, the nearer end counts: it is at 190 degrees east of one, and at 170 of the other.
+    let ends = [[-169.0, 1.0], [169.0, 1.0], [-100.0, 1.0], [100.0, 1.0]];
+    let (found, outside) = field.at(&ends).unwrap();
+    let ends = [[190.0, 1.0], [170.0, 1.0], [190.0, 1.0], [170.0, 1.0]];
+    let (wanted, _) = field.at(&ends).unwrap();
+    assert_eq!(found, wanted);
+    assert_eq!((outside.count, outside.most), (4, 70.0));
+    let wrong = field.at(&[[0.0, 0.0], [f64::NAN, 0.0]]);
+    assert!(matches!(wrong, Err(MeshError::NotFinite { vertex: 1 })), "{wrong:?}");
 }

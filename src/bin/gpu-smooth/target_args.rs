@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{
-    Mesh, MeshError, MeshFile, Metric, Outside, Smoother, Solution, Surface, TargetField, Targets,
-    View,
+    Chart, Mesh, MeshError, MeshFile, Metric, Outside, Precision, Smoother, Solution, Surface,
+    TargetField, Targets, View,
 };
 
 use crate::explain;
@@ -136,7 +136,7 @@ impl TargetArgs {
     ) -> Result<Option<String>, String> {
         let told = |error: MeshError| explain::mesh_error(file, &error);
         if let Some((path, data)) = self.background() {
-            let field = self.field(path, data, file)?;
+            let field = self.field(path, data)?;
             let outside = match self.is_of_places() {
                 true => smoother.set_target_field(field).map_err(told)?,
                 false => {
@@ -147,86 +147,89 @@ impl TargetArgs {
             };
             return Ok(remark(path, outside));
         }
-        let Some(targets) = self.targets(file, smoother, points, told)? else { return Ok(None) };
+        let Some((targets, surface)) = self.targets(file, smoother, points, told)? else {
+            return Ok(None);
+        };
         if !self.is_of_places() {
-            return smoother.set_targets(&targets).map(|()| None).map_err(told);
+            let seen = targets.seen_on(surface, points, &file.mesh().triangles);
+            let set = seen.and_then(|targets| smoother.set_targets(&targets));
+            return set.map(|()| None).map_err(told);
         }
         let triangles = smoother.topology().triangles().to_vec();
         let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
-        let field = TargetField::new(&mesh, &targets).map_err(told)?;
+        let field = TargetField::new(&mesh, &targets).map_err(told)?.seen_on(surface);
         smoother.set_target_field(field).map(|_| None).map_err(told)
     }
 
     /// The targets on a mesh of their own.
-    fn field(&self, path: &Path, data: &str, file: &MeshFile) -> Result<TargetField, String> {
+    fn field(&self, path: &Path, data: &str) -> Result<TargetField, String> {
         if data.is_empty() {
-            return self.field_of_view(path, file);
+            return self.field_of_view(path);
         }
         let mut background =
             MeshFile::read(path).map_err(|error| format!("the background of --target: {error}"))?;
         self.surface.lay_out(&mut background)?;
-        if background.chart().or(file.chart()).is_some() {
-            return Err(format!(
-                "{}: a mesh across the line where longitudes start again is neither a background nor has one: give sizes for its vertices (--target)",
-                path.display()
-            ));
-        }
         let targets = match &self.target {
             Target::Metric { .. } => Targets::tensors(given(&background, data, 3)?.as_chunks().0),
             _ => Targets::sizes(&given(&background, data, 1)?),
         };
         let mesh = background.mesh();
         targets
-            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points, &mesh.triangles))
             .and_then(|targets| TargetField::new(mesh, &targets))
+            .map(|field| field.seen_on(self.surface()))
             .map_err(|error| explain::mesh_error(&background, &error))
     }
 
     /// The sizes of a view.
-    fn field_of_view(&self, path: &Path, file: &MeshFile) -> Result<TargetField, String> {
+    fn field_of_view(&self, path: &Path) -> Result<TargetField, String> {
         let told = |problem: String| format!("the background of --target: {problem}");
         let view = View::read(path).map_err(|error| told(error.to_string()))?;
         let name = path.display();
         if matches!(self.target, Target::Metric { .. }) {
             return Err(told(format!("{name}: a view has sizes: take size={name}")));
         }
-        if file.chart().is_some() {
-            return Err(told(format!(
-                "{name}: a mesh across the line where longitudes start again has no background: give sizes for its vertices"
-            )));
-        }
-        let mesh = view.mesh();
-        Targets::sizes(view.values())
-            .and_then(|targets| targets.seen_on(self.surface(), &mesh.points, &mesh.triangles))
+        let told_of =
+            |error: MeshError| told(format!("{name}: {error}, in the order of places in the file"));
+        let chart = match self.surface() {
+            Surface::Plane => None,
+            Surface::Sphere => Chart::new(view.mesh(), Precision::Double).map_err(told_of)?,
+        };
+        let (mesh, values) = match &chart {
+            Some(chart) => (chart.mesh(), chart.extended(view.values(), 1)),
+            None => (view.mesh(), view.values().to_vec()),
+        };
+        Targets::sizes(&values)
             .and_then(|targets| TargetField::new(mesh, &targets))
-            .map_err(|error| told(format!("{name}: {error}, in the order of places in the file")))
+            .map(|field| field.seen_on(self.surface()))
+            .map_err(told_of)
     }
 
+    /// The targets of the vertices, and the surface in whose lengths they are, if they are not in its coordinates.
     fn targets(
         &self,
         file: &MeshFile,
         smoother: &Smoother<'_>,
         points: &[[f64; 2]],
         told: impl Fn(MeshError) -> String,
-    ) -> Result<Option<Targets>, String> {
+    ) -> Result<Option<(Targets, Surface)>, String> {
         let surface = self.surface();
         let (topology, rings) = (smoother.topology(), self.target_rings);
+        let in_coordinates = |targets| (targets, Surface::Plane);
         let targets = match &self.target {
             Target::Equilateral if surface == Surface::Plane => return Ok(None),
-            Target::Equilateral => Ok(Targets::equilateral(points.len())),
-            Target::KeepSize => Targets::keep_size(topology, points, surface, rings),
+            Target::Equilateral => Ok((Targets::equilateral(points.len()), surface)),
+            Target::KeepSize => Targets::keep_size(topology, points, surface, rings)
+                .map(|targets| (targets, surface)),
             // Shapes are those that the coordinates have.
-            Target::KeepShape => {
-                return Targets::keep_shape(topology, points, rings).map(Some).map_err(told);
+            Target::KeepShape => Targets::keep_shape(topology, points, rings).map(in_coordinates),
+            Target::Size { source } => {
+                Targets::sizes(&given(file, source, 1)?).map(|targets| (targets, surface))
             }
-            Target::Size { source } => Targets::sizes(&given(file, source, 1)?),
             Target::Metric { source } => {
                 let values = given(file, source, 3)?;
-                Targets::tensors(values.as_chunks().0)
+                Targets::tensors(values.as_chunks().0).map(|targets| (targets, surface))
             }
         };
-        let triangles = &file.mesh().triangles;
-        let targets = targets.and_then(|targets| targets.seen_on(surface, points, triangles));
         targets.map(Some).map_err(told)
     }
 }
