@@ -58,8 +58,7 @@ pub(crate) fn chains(
                 || !is_flat(v) && bends()
         }
     };
-    let must_stay =
-        |v: u32| partners.stays(v) || with_partner(v).any(|vertex| is_corner_itself(vertex));
+    let must_stay = |v: u32| partners.stays(v) || with_partner(v).any(is_corner_itself);
     // Whether the curve of a vertex's partner goes to both sides of it as that of the vertex does, and is of the same pairs.
     let is_matched = |v: u32, Partner { vertex: partner, motion }: Partner| {
         let goes_on = |from: u32, to: u32| {

@@ -113,12 +113,11 @@ impl Smoother<'_> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
-        while options.keep_altitude {
-            let low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
+        // Where one of a pair goes back its partner does, which may make another triangle too flat.
+        let mut low = usize::from(options.keep_altitude);
+        while low > 0 {
+            low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
             returned += low + self.certify(&mut points)?;
-            if low == 0 {
-                break;
-            }
         }
         let judged = self.problem.normalized(&points, ended.positions);
         ways.follow(&judged)?;
