@@ -8,7 +8,6 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
@@ -70,9 +69,7 @@ fn hard_meshes() -> Vec<(&'static str, Mesh)> {
 
 fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> String {
     let smoother = Smoother::new(mesh).unwrap();
-    let run = |options: &Options| -> Outcome {
-        smoother.run(options, backend, &mut |_: &_| ControlFlow::Continue(())).unwrap()
-    };
+    let run = |options: &Options| -> Outcome { smoother.run(options, backend).unwrap() };
     let median = |options: &Options| -> Duration {
         let mut times: Vec<_> = (0..REPEATS).map(|_| run(options).smooth).collect();
         times.sort();

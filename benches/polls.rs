@@ -8,12 +8,11 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use std::ops::ControlFlow;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
-use gpu_smooth::{Gpu, Method, Options, Progress, Smoother};
+use gpu_smooth::{Gpu, Method, Options, Smoother};
 
 fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
@@ -27,9 +26,8 @@ fn main() {
         let smoother = Smoother::new(&mesh).unwrap();
         for method in [Method::Multilevel, Method::Sweeps] {
             let options = Options { method, ..Options::default() };
-            let mut go_on = |_: &Progress| ControlFlow::Continue(());
             let start = Instant::now();
-            let mut run = pin!(smoother.run_async(&options, &gpu, &mut go_on));
+            let mut run = pin!(smoother.run_async(&options, &gpu));
             let mut context = Context::from_waker(Waker::noop());
             let (mut polls, mut of_device) = (Vec::new(), Vec::new());
             let timed = |times: &mut Vec<Duration>, from: Instant| times.push(from.elapsed());

@@ -189,7 +189,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
         Err(MeshError::Infeasible { .. }) => return untangled(mesh, options),
         Err(_) => return Became::Refused,
     };
-    let run = || smoother.run(options, backend, &mut |_| ControlFlow::Continue(()));
+    let run = || smoother.run(options, backend);
     let outcome = match run() {
         Ok(outcome) => outcome,
         Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => return Became::Refused,

@@ -19,7 +19,7 @@
 //! };
 //! let smoother = Smoother::new(&mesh)?;
 //! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?), or what Backend::auto chooses
-//! let outcome = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()))?;
+//! let outcome = smoother.run(&Options::default(), &backend)?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
 //! assert!(smoother.quality(&outcome.points)?.f(Metric::Imr) < 1.3334);

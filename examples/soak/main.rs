@@ -8,7 +8,6 @@ mod support;
 
 use std::error::Error;
 use std::fs;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use gpu_smooth::{Backend, DeviceMesh, Gpu, Options, Smoother, Sweeps, VertexBuffer, wgpu};
@@ -58,9 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = support::perturb_random(&support::lattice(12, 12), 0.8, 1);
     let smoother = Smoother::new(&mesh)?;
     let backend = Backend::Gpu(Gpu::open(None)?);
-    let run = |backend: &Backend| {
-        smoother.run(&Options::default(), backend, &mut |_| ControlFlow::Continue(()))
-    };
+    let run = |backend: &Backend| smoother.run(&Options::default(), backend);
     let expected = run(&backend)?.points;
     soak("runs", runs, |done| {
         let points = match done % 4 {

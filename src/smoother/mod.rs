@@ -19,7 +19,7 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::outcome::Outcome;
 use crate::quality::Quality;
-use crate::run::{Checkpoint, Keeper, NoKeeper, Observer, Options};
+use crate::run::{Checkpoint, Keeper, NoKeeper, Observer, Options, Progress};
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
@@ -187,24 +187,28 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Smooths the mesh. Blocks until the run ends. `observe` is called every few sweeps and can end the run;
-    /// the best state so far is then returned.
+    /// Smooths the mesh. Blocks until the run ends.
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
     /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
     /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
-    pub fn run(
+    pub fn run(&self, options: &Options, backend: &Backend) -> Result<Outcome, SmoothError> {
+        self.run_observed(options, backend, &mut unobserved)
+    }
+
+    /// Smooths the mesh as [`run`](Self::run) does. `observe` is called every few sweeps and can end the run; the best state
+    /// so far is then returned.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_observed(
         &self,
         options: &Options,
         backend: &Backend,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
-        let device = match backend {
-            Backend::Cpu => None,
-            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
-        };
-        pollster::block_on(self.run_at(options, device, None, &mut NoKeeper, observe))
+        self.run_kept(options, backend, None, &mut NoKeeper, observe)
     }
 
     /// Smooths the mesh as [`run`](Self::run) does, and lets `keeper` decide what is kept of the run meanwhile: checkpoints to go on
@@ -232,12 +236,20 @@ impl<'a> Smoother<'a> {
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
     /// The future completes only if the application polls the device meanwhile, as one that draws frames does
-    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result; if
-    /// `observe` ends the run, the best state so far is returned. The future is `Send` if `observe` is.
+    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result. The future is `Send`.
     ///
     /// # Errors
     /// The same as those of [`run`](Self::run).
-    pub async fn run_async(
+    pub async fn run_async(&self, options: &Options, gpu: &Gpu) -> Result<Outcome, SmoothError> {
+        self.run_async_observed(options, gpu, &mut unobserved).await
+    }
+
+    /// Smooths the mesh as [`run_async`](Self::run_async) does. `observe` is called every few sweeps and can end the run; the best
+    /// state so far is then returned. The future is `Send` if `observe` is.
+    ///
+    /// # Errors
+    /// The same as those of [`run`](Self::run).
+    pub async fn run_async_observed(
         &self,
         options: &Options,
         gpu: &Gpu,
@@ -250,6 +262,11 @@ impl<'a> Smoother<'a> {
     fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
         metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
     }
+}
+
+/// Lets a run go on.
+fn unobserved(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 /// Smooths a mesh given as slices, in one blocking call. `points` are positions in any unit, `triangles` zero-based
@@ -265,6 +282,5 @@ pub fn smooth(
 ) -> Result<Vec<[f64; 2]>, SmoothError> {
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
     let smoother = Smoother::new(&mesh)?;
-    let outcome = smoother.run(options, backend, &mut |_| ControlFlow::Continue(()))?;
-    Ok(outcome.points)
+    Ok(smoother.run(options, backend)?.points)
 }

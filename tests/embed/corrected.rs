@@ -1,7 +1,5 @@
 //! Encoded sweeps that are corrected from coarser levels, with a line search on the device.
 
-use std::ops::ControlFlow;
-
 use gpu_smooth::{
     Backend, DeviceMesh, Mesh, Method, Metric, ObjectiveValues, Options, SmoothError, Smoother,
     Sweeps, Targets, wgpu,
@@ -45,7 +43,7 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
     let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
-    let run = run.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = run.run(&options, &Backend::Cpu).unwrap();
     run.history.last().and_then(|f| f.of(metric)).unwrap()
 }
 

@@ -56,9 +56,8 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
         let base = scheme.base();
         let tolerance = 0.0;
         let options = Options { scheme, method, max_sweeps: 8, tolerance, ..Options::default() };
-        let [cpu, vulkan, gl] = backends.each_ref().map(|backend| {
-            smoother.run(&options, backend, &mut |_| ControlFlow::Continue(())).unwrap()
-        });
+        let [cpu, vulkan, gl] =
+            backends.each_ref().map(|backend| smoother.run(&options, backend).unwrap());
         let f = |outcome: &Outcome| smoother.quality(&outcome.points).unwrap().f(base);
         for (name, other) in [("vulkan", &vulkan), ("gl", &gl)] {
             let label = format!("{} {method:?} on {name}", options.scheme);

@@ -67,9 +67,9 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
     for options in cases() {
-        let expected = smoother.run(&options, &backend, &mut go_on).unwrap();
+        let expected = smoother.run(&options, &backend).unwrap();
         let mut observe = go_on;
-        let future = smoother.run_async(&options, &app.gpu, &mut observe);
+        let future = smoother.run_async_observed(&options, &app.gpu, &mut observe);
         let (found, frames) = drive(app.device(), future);
         assert_same(&expected, &found.unwrap());
         assert!(frames > 0, "the future blocked the thread");
@@ -84,9 +84,15 @@ fn futures_can_move_between_threads() {
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
     let (device_mesh, options) = (app.mesh(&mesh), Options::default());
-    is_send(&smoother.run_async(&options, &app.gpu, &mut |_: &Progress| ControlFlow::Break(())));
+    is_send(
+        &smoother.run_async_observed(
+            &options,
+            &app.gpu,
+            &mut |_: &Progress| ControlFlow::Break(()),
+        ),
+    );
     let observe: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send) = &mut go_on;
-    is_send(&smoother.run_async(&options, &app.gpu, observe));
+    is_send(&smoother.run_async_observed(&options, &app.gpu, observe));
     is_send(&device_mesh.read_points_async());
 }
 
@@ -99,18 +105,17 @@ fn a_prepared_mesh_that_owns_all_it_needs_is_run_in_another_thread() {
         std::thread::spawn(|| pollster::block_on(task))
     }
     let mesh = bad_plate(400);
-    let expected =
-        Smoother::new(&mesh).unwrap().run(&Options::default(), &Backend::Cpu, &mut go_on).unwrap();
+    let expected = Smoother::new(&mesh).unwrap().run(&Options::default(), &Backend::Cpu).unwrap();
     let owned = Smoother::new(&mesh).unwrap().into_owned();
     drop(mesh);
-    let task = spawn(async move { owned.run(&Options::default(), &Backend::Cpu, &mut go_on) });
+    let task = spawn(async move { owned.run(&Options::default(), &Backend::Cpu) });
     assert_same(&expected, &task.join().unwrap().unwrap());
 
     let owned = Smoother::new(&bad_plate(400)).unwrap().into_owned();
     let app = App::new();
     let gpu = app.another_gpu();
     let device = gpu.device().clone();
-    let task = spawn(async move { owned.run_async(&Options::default(), &gpu, &mut go_on).await });
+    let task = spawn(async move { owned.run_async(&Options::default(), &gpu).await });
     while !task.is_finished() {
         device.poll(wgpu::PollType::Poll).unwrap();
     }
@@ -136,7 +141,7 @@ fn another_thread_may_poll() {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
     let [options, ..] = cases();
-    let expected = smoother.run(&options, &backend, &mut go_on).unwrap();
+    let expected = smoother.run(&options, &backend).unwrap();
     let done = AtomicBool::new(false);
     let found = std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -145,7 +150,7 @@ fn another_thread_may_poll() {
                 std::thread::sleep(Duration::from_micros(100));
             }
         });
-        let found = pollster::block_on(smoother.run_async(&options, &app.gpu, &mut go_on));
+        let found = pollster::block_on(smoother.run_async(&options, &app.gpu));
         done.store(true, Ordering::Relaxed);
         found
     });
@@ -159,14 +164,11 @@ fn two_runs_at_once_on_one_device_do_as_alone() {
     let [options, other, _] = cases();
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
-    let expected = [
-        first.run(&options, &backend, &mut go_on).unwrap(),
-        second.run(&other, &backend, &mut go_on).unwrap(),
-    ];
+    let expected = [first.run(&options, &backend).unwrap(), second.run(&other, &backend).unwrap()];
     let (mut a, mut b) = (go_on, go_on);
     let mut futures = (
-        pin!(first.run_async(&options, &app.gpu, &mut a)),
-        pin!(second.run_async(&other, &app.gpu, &mut b)),
+        pin!(first.run_async_observed(&options, &app.gpu, &mut a)),
+        pin!(second.run_async_observed(&other, &app.gpu, &mut b)),
     );
     let mut found = (None, None);
     let both = std::future::poll_fn(|context| {
@@ -206,7 +208,7 @@ fn a_cancelled_run_returns_the_best_state_so_far() {
             if heard.len() < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         let (outcome, _) =
-            drive(app.device(), smoother.run_async(&options, &app.gpu, &mut observe));
+            drive(app.device(), smoother.run_async_observed(&options, &app.gpu, &mut observe));
         let outcome = outcome.unwrap();
         assert_eq!(outcome.stop, Stop::Cancelled);
         assert_eq!(heard.len(), 2);
@@ -226,13 +228,13 @@ fn a_dropped_run_leaves_the_device_usable() {
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
     let [options, ..] = cases();
-    let (expected, _) = drive(app.device(), smoother.run_async(&options, &app.gpu, &mut go_on));
+    let (expected, _) = drive(app.device(), smoother.run_async(&options, &app.gpu));
     let expected = expected.unwrap();
     let endless = Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() };
     // Dropped before it was polled, at its first wait, and later ones.
     for polls in [0, 1, 2, 7] {
         let mut observe = go_on;
-        let mut future = Box::pin(smoother.run_async(&endless, &app.gpu, &mut observe));
+        let mut future = Box::pin(smoother.run_async_observed(&endless, &app.gpu, &mut observe));
         let mut context = Context::from_waker(Waker::noop());
         for _ in 0..polls {
             assert!(future.as_mut().poll(&mut context).is_pending());
@@ -241,6 +243,6 @@ fn a_dropped_run_leaves_the_device_usable() {
         drop(future);
     }
     app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let (found, _) = drive(app.device(), smoother.run_async(&options, &app.gpu, &mut go_on));
+    let (found, _) = drive(app.device(), smoother.run_async(&options, &app.gpu));
     assert_same(&expected, &found.unwrap());
 }

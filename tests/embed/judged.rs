@@ -1,7 +1,5 @@
 //! Sweeps that end by themselves, judged on the device.
 
-use std::ops::ControlFlow;
-
 use gpu_smooth::{
     Backend, DeviceMesh, Mesh, Method, ObjectiveValues, Options, Smoother, Stop, Sweeps,
     VertexBuffer, wgpu,
@@ -65,7 +63,7 @@ fn sweeps_end_where_a_run_ends_however_they_are_split() {
         let app = App::new();
         let backend = Backend::Gpu(app.another_gpu());
         let run = Smoother::new(&mesh).unwrap();
-        let run = run.run(&options, &backend, &mut |_| ControlFlow::Continue(())).unwrap();
+        let run = run.run(&options, &backend).unwrap();
         assert_eq!(run.stop, stop);
         for each in [3, run.sweeps, run.sweeps + 3] {
             let mut frames = Frames::new(mesh.clone(), &options);

@@ -1,7 +1,5 @@
 //! Devices with low limits, and meshes that are too large for them.
 
-use std::ops::ControlFlow;
-
 use gpu_smooth::{
     Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Options, Smoother, Sweeps, VertexBuffer,
     wgpu,
@@ -154,7 +152,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     assert_limit(&gpu_error(error), name, 32 << 10, text);
     let backend = Backend::Gpu(app.another_gpu());
     let smoother = Smoother::new(&mesh).unwrap();
-    let run = smoother.run(&Options::default(), &backend, &mut |_| ControlFlow::Continue(()));
+    let run = smoother.run(&Options::default(), &backend);
     assert_limit(&gpu_error(run.unwrap_err()), name, 32 << 10, text);
 
     // A smaller one goes well afterward.

@@ -52,11 +52,11 @@ fn a_run_says_that_the_device_was_lost() {
             }
             ControlFlow::Continue(())
         };
-        let error = smoother.run(&endless(), &backend, &mut observe).unwrap_err();
+        let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
         assert_lost(&gpu_error(error));
         assert_eq!(calls.get(), 2);
         // And every later one.
-        let error = smoother.run(&endless(), &backend, &mut observe).unwrap_err();
+        let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
         assert_lost(&gpu_error(error));
     });
 }
@@ -125,8 +125,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             let scheme: Scheme = ["imr", "edge+imr", "rms"][round % 3].parse().unwrap();
             let base = scheme.base();
             let options = Options { scheme, ..Options::default() };
-            let on_cpu =
-                smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+            let on_cpu = smoother.run(&options, &Backend::Cpu).unwrap();
             // Of the time that a run takes here, or a fast machine would be done before.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
             let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
@@ -195,7 +194,8 @@ fn a_future_completes_when_the_device_is_lost() {
             let app = App::new();
             let options = endless();
             let mut observe = |_: &Progress| ControlFlow::Continue(());
-            let mut future = Box::pin(smoother.run_async(&options, &app.gpu, &mut observe));
+            let mut future =
+                Box::pin(smoother.run_async_observed(&options, &app.gpu, &mut observe));
             let mut context = Context::from_waker(Waker::noop());
             let mut polls = 0;
             let error = loop {

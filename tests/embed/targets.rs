@@ -1,7 +1,5 @@
 //! An application's mesh whose elements are to look like targets.
 
-use std::ops::ControlFlow;
-
 use gpu_smooth::{
     Backend, Derivatives, DeviceMesh, Mesh, MeshError, Method, Metric, Options, SmoothError,
     Smoother, Sweeps, Targets,
@@ -31,7 +29,7 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();
     let backend = Backend::Gpu(app.another_gpu());
-    let run = smoother.run(&options, &backend, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = smoother.run(&options, &backend).unwrap();
     assert_eq!(run.best_sweep, 9);
 
     let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();

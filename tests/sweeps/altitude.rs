@@ -5,7 +5,6 @@ use gpu_smooth::{
     Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, TargetField,
     Targets, validity,
 };
-use std::ops::ControlFlow;
 
 /// A square of fields, each cut along the same diagonal, in rows that are ever lower toward one side: smoothing presses triangles
 /// against that.
@@ -55,7 +54,7 @@ fn what_does_not_go_with_kept_altitudes_is_refused() {
     let mut smoother = Smoother::new(&mesh).unwrap();
     let refused = |smoother: &Smoother, options: Options| {
         let options = Options { keep_altitude: true, ..options };
-        let error = smoother.run(&options, &backends()[0], &mut |_| ControlFlow::Continue(()));
+        let error = smoother.run(&options, &backends()[0]);
         let option = "keep altitude";
         assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
     };

@@ -6,7 +6,6 @@ use gpu_smooth::{
     Backend, Desired, Goal, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop,
     Surface, TargetField, Targets,
 };
-use std::ops::ControlFlow;
 
 /// A square in two triangles, to be of small elements on the left and of four times larger ones on the right.
 fn background(width: f64, height: f64) -> (Mesh, Targets) {
@@ -83,7 +82,7 @@ fn what_does_not_go_with_a_field_is_refused() {
     assert!(outside.count > mesh.points.len() / 3, "{outside:?}");
     assert!((outside.most / width - 0.5).abs() < 0.05, "{outside:?}");
     let refused = |smoother: &Smoother, options: &Options| {
-        let error = smoother.run(options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        let error = smoother.run(options, &Backend::Cpu);
         let option = "target field";
         assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
     };

@@ -3,7 +3,6 @@
 use crate::{backends, history, name, plate, run, support, with_points};
 use gpu_smooth::{Mesh, MeshError, Metric, Options, SmoothError, Smoother, Stop};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 /// One vertex in a triangle of three.
 fn star_of_three(points: [[f64; 2]; 4]) -> Mesh {
@@ -77,7 +76,7 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
             for backend in backends() {
                 let options =
                     Options { scheme: metric.into(), max_sweeps: 50, ..Options::default() };
-                let outcome = smoother.run(&options, backend, &mut |_| ControlFlow::Continue(()));
+                let outcome = smoother.run(&options, backend);
                 let label = format!("{metric} on the {}", name(backend));
                 match outcome {
                     Ok(outcome) => {
@@ -103,7 +102,7 @@ fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
     mesh.points.iter_mut().for_each(|p| p[1] *= 1e-200);
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
-        let run = smoother.run(&Options::default(), backend, &mut |_| ControlFlow::Continue(()));
+        let run = smoother.run(&Options::default(), backend);
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, metric })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
         };
@@ -171,7 +170,7 @@ fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         // Its quality cannot be computed beside a triangle of size 1.
-        let run = smoother.run(&Options::default(), backend, &mut |_| ControlFlow::Continue(()));
+        let run = smoother.run(&Options::default(), backend);
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
         };

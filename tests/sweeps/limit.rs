@@ -5,7 +5,6 @@ use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, Targets,
 };
-use std::ops::ControlFlow;
 
 #[test]
 fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
@@ -136,7 +135,7 @@ fn bounds_that_make_no_sense_are_refused() {
     for (max_move, scheme) in [(0.0, "imr"), (f64::NAN, "imr"), (1.0, "edge")] {
         let scheme = scheme.parse().unwrap();
         let options = Options { max_move: Some(max_move), scheme, ..Options::default() };
-        let error = smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        let error = smoother.run(&options, &Backend::Cpu);
         let error = error.unwrap_err();
         let is_it = matches!(error, SmoothError::Option { option: "max move", .. });
         assert!(is_it, "{error}");

@@ -35,7 +35,6 @@ use gpu_smooth::{
     Backend, Derivatives, Gpu, Mesh, Metric, Options, Outcome, Scheme, Sharpness, Smoother,
     Topology,
 };
-use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
 /// The schemes of the paper.
@@ -94,7 +93,7 @@ fn distorted() -> &'static Mesh {
 }
 
 fn run(smoother: &Smoother, options: &Options, backend: &Backend) -> Outcome {
-    smoother.run(options, backend, &mut |_| ControlFlow::Continue(())).unwrap()
+    smoother.run(options, backend).unwrap()
 }
 
 fn with_points(mesh: &Mesh, points: &[[f64; 2]]) -> Mesh {

@@ -1,7 +1,5 @@
 //! Sweeps corrected from coarser levels.
 
-use std::ops::ControlFlow;
-
 use crate::{
     backends, distorted, global, history, name, perturbed, plate, run, scheme, support, with_points,
 };
@@ -213,7 +211,7 @@ fn it_is_the_default_where_it_is_to_be_had() {
     for options in others {
         assert!(!options.is_multilevel(), "{options:?}");
         let asked = Options { method: Method::Multilevel, ..options.clone() };
-        let done = smoother.run(&asked, &Backend::Cpu, &mut |_| ControlFlow::Continue(()));
+        let done = smoother.run(&asked, &Backend::Cpu);
         match done {
             Err(SmoothError::Option { option: "method", .. }) => assert!(!asked.is_multilevel()),
             Ok(outcome) => assert!(asked.is_multilevel() && outcome.corrections > 0),

@@ -13,7 +13,6 @@ use gpu_smooth::{
     Precision, Sharpness, SmoothError, Smoother,
 };
 use spade::{DelaunayTriangulation, Point2, Triangulation};
-use std::ops::ControlFlow;
 
 /// A number from 10^low to 10^high, each decade equally likely.
 fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {
@@ -297,7 +296,7 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
             let flat = 1e-6 * smoother.quality(&mesh.points).unwrap().worst_imr;
             let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 + flat };
             let label = format!("seed {seed} on the {}, {options:?}", name(backend));
-            let once = || smoother.run(&options, backend, &mut |_| ControlFlow::Continue(()));
+            let once = || smoother.run(&options, backend);
             let outcome = match once() {
                 Ok(outcome) => outcome,
                 Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => continue,

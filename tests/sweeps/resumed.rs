@@ -47,7 +47,7 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
 
 /// Leaves a run after each of some sweeps, and goes on to the same end.
 fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
-    let whole = smoother.run(options, backend, &mut go_on).unwrap();
+    let whole = smoother.run(options, backend).unwrap();
     let mut all = All::default();
     let kept = smoother.run_kept(options, backend, None, &mut all, &mut go_on).unwrap();
     let what = format!("{} on the {}", options.scheme, name(backend));
@@ -143,7 +143,7 @@ fn a_run_that_was_cancelled_goes_on() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
-    let whole = smoother.run(&options, &Backend::Cpu, &mut go_on).unwrap();
+    let whole = smoother.run(&options, &Backend::Cpu).unwrap();
     let mut last = Last(None);
     let mut cancel = |progress: &Progress| match progress.sweep {
         0..4 => ControlFlow::Continue(()),
@@ -166,7 +166,7 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     let [cpu, gpu] = backends();
     for scheme in ["imr", "edge+imr"] {
         let options = Options { scheme: super::scheme(scheme), ..Options::default() };
-        let on_cpu = smoother.run(&options, cpu, &mut go_on).unwrap();
+        let on_cpu = smoother.run(&options, cpu).unwrap();
         let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(options.scheme.base());
         for (left_on, goes_on_on) in [(gpu, cpu), (cpu, gpu)] {
             let mut all = All::default();
@@ -223,7 +223,7 @@ fn keeping_positions_changes_no_bit() {
         for scheme in ["imr", "edge+imr"] {
             let options =
                 Options { scheme: super::scheme(scheme), max_sweeps: 40, ..Options::default() };
-            let whole = smoother.run(&options, backend, &mut go_on).unwrap();
+            let whole = smoother.run(&options, backend).unwrap();
             let kept = smoother.run_kept(&options, backend, None, &mut Often, &mut go_on).unwrap();
             assert_same(&whole, &kept, scheme);
         }

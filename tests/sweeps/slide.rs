@@ -184,9 +184,7 @@ fn what_cannot_be_combined_is_refused() {
         Options { scheme: Metric::Edge.into(), ..Options::default() },
         Options { goal: auto, ..Options::default() },
     ] {
-        let error = smoother
-            .run(&options, &Backend::Cpu, &mut |_| std::ops::ControlFlow::Continue(()))
-            .unwrap_err();
+        let error = smoother.run(&options, &Backend::Cpu).unwrap_err();
         assert!(matches!(error, SmoothError::Option { option: "slide", .. }), "{error}");
     }
 }

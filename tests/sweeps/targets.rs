@@ -6,7 +6,6 @@ use gpu_smooth::{
     Backend, Derivatives, Mesh, MeshError, Method, Metric, Options, SmoothError, Smoother, Stop,
     Surface, Targets, Topology,
 };
-use std::ops::ControlFlow;
 
 type Matrix = [[f64; 2]; 2];
 
@@ -319,7 +318,6 @@ fn what_is_no_target_is_refused() {
     assert_eq!(error, MeshError::ValueCount { expected: count, given: 3 });
     smoother.set_targets(&Targets::equilateral(count)).unwrap();
     let options = Options { derivatives: Derivatives::FiniteDifference, ..Options::default() };
-    let error =
-        smoother.run(&options, &backends()[0], &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let error = smoother.run(&options, &backends()[0]).unwrap_err();
     assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
 }

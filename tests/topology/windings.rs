@@ -5,7 +5,6 @@ use gpu_smooth::{
     Backend, BadTriangle, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother,
     Topology, smooth,
 };
-use std::ops::ControlFlow;
 
 /// The bad triangles of a mesh, by index, and the flat ones of them.
 fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
@@ -144,7 +143,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     let smoother = Smoother::new(&mesh).unwrap();
     let run = |metric: Metric| {
         let options = Options { scheme: metric.into(), max_sweeps: 5, ..Options::default() };
-        smoother.run(&options, &Backend::Cpu, &mut |_| ControlFlow::Continue(()))
+        smoother.run(&options, &Backend::Cpu)
     };
     let outcome = run(Metric::Area).unwrap();
     assert_bad(&Mesh { points: outcome.points, ..mesh.clone() }, &[]);

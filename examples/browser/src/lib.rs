@@ -6,11 +6,7 @@
 mod plate;
 mod scene;
 
-use std::ops::ControlFlow;
-
-use gpu_smooth::{
-    Backend, Gpu, Metric, Objectives, Options, Outcome, Progress, SmoothError, Smoother,
-};
+use gpu_smooth::{Backend, Gpu, Metric, Objectives, Options, Outcome, SmoothError, Smoother};
 use wasm_bindgen::prelude::*;
 
 use plate::Plate;
@@ -77,13 +73,13 @@ impl Page {
     /// Smooths the mesh on the one thread of the page, which is blocked meanwhile.
     pub fn run_on_cpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
-        Ok(told(&smoother, smoother.run(&Options::default(), &Backend::Cpu, &mut go_on)?)?)
+        Ok(told(&smoother, smoother.run(&Options::default(), &Backend::Cpu)?)?)
     }
 
     /// Smooths the mesh on the device; the page goes on.
     pub async fn run_on_gpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
-        let outcome = smoother.run_async(&Options::default(), self.gpu()?, &mut go_on).await?;
+        let outcome = smoother.run_async(&Options::default(), self.gpu()?).await?;
         Ok(told(&smoother, outcome)?)
     }
 
@@ -154,11 +150,6 @@ impl Live {
     pub fn tear(&mut self) {
         self.scene.tear(&self.plate);
     }
-}
-
-/// No run is ended before its time.
-fn go_on(_: &Progress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
 }
 
 fn told(smoother: &Smoother<'_>, outcome: Outcome) -> Result<Run, SmoothError> {

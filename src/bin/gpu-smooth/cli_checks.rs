@@ -138,10 +138,7 @@ impl Checker {
                 {
                     goal.desired = Desired::Value(1.0);
                 }
-                match self
-                    .smoother
-                    .run(&options, &Backend::Cpu, &mut |_| std::ops::ControlFlow::Continue(()))
-                {
+                match self.smoother.run(&options, &Backend::Cpu) {
                     Ok(_) => "run",
                     Err(SmoothError::Option { .. }) => "options that do not go together",
                     Err(error) => panic!("{words:?}: {error}"),
