@@ -34,6 +34,7 @@ mod shell;
 mod slide_args;
 mod smooth;
 mod streams;
+mod summary;
 mod surface_args;
 mod target_args;
 mod task;
