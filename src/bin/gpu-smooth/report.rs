@@ -1,4 +1,4 @@
-//! What a run did, as JSON and as a table.
+//! What a run did, as the JSON of `--report` holds it.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,6 @@ use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Slid, Spread};
 use serde::Serialize;
 
 use crate::explain::BadTriangleReport;
-
 use crate::proof::Certificate;
 use crate::worst_args::ImprovedReport;
 
