@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
+use crate::layout::smallest_last::{Degrees, Graph, UNCOLORED};
 use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
@@ -14,9 +15,6 @@ pub struct Coloring {
     colors: Vec<u32>,
     count: u32,
 }
-
-/// The color of a vertex that is not free.
-pub const UNCOLORED: u32 = u32::MAX;
 
 /// Number of consecutive vertices along the curve that make a block. Numbers within a block fit 16 bits.
 const BLOCK: usize = 1 << 15;
@@ -225,167 +223,6 @@ impl Block {
         }
         let order = graph.smallest_last_order(degrees);
         Self { graph, order, border }
-    }
-}
-
-/// The neighbors of vertices, in compressed rows.
-struct Graph<I> {
-    start: Vec<u32>,
-    neighbors: Vec<I>,
-}
-
-impl<I: Copy + Into<u32>> Graph<I> {
-    fn with_capacity(vertices: usize) -> Self {
-        let mut start = Vec::with_capacity(vertices + 1);
-        start.push(0);
-        Self { start, neighbors: Vec::with_capacity(6 * vertices) }
-    }
-
-    /// Adds a vertex with its neighbors.
-    fn push(&mut self, neighbors: impl Iterator<Item = I>) {
-        self.neighbors.extend(neighbors);
-        self.start.push(self.neighbors.len() as u32);
-    }
-
-    /// Removes the last vertex's neighbors.
-    fn clear_last(&mut self) {
-        self.start.pop();
-        self.neighbors.truncate(self.start.last().map_or(0, |&start| start as usize));
-        self.start.push(self.neighbors.len() as u32);
-    }
-
-    fn row(&self, v: u32) -> &[I] {
-        &self.neighbors[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
-    }
-
-    /// Removes a vertex of least remaining degree until none is left. Returns the order of removal, and empties
-    /// `degrees`.
-    fn smallest_last_order(&self, degrees: &mut Degrees) -> Vec<u32> {
-        let Degrees { of, buckets } = degrees;
-        for (v, &degree) in of.iter().enumerate().rev().filter(|(_, degree)| **degree != STAYS) {
-            if buckets.len() <= degree as usize {
-                buckets.resize_with(degree as usize + 1, Vec::new);
-            }
-            buckets[degree as usize].push(v as u32);
-        }
-        let mut order = Vec::with_capacity(of.len());
-        let mut least = 0;
-        while least < buckets.len() {
-            let Some(v) = buckets[least].pop() else {
-                least += 1;
-                continue;
-            };
-            // A vertex is in one bucket for each degree it has had. Only the entry for its present degree counts.
-            if of[v as usize] as usize != least {
-                continue;
-            }
-            of[v as usize] = STAYS;
-            order.push(v);
-            for &u in self.row(v) {
-                let u: u32 = u.into();
-                let degree = &mut of[u as usize];
-                if *degree != STAYS {
-                    *degree -= 1;
-                    buckets[*degree as usize].push(u);
-                }
-            }
-            least = least.saturating_sub(1);
-        }
-        of.clear();
-        order
-    }
-
-    /// Gives each vertex the least possible color, in the reverse of `order`. Returns the number of colors.
-    fn color(&self, order: &[u32], colors: &mut [u32]) -> u32 {
-        let mut count = 0;
-        for &v in order.iter().rev() {
-            colors[v as usize] = self.least_color(v, UNCOLORED, colors);
-            count = count.max(colors[v as usize] + 1);
-        }
-        count
-    }
-
-    /// Tries to do without colors above the first four, which few vertices have, by recoloring one vertex at a time.
-    /// Returns the number of colors.
-    fn save_colors(&self, order: &[u32], count: u32, colors: &mut [u32]) -> u32 {
-        for color in (FOUR..count).rev() {
-            for &v in order {
-                if colors[v as usize] == color {
-                    self.lower(v, colors);
-                }
-            }
-        }
-        order.iter().map(|&v| colors[v as usize] + 1).max().unwrap_or(0)
-    }
-
-    fn colors_around<'a>(&'a self, v: u32, colors: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-        self.row(v).iter().map(|&u| colors[u.into() as usize])
-    }
-
-    /// The least color, other than `but`, that no neighbor of a vertex has.
-    #[inline]
-    fn least_color(&self, v: u32, but: u32, colors: &[u32]) -> u32 {
-        let taken = self.colors_around(v, colors).chain([but]);
-        let taken = taken.filter(|&c| c < 64).fold(0u64, |set, c| set | 1 << c);
-        let mut color = (!taken).trailing_zeros();
-        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but 64 only if every
-        // vertex of some part of it has 64 neighbors.
-        while color >= 64 && self.colors_around(v, colors).chain([but]).any(|c| c == color) {
-            color += 1;
-        }
-        color
-    }
-
-    /// Gives a vertex the lower color of a neighbor, if no other neighbor has it and that neighbor can take another
-    /// color below the vertex's own.
-    fn lower(&self, v: u32, colors: &mut [u32]) {
-        let color = colors[v as usize];
-        // The colors of neighbors, and the colors that several neighbors share.
-        let (mut taken, mut shared) = (0u64, 0u64);
-        for c in self.colors_around(v, colors).filter(|&c| c < 64) {
-            shared |= taken & 1 << c;
-            taken |= 1 << c;
-        }
-        for &u in self.row(v) {
-            let u = u.into();
-            let wanted = colors[u as usize];
-            // Vertices between blocks have no row in the graph and keep their colors. Those with many neighbors keep
-            // theirs too: each neighbor might try them, which takes time proportional to the number of neighbors.
-            if wanted < color.min(64)
-                && shared & 1 << wanted == 0
-                && (1..=MANY).contains(&self.row(u).len())
-            {
-                let other = self.least_color(u, wanted, colors);
-                if other < color {
-                    colors[u as usize] = other;
-                    colors[v as usize] = wanted;
-                    return;
-                }
-            }
-        }
-    }
-}
-
-/// Every planar graph can be colored with this many colors, though they may be hard to find.
-const FOUR: u32 = 4;
-
-/// A vertex with more neighbors than this is not recolored.
-const MANY: usize = 64;
-
-/// Stands for the degree of a vertex that is removed already, or is not to be removed.
-const STAYS: u32 = u32::MAX;
-
-/// Vertices by degree, the number of their neighbors that are not removed yet.
-#[derive(Default)]
-struct Degrees {
-    of: Vec<u32>,
-    buckets: Vec<Vec<u32>>,
-}
-
-impl Degrees {
-    /// Adds a vertex with its degree, or `None` if the vertex is not to be removed.
-    fn put(&mut self, degree: Option<u32>) {
-        self.of.push(degree.unwrap_or(STAYS));
     }
 }
 

@@ -5,8 +5,10 @@ mod curve;
 mod prepare;
 mod problem;
 mod sizes;
+mod smallest_last;
 
-pub use coloring::{Coloring, UNCOLORED};
+pub use coloring::Coloring;
 pub use prepare::prepare;
 pub use problem::Problem;
 pub(crate) use sizes::target_areas;
+pub use smallest_last::UNCOLORED;
