@@ -79,6 +79,7 @@ fn a_closing_tag_of_several_lines_is_told_on_one() {
     checks::any_file(b"<?xml version=\"1.0\"?>\n</P 2.0 1.78 0.0\n12 3.0 1.73 0.0\n>\n");
     let long = ["<?xml version=\"1.0\"?>\n</", &"long ".repeat(1000), ">\n"].concat();
     checks::any_file(long.as_bytes());
+    checks::any_file(b"<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n</Xdmf>\n</4 5 6\n4 5 10 Center=\"Node\">\n");
 }
 
 #[test]

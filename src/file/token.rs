@@ -12,13 +12,18 @@ pub(crate) fn quoted(token: &[u8]) -> String {
 
 /// A text that may quote any part of a file, made fit for a message of one line: so many characters of it, with control
 /// characters escaped.
-pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
+fn on_one_line(text: &[u8], most: usize) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(4 * most)]);
     let mut shown: String = text.chars().take(most).flat_map(char::escape_debug).collect();
     if text.chars().nth(most).is_some() {
         shown.push_str("...");
     }
     shown
+}
+
+/// What the parser of XML says of a file that is none. It may quote a tag, of any length and of several lines.
+pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
+    format!("it is no XML: {}", on_one_line(error.to_string().as_bytes(), 120))
 }
 
 /// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x

@@ -5,7 +5,7 @@ use crate::file::binary::Order;
 use crate::file::numbers::Offset;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF};
-use crate::file::token::{on_one_line, quoted};
+use crate::file::token::{ill_formed_xml, quoted};
 use crate::file::vtu::blocks::Compressor;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -95,9 +95,7 @@ impl Document {
             let at = begin + reader.buffer_position() as usize;
             let event = reader.read_event().map_err(|error| {
                 let place = Location::Line(source.line_of(at.min(source.bytes.len())));
-                // It may quote a tag, which may be of any length.
-                let error = on_one_line(error.to_string().as_bytes(), 120);
-                source.error_at(place, format!("it is no XML: {error}"), CORRECT)
+                source.error_at(place, ill_formed_xml(&error), CORRECT)
             })?;
             let after = begin + reader.buffer_position() as usize;
             match event {

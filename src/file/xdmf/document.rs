@@ -3,7 +3,7 @@
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF};
-use crate::file::token::quoted;
+use crate::file::token::{ill_formed_xml, quoted};
 use crate::mesh::Precision;
 use quick_xml::Reader;
 use quick_xml::escape::unescape;
@@ -66,7 +66,7 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
         let at = begin + reader.buffer_position() as usize;
         let event = reader
             .read_event()
-            .map_err(|error| error_at(source, at, &format!("it is no XML: {error}"), CORRECT))?;
+            .map_err(|error| error_at(source, at, &ill_formed_xml(&error), CORRECT))?;
         let after = begin + reader.buffer_position() as usize;
         match event {
             Event::Eof => break,
