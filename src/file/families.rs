@@ -118,7 +118,8 @@ pub(crate) static ADCIRC: Family = family(
     &[],
     reader::<adcirc::Adcirc>(),
 );
-static SMS: Family = family("SMS 2dm", &[".2dm"], &[b"MESH2D"], reader::<sms::Sms>());
+static SMS: Family =
+    family("SMS 2dm", &[".2dm"], &[b"MESH2D", b"mesh2d", b"Mesh2D"], reader::<sms::Sms>());
 pub(crate) static FREEFEM: Family =
     family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
 static SELAFIN: Family = family(

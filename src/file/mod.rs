@@ -26,6 +26,7 @@ mod group;
 mod group_table;
 mod heights;
 mod label;
+mod layout;
 mod medit;
 mod meditb;
 mod mesh_file;

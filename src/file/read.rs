@@ -5,6 +5,7 @@ use crate::file::assemble;
 use crate::file::detect::{self, Content};
 use crate::file::families::TRIANGLE;
 use crate::file::mesh_file::MeshFile;
+use crate::file::sink::Reader;
 use crate::file::source::Source;
 use crate::file::triangle;
 use crate::file::triangle_names::Names;
@@ -46,8 +47,8 @@ impl MeshFile {
             given => given?,
         };
         given.welds = welds;
-        match detect::content(&given)? {
-            Content::Of(reader) => MeshFile::new(assemble::parse(reader, &given)?, vec![given]),
+        match content(&given)? {
+            Content::Of(reader) => of_one_file(reader, given),
             Content::Triangle(names) => Self::read_triangle(given, &names),
         }
     }
@@ -71,8 +72,8 @@ impl MeshFile {
     }
 
     fn of_source(given: Source) -> Result<MeshFile, ReadError> {
-        match detect::content(&given)? {
-            Content::Of(reader) => MeshFile::new(assemble::parse(reader, &given)?, vec![given]),
+        match content(&given)? {
+            Content::Of(reader) => of_one_file(reader, given),
             Content::Triangle(_) => {
                 let problem = "one of the two files of a Triangle mesh";
                 Err(given.error(problem, "Name its .node, so that both are read"))
@@ -96,10 +97,37 @@ impl MeshFile {
                 "files of Triangle are not read compressed, as there are several to a mesh";
             return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
         }
+        if let Some(error) = [&node, &ele].into_iter().chain(&poly).find_map(ends_by_returns) {
+            return Err(error);
+        }
         let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
         let sources = [node, ele].into_iter().chain(poly).collect();
         MeshFile::new(parsed, sources)
     }
+}
+
+/// What a file holds.
+fn content(given: &Source) -> Result<Content, ReadError> {
+    detect::content(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
+}
+
+fn of_one_file(reader: &Reader, given: Source) -> Result<MeshFile, ReadError> {
+    // Formats that go by words are read whatever ends lines.
+    let ends = ends_by_returns(&given);
+    let read = assemble::parse(reader, &given);
+    let made = read.and_then(|parsed| MeshFile::new(parsed, vec![given]));
+    made.map_err(|error| ends.unwrap_or(error))
+}
+
+/// The error for a text whose lines end as those of old Macintosh systems do.
+fn ends_by_returns(source: &Source) -> Option<ReadError> {
+    let is_control = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\r' | b'\x0C');
+    let is_text = memchr::memchr2(b'\n', 0, &source.bytes).is_none()
+        && !source.bytes[..source.bytes.len().min(512)].iter().any(is_control);
+    (is_text && memchr::memchr(b'\r', &source.bytes).is_some()).then(|| {
+        let problem = "its lines end in carriage returns alone, as on old Macintosh systems";
+        source.error(problem, "Make them line feeds first: tr '\\r' '\\n' < IN > OUT")
+    })
 }
 
 /// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.

@@ -23,6 +23,7 @@ mod stl;
 #[path = "../support/mod.rs"]
 mod support;
 mod vtu;
+mod words;
 
 use gpu_smooth::{Format, Location, MeshFile};
 use std::fs;
