@@ -20,6 +20,7 @@ mod regions;
 mod special;
 mod spoiled;
 mod stl;
+mod strings;
 #[path = "../support/mod.rs"]
 mod support;
 mod vtu;

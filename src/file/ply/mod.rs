@@ -147,6 +147,9 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
         b"ushort" | b"uint16" => integer(2, false),
         b"int" | b"int32" => integer(4, true),
         b"uint" | b"uint32" => integer(4, false),
+        // meshio writes these of numpy's arrays.
+        b"int64" => integer(8, true),
+        b"uint64" => integer(8, false),
         b"float" | b"float32" => Ok(Number::Float),
         b"double" | b"float64" => Ok(Number::Double),
         other => Err(cursor.error(format!("`{}` is no type of PLY", quoted(other)), CORRECT)),
