@@ -2,8 +2,9 @@
 
 use crate::error::Location;
 use crate::file::field::PointField;
-use crate::file::mesh_file::{MeshFile, Place};
+use crate::file::mesh_file::MeshFile;
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
+use crate::file::place::Place;
 use crate::file::sink::{Home, Stored};
 use crate::file::token::{number_end, quoted, skip_to_number};
 use std::ops::Range;

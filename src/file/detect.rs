@@ -194,7 +194,12 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 17] = [
+        let cases: [(&[u8], &str); 22] = [
+            (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
+            (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
+            (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
+            (b"#RADIOSS STARTER\n", "Radioss is not read"),
+            (b"<?xml version=\"1.0\"?>\n<!DOCTYPE X3D>\n<X3D>", "X3D is not read"),
             (b"<?xml version=\"1.0\"?>\n<!-- <Xdmf> -->\n<VTKFile>", "VTK XML"),
             (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
             (b"solid part\n", "STL"),
@@ -219,6 +224,7 @@ mod tests {
         assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
         assert_eq!(problem("mesh.bdf", b"$ made by hand\nGRID,1,,0.,0.\n"), "Nastran is not read");
         assert_eq!(problem("mesh.unv", b"    -1\n  2411\n"), "I-DEAS universal is not read");
+        assert_eq!(problem("mesh.avs", b"# by hand\n4 2 0 0 0\n"), "AVS-UCD is not read");
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
     }
 

@@ -118,7 +118,8 @@ pub(crate) static ADCIRC: Family = family(
     &[],
     reader::<adcirc::Adcirc>(),
 );
-static SMS: Family = family("SMS 2dm", &[".2dm"], &[b"MESH2D"], reader::<sms::Sms>());
+static SMS: Family =
+    family("SMS 2dm", &[".2dm"], &[b"MESH2D", b"mesh2d", b"Mesh2D"], reader::<sms::Sms>());
 pub(crate) static FREEFEM: Family =
     family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
 static SELAFIN: Family = family(
@@ -168,6 +169,16 @@ static MIKE: Family = unread("MIKE (DHI)", &[], &[b"100079 ", b"100079\t"], BY_O
 static FVCOM: Family = unread("FVCOM", &[], &[b"Node Number"], BY_OTHERS);
 static COMSOL: Family =
     unread("COMSOL", &[".mphtxt", ".mphbin"], &[b"# Created by COMSOL"], "Export the mesh as VTK");
+static TECPLOT: Family =
+    unread("Tecplot", &[".plt"], &[b"TITLE =", b"TITLE=", b"VARIABLES", b"#!TD"], BY_MESHIO);
+static AVS: Family = unread("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
+static NETGEN: Family = unread("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
+static FLAC: Family = unread("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
+static PERMAS: Family = unread("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
+static UGRID: Family = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
+static RADIOSS: Family =
+    unread("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
+static X3D: Family = unread("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
 static GEOMETRY: Family = unread(
     "a geometry without a mesh (CAD or .geo)",
     &[".step", ".stp", ".iges", ".igs", ".brep", ".geo"],
@@ -181,7 +192,7 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 31] = [
+pub(crate) static FAMILIES: [&Family; 39] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -212,5 +223,13 @@ pub(crate) static FAMILIES: [&Family; 31] = [
     &MIKE,
     &FVCOM,
     &COMSOL,
+    &TECPLOT,
+    &AVS,
+    &NETGEN,
+    &FLAC,
+    &PERMAS,
+    &UGRID,
+    &RADIOSS,
+    &X3D,
     &GEOMETRY,
 ];

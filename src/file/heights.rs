@@ -12,17 +12,23 @@ pub(crate) struct Heights {
     first: Option<f64>,
     differ: bool,
     collected: Option<(Vec<usize>, Vec<f64>)>,
+    /// Whether some points have none.
+    is_partial: bool,
 }
+
+/// The third coordinate of a point of which the file has two.
+pub(crate) const NO_HEIGHT: (usize, f64) = (usize::MAX, 0.0);
 
 impl Heights {
     pub(crate) fn new(sink: &dyn Sink) -> Heights {
         let collected = sink.asks_for_data().then(Default::default);
-        Heights { first: None, differ: false, collected }
+        Heights { first: None, differ: false, collected, is_partial: false }
     }
 
     /// Takes the next point's, and where it stands.
     #[inline]
     pub(crate) fn see(&mut self, (at, z): (usize, f64)) {
+        self.is_partial |= at == NO_HEIGHT.0;
         match self.first {
             None => self.first = Some(z),
             Some(first) => self.differ |= z != first,
@@ -52,14 +58,17 @@ impl Heights {
 
     /// The same, if they stand elsewhere than in the file itself.
     pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut dyn Sink) {
-        let is_told = self.differ || (self.collected.is_some() && self.first.is_some());
+        let is_any = self.collected.is_some() && self.first.is_some() && !self.is_partial;
+        let is_told = self.differ || is_any;
         if is_told
             && sink.height_array(name.as_bytes())
             && let Some((places, mut numbers)) = self.collected
         {
             let precision = form.precision();
             numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
-            let stored = Some(Stored { places: Places::List(places), form, home });
+            // There is no place for those that a file does not have.
+            let stored =
+                (!self.is_partial).then_some(Stored { places: Places::List(places), form, home });
             sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
         }
     }

@@ -1,40 +1,17 @@
 //! A mesh with its file, which is read once and written again with nothing changed but coordinates.
 
 use crate::chart::Chart;
-use crate::error::{Location, MeshError, ReadError};
-use crate::file::assemble;
+use crate::error::{MeshError, ReadError};
 use crate::file::curves::{Curves, between_regions};
-use crate::file::detect::{self, Content};
-use crate::file::families::{Family, TRIANGLE};
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
 use crate::file::source::Source;
-use crate::file::triangle;
-use crate::file::triangle_names::Names;
 use crate::mesh::{Mesh, Precision};
 use crate::periodic::{Motion, Periodic};
-use std::collections::BTreeMap;
 use std::fmt;
-use std::path::{Path, PathBuf};
-
-/// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The file.
-    pub path: PathBuf,
-    /// The line or byte.
-    pub location: Location,
-    /// The file's own number or tag for it.
-    pub label: u64,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.path.display(), self.location)
-    }
-}
+use std::path::Path;
 
 /// A mesh with the file it was read from.
 ///
@@ -109,97 +86,11 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Reads a mesh, in the format its content shows.
-    ///
-    /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
-    /// compressed by gzip or zstd.
+    /// Makes it of what a reader returned.
     ///
     /// # Errors
-    /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
-    /// [`Format`], does not hold what its format asks for, or holds other than first-order
-    /// elements of the plane, or no triangle.
-    pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
-        Self::read_as(path, false)
-    }
-
-    /// Reads a mesh as [`read`](Self::read) does, an STL too: there corners of triangles at the same place become one
-    /// vertex. Vertices are numbered in the order in which the file first has them, and are written wherever it has
-    /// them. Meshes of other formats are read as they are.
-    ///
-    /// # Errors
-    /// [`ReadError`] as for [`read`](Self::read), and for an STL whose corners have not all the same third coordinate.
-    pub fn read_welded(path: &Path) -> Result<MeshFile, ReadError> {
-        Self::read_as(path, true)
-    }
-
-    fn read_as(path: &Path, welds: bool) -> Result<MeshFile, ReadError> {
-        let names = Names::of(path);
-        let has_half = names.node.is_file() || names.ele.is_file();
-        let has_ending = TRIANGLE.has_ending_of(path);
-        if has_half && !has_ending && !path.is_file() {
-            return Self::read_as(&names.node, welds);
-        }
-        let mut given = match Source::load(path) {
-            Err(_) if has_half && has_ending && !path.exists() => half_missing(path, &names)?,
-            given => given?,
-        };
-        given.welds = welds;
-        match detect::content(&given)? {
-            Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
-            Content::Triangle(names) => Self::read_triangle(given, &names),
-        }
-    }
-
-    /// Reads a mesh that a program has in memory, such as its standard input. `name` stands for it in messages, and its
-    /// ending helps to tell the format where the content is not enough.
-    ///
-    /// # Errors
-    /// [`ReadError`] as for [`read`](Self::read), and for files of Triangle, of which there are two to a mesh.
-    pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
-        Self::of_source(Source::new(name, bytes)?)
-    }
-
-    /// Reads a mesh in memory as [`from_bytes`](Self::from_bytes) does, an STL too, as
-    /// [`read_welded`](Self::read_welded) tells.
-    ///
-    /// # Errors
-    /// [`ReadError`] as for these two.
-    pub fn from_bytes_welded(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
-        Self::of_source(Source { welds: true, ..Source::new(name, bytes)? })
-    }
-
-    fn of_source(given: Source) -> Result<MeshFile, ReadError> {
-        match detect::content(&given)? {
-            Content::Of(reader) => Self::new(assemble::parse(reader, &given)?, vec![given]),
-            Content::Triangle(_) => {
-                let problem = "one of the two files of a Triangle mesh";
-                Err(given.error(problem, "Name its .node, so that both are read"))
-            }
-        }
-    }
-
-    fn read_triangle(given: Source, names: &Names) -> Result<MeshFile, ReadError> {
-        let load = |path: &Path| match Source::load(path) {
-            Err(_) if !path.exists() => half_missing(path, names),
-            loaded => loaded,
-        };
-        let (node, ele) = if given.path == names.ele {
-            (load(&names.node)?, given)
-        } else {
-            (given, load(&names.ele)?)
-        };
-        let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
-        if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
-            let problem =
-                "files of Triangle are not read compressed, as there are several to a mesh";
-            return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
-        }
-        let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
-        let sources = [node, ele].into_iter().chain(poly).collect();
-        Self::new(parsed, sources)
-    }
-
-    fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
+    /// [`ReadError::Format`] if there is no triangle.
+    pub(crate) fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
         let Parsed {
             format,
             mut mesh,
@@ -446,72 +337,6 @@ impl MeshFile {
     pub fn has_parameters(&self) -> bool {
         self.has_parameters
     }
-
-    /// Where vertex `index` (zero-based, as in [`Mesh::points`]) has its coordinates.
-    ///
-    /// Meant for messages: it may search the whole file.
-    ///
-    /// # Panics
-    /// If there is no such vertex.
-    pub fn vertex_place(&self, index: u32) -> Place {
-        let found = self.vertex_places([index]).remove(&index);
-        found.unwrap_or_else(|| panic!("there is no vertex {index}"))
-    }
-
-    /// Where vertices have their coordinates, by their zero-based indices. The file is searched once for all of them.
-    /// Indices of no vertex are left out.
-    pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
-        let wanted: Vec<u32> = indices.into_iter().collect();
-        // A copy is where its vertex is.
-        let count = self.original().points.len();
-        let owner = |v: u32| match self.chart.as_ref().zip((v as usize).checked_sub(count)) {
-            Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
-            None => v,
-        };
-        let owners = wanted.iter().map(|&v| owner(v) as usize).collect();
-        let found = self.places_of(owners);
-        let place = |&v: &u32| Some((v, found.get(&owner(v))?.clone()));
-        wanted.iter().filter_map(place).collect()
-    }
-
-    fn places_of(&self, mut wanted: Vec<usize>) -> BTreeMap<u32, Place> {
-        keep_ascending(&mut wanted, self.original().points.len());
-        let source = &self.sources[0];
-        let found = match &Family::of(self.format).reader {
-            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at.at(v))),
-            Some(reader) => assemble::vertex_places(reader, source, &wanted),
-        };
-        let place = |(location, label)| Place { path: source.path.clone(), location, label };
-        wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
-    }
-
-    /// Where triangle `index` (zero-based, as in [`Mesh::triangles`]) lists its vertices.
-    ///
-    /// Meant for messages: it may search the whole file.
-    ///
-    /// # Panics
-    /// If there is no such triangle.
-    pub fn triangle_place(&self, index: usize) -> Place {
-        let found = self.triangle_places([index]).remove(&index);
-        found.unwrap_or_else(|| panic!("there is no triangle {index}"))
-    }
-
-    /// Where triangles list their vertices, by their zero-based indices. The file is searched once for all of them.
-    /// Indices of no triangle are left out.
-    pub fn triangle_places(
-        &self,
-        indices: impl IntoIterator<Item = usize>,
-    ) -> BTreeMap<usize, Place> {
-        let mut wanted: Vec<usize> = indices.into_iter().collect();
-        keep_ascending(&mut wanted, self.mesh.triangles.len());
-        let source = &self.sources[usize::from(self.format == Format::Triangle)];
-        let found = match &Family::of(self.format).reader {
-            None => triangle::triangle_places(source, &wanted),
-            Some(reader) => assemble::triangle_places(reader, source, &wanted),
-        };
-        let place = |(location, label)| Place { path: source.path.clone(), location, label };
-        wanted.iter().copied().zip(found.into_iter().map(place)).collect()
-    }
 }
 
 impl fmt::Debug for MeshFile {
@@ -524,22 +349,4 @@ impl fmt::Debug for MeshFile {
             .field("triangles", &self.mesh.triangles.len())
             .finish_non_exhaustive()
     }
-}
-
-/// Sorts indices, each once, and drops those that are not below `count`.
-fn keep_ascending(indices: &mut Vec<usize>, count: usize) {
-    indices.retain(|&index| index < count);
-    indices.sort_unstable();
-    indices.dedup();
-}
-
-/// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.
-fn half_missing(missing: &Path, names: &Names) -> Result<Source, ReadError> {
-    let there = if missing == names.node { &names.ele } else { &names.node };
-    let remedy = format!(
-        "A Triangle mesh is two files: put it beside {} (Triangle writes both)",
-        there.display()
-    );
-    let source = std::io::Error::new(std::io::ErrorKind::NotFound, "not found");
-    Err(ReadError::Io { path: missing.to_owned(), source, remedy })
 }

@@ -231,7 +231,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
         return Ok(Row::Other);
     }
     let (x_at, at) = cursor.point("a vertex")?;
-    Ok(Row::Vertex(x_at, at, cursor.height("a vertex")?))
+    Ok(Row::Vertex(x_at, at, cursor.height_if_any("a vertex")?))
 }
 
 /// Reads a row if it is not a vertex's.

@@ -311,17 +311,36 @@ pub(crate) fn each_row<'a, T: Send>(
     what: &str,
     sink: &mut dyn Sink,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
+    take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let next = |cursor: &mut Cursor<'a>, done: u64| cursor.row(done, count, what);
+    each_item(cursor, count, sink, next, |cursor, _| read(cursor), take)
+}
+
+/// The same, where `next` moves to the next item, given how many were read, and `read` may be told its position for what it says in
+/// errors.
+pub(crate) fn each_item<'a, T: Send>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    sink: &mut dyn Sink,
+    next: impl Fn(&mut Cursor<'a>, u64) -> Result<(), ReadError>,
+    read: impl Fn(&mut Cursor<'a>, Option<u64>) -> Result<T, ReadError> + Sync,
     mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut done = 0;
     if sink.takes_ahead() {
         // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
         let nowhere = &Cursor::new(cursor.source);
-        take_rows(cursor, count, &read, |item| {
-            let taken = take(nowhere, sink, done, item).is_ok();
-            done += u64::from(taken);
-            taken
-        });
+        take_rows(
+            cursor,
+            count,
+            |cursor| read(cursor, None),
+            |item| {
+                let taken = take(nowhere, sink, done, item).is_ok();
+                done += u64::from(taken);
+                taken
+            },
+        );
         if done > 0 {
             // It stands on the last row, before its words. A reader that goes on by words is to find none of them.
             cursor.rest();
@@ -330,7 +349,8 @@ pub(crate) fn each_row<'a, T: Send>(
     let mut missing = None;
     let mut is_plain = done > 0;
     while done < count {
-        let item = cursor.row(done, count, what).and_then(|()| cursor.item(&read, &mut missing));
+        let read = |cursor: &mut Cursor<'a>| read(cursor, Some(done));
+        let item = next(cursor, done).and_then(|()| cursor.item(read, &mut missing));
         match item.and_then(|item| take(cursor, sink, done, item)) {
             Ok(()) => {}
             // Where a single row of many lacks a number, the next ones are read wrongly.

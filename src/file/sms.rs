@@ -92,32 +92,46 @@ impl Walk for Sms {
     }
 }
 
+/// The first word of a row in capital letters, and how long it is; without letters if it is longer than any keyword that is looked
+/// for. Programs write keywords in small letters too.
+#[inline]
+fn keyword(cursor: &mut Cursor<'_>) -> ([u8; 3], usize) {
+    let mut word = [0; 3];
+    let token = cursor.token().filter(|token| token.len() <= word.len()).unwrap_or_default();
+    for (to, letter) in word.iter_mut().zip(token) {
+        *to = letter.to_ascii_uppercase();
+    }
+    (word, token.len())
+}
+
 /// Reads a row if it is a node's.
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
-    if cursor.token() != Some(b"ND") {
+    let (word, length) = keyword(cursor);
+    if &word[..length] != b"ND" {
         return Ok(Row::Other);
     }
     let tag = cursor.integer("the number of a node")?;
     let owner = format_args!("node {tag}");
     let (x_at, at) = cursor.point(owner)?;
-    Ok(Row::Node(tag, x_at, at, cursor.height(owner)?))
+    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(owner)?))
 }
 
 /// Reads a row if it is that of an element or a node string.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
-    let kind = match cursor.token() {
-        Some(b"E3T") => Kind::Triangle,
-        Some(b"E4Q") => Kind::Quadrilateral,
-        Some(b"E2L") => Kind::Line,
-        Some(b"NS") => return string(cursor),
-        Some(b"MAT") => return Ok(material(cursor)),
-        Some(b"E6T" | b"E8Q" | b"E9Q" | b"E3L") => {
+    let (word, length) = keyword(cursor);
+    let kind = match &word[..length] {
+        b"E3T" => Kind::Triangle,
+        b"E4Q" => Kind::Quadrilateral,
+        b"E2L" => Kind::Line,
+        b"NS" => return string(cursor),
+        b"MAT" => return Ok(material(cursor)),
+        b"E6T" | b"E8Q" | b"E9Q" | b"E3L" => {
             let problem = "elements with nodes on their sides, which are not moved with them";
             return Err(cursor.error(problem, "Save linear elements (E3T, E4Q)"));
         }
-        Some(b"E4T" | b"E6W" | b"E8H" | b"E5P") => {
+        b"E4T" | b"E6W" | b"E8H" | b"E5P" => {
             let problem = "elements of a volume";
             return Err(cursor.error(problem, "Only triangles of the plane are smoothed"));
         }

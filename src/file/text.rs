@@ -321,7 +321,7 @@ impl<'a> Cursor<'a> {
     /// In a list of words the error of the row is then kept, as a number may be missing there.
     pub(crate) fn item<T>(
         &mut self,
-        read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
+        mut read: impl FnMut(&mut Cursor<'a>) -> Result<T, ReadError>,
         missing: &mut Option<ReadError>,
     ) -> Result<T, ReadError> {
         let mut longer = self.clone();

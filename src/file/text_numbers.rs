@@ -1,6 +1,7 @@
 //! Numbers of a text file.
 
 use crate::error::ReadError;
+use crate::file::heights::NO_HEIGHT;
 use crate::file::syntax::Commas;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::{float, fortran_float, integer, quoted, short_float};
@@ -143,6 +144,12 @@ impl<'a> Cursor<'a> {
     #[inline]
     pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         Ok((self.at(), self.real(format_args!("z of {owner}"))?))
+    }
+
+    /// Reads z if the row has more than x and y.
+    #[inline]
+    pub(crate) fn height_if_any(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
+        if self.is_at_end() { Ok(NO_HEIGHT) } else { self.height(owner) }
     }
 
     /// Reads x and y. Returns where x stands, and both.

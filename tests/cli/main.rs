@@ -10,6 +10,7 @@ mod bench;
 mod browser;
 mod compare;
 mod convert;
+mod destinations;
 #[cfg(target_os = "linux")]
 mod drivers;
 mod files;

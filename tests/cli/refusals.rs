@@ -254,6 +254,12 @@ fn an_edge_of_three_triangles_is_told() {
         "5\n70 2 2 0 1 10 50 30\n7 2 2",
         &["the edge between vertices 10 and 50 belongs to 3 triangles (70, 7, 11)"],
     );
+    // As gmsh lists what is of two physical groups in version 2.2.
+    assert_gmsh_refused(
+        "4\n7 2 2 0 1 10 20 50",
+        "5\n70 2 2 0 2 50 10 20\n7 2 2 0 1 10 20 50",
+        &["Some of them have the same vertices: remove these, or save as gmsh 4.1"],
+    );
 }
 
 #[test]

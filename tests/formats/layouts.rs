@@ -7,7 +7,7 @@ use gpu_smooth::MeshFile;
 
 /// Reads a mesh in a plain and in another layout, and moves a vertex of the latter.
 #[track_caller]
-fn assert_same(name: &str, plain: &str, odd: &str) -> MeshFile {
+pub(crate) fn assert_same(name: &str, plain: &str, odd: &str) -> MeshFile {
     assert_ne!(plain, odd);
     let read = |text: &str| {
         let folder = Folder::new(&[(name, text)]);
@@ -37,7 +37,7 @@ fn assert_same(name: &str, plain: &str, odd: &str) -> MeshFile {
 }
 
 #[track_caller]
-fn assert_refused(name: &str, text: &str, parts: &[&str]) {
+pub(crate) fn assert_refused(name: &str, text: &str, parts: &[&str]) {
     let folder = Folder::new(&[(name, text)]);
     let error = MeshFile::read(&folder.path(name)).unwrap_err().to_string();
     for part in parts {

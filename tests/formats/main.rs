@@ -20,9 +20,11 @@ mod regions;
 mod special;
 mod spoiled;
 mod stl;
+mod strings;
 #[path = "../support/mod.rs"]
 mod support;
 mod vtu;
+mod words;
 
 use gpu_smooth::{Format, Location, MeshFile};
 use std::fs;

@@ -2,6 +2,7 @@
 
 use gpu_smooth::{BadTriangle, Location, MeshError, MeshFile, Place};
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// How many bad triangles are listed on the terminal.
 pub(crate) const TOLD: usize = 10;
@@ -91,6 +92,17 @@ fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
         .map(|(name, k)| (name, first[k]))
 }
 
+/// Whether two of these triangles have the same vertices.
+fn has_twins(file: &MeshFile, triangles: &[usize]) -> bool {
+    let corners = |&triangle: &usize| {
+        let mut corners = *file.mesh().triangles.get(triangle)?;
+        corners.sort_unstable();
+        Some(corners)
+    };
+    let mut seen = HashSet::new();
+    triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
+}
+
 /// File, place, problem and remedy, in one line unless several triangles are to be listed.
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
@@ -128,9 +140,14 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
+            let remedy = match has_twins(file, triangles) {
+                true => {
+                    "Some of them have the same vertices: remove these, or save as gmsh 4.1 if version 2.2 lists triangles once for each physical group"
+                }
+                false => "In a 2D mesh an edge has one or two: remove the others",
+            };
             format!(
-                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). In a 2D mesh \
-                 an edge has one or two: remove the others",
+                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). {remedy}",
                 places.values().last().map(ToString::to_string).unwrap_or_default(),
                 labels.len(),
                 labels.join(", ")

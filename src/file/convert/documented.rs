@@ -111,7 +111,7 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Obj],
-        "negative numbers, texture coordinates and normals, rows joined by a backslash",
+        "negative numbers, texture coordinates and normals, rows joined by a backslash, with z or without",
         [
             "points, lines, polygons",
             "material, and group or object",
@@ -151,7 +151,7 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Sms2dm],
-        "rows in any order",
+        "rows in any order, with z or without, keywords in capital or small letters",
         [
             "node strings, lines, quadrilaterals",
             "material",

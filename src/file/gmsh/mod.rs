@@ -21,10 +21,11 @@ use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::heights::Heights;
+use crate::file::layout::of_rows_or_words;
 use crate::file::numbers::{Form, Numbers};
-use crate::file::parallel_rows::take_rows;
-use crate::file::sink::{Layout, Sink, Walk};
+use crate::file::sink::{Layout, Sink, Walk, each_item};
 use crate::file::source::Source;
+use crate::file::syntax::Syntax;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::file::token::quoted;
 use crate::mesh::Precision;
@@ -114,6 +115,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
+                cursor.syntax = Syntax::PLAIN;
                 sink.end_nodes(cursor)?;
                 seen.send("z", form(order), sink);
             }
@@ -135,6 +137,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                     }
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+                cursor.syntax = Syntax::PLAIN;
             }
             b"PhysicalNames" if sink.asks_for_groups() => {
                 let count = model::physical_names(cursor, sink)?;
@@ -176,6 +179,31 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
             "The file is cut off or was saved without its mesh: save it again",
         )),
     }
+}
+
+/// Has the rest of a section of so many rows read by these or, as gmsh reads it, by words.
+fn lay_out(cursor: &mut Cursor<'_>, rows: u64) {
+    let (bytes, at) = (&cursor.source.bytes, cursor.at());
+    let end = memchr::memmem::find(&bytes[at..], b"$End").map_or(bytes.len(), |end| at + end);
+    cursor.syntax = of_rows_or_words(cursor, end, rows);
+}
+
+/// Has a list of which each item has a row, with parameters at its end, read by rows.
+fn by_rows<'a, T>(
+    cursor: &mut Cursor<'a>,
+    is_so: bool,
+    read: impl FnOnce(&mut Cursor<'a>) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let syntax = cursor.syntax;
+    if is_so {
+        cursor.syntax = Syntax::PLAIN;
+    }
+    let list = read(cursor)?;
+    if is_so {
+        cursor.rest();
+        cursor.syntax = syntax;
+    }
+    Ok(list)
 }
 
 /// How a number stands in the file.
@@ -241,12 +269,10 @@ fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadErro
     Ok(())
 }
 
-/// Moves to the next of `count` rows of a section, `done` of which were read.
+/// Moves to the next of `count` items of a section, `done` of which were read.
 #[inline]
 fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
-    if !cursor.next_row() {
-        return Err(cursor.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF));
-    }
+    cursor.row(done, count, what)?;
     if cursor.is_at(b'$') {
         let problem = format!("the section ends after {done} of {count} {what}");
         return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
@@ -254,21 +280,39 @@ fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(),
     Ok(())
 }
 
-/// Reads the plain rows of a list in parallel, if the sink allows that. Returns how many of `count` it took; the rest is
-/// to be read one by one.
-fn ahead<'a, T: Send>(
+/// Hands on `count` items of a list, before which `before` of the `all` ones of the section were read. gmsh reads text as words, so
+/// that items stand anywhere on lines.
+fn each<'a, T: Send>(
     cursor: &mut Cursor<'a>,
-    count: u64,
+    (count, before, all, what): (u64, u64, u64, &str),
     sink: &mut dyn Sink,
-    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
-    mut take: impl FnMut(&Cursor<'a>, &mut dyn Sink, T) -> bool,
-) -> u64 {
-    if !sink.takes_ahead() {
-        return 0;
-    }
-    // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
-    let nowhere = &Cursor::new(cursor.source);
-    take_rows(cursor, count, read, |row| take(nowhere, sink, row))
+    read: impl Fn(&mut Cursor<'a>, Option<u64>) -> Result<T, ReadError> + Sync,
+    take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let next = |cursor: &mut Cursor<'a>, done: u64| row(cursor, before + done, all, what);
+    each_item(cursor, count, sink, next, read, take)
+}
+
+/// Reads the counts that a section begins with, and lays out what follows: so many rows as `rows` makes of them.
+fn counts<'a, T: Copy>(
+    cursor: &mut Cursor<'a>,
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
+    rows: impl Fn(T) -> u64,
+) -> Result<T, ReadError> {
+    cursor.syntax = Syntax::WORDS;
+    let counts = head(cursor, (0, 1, "counts"), read)?;
+    lay_out(cursor, rows(counts));
+    Ok(counts)
+}
+
+/// Reads what stands before the items of a list or block, the next of `count` called `what`.
+fn head<'a, T>(
+    cursor: &mut Cursor<'a>,
+    (done, count, what): (u64, u64, &str),
+    read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    row(cursor, done, count, what)?;
+    cursor.item(read, &mut None)
 }
 
 /// Checks that a block of `size` is not larger than what the section's count leaves for it.
@@ -295,7 +339,8 @@ fn end_of_section(
     opened: Location,
     announced: &str,
 ) -> Result<(), ReadError> {
-    if cursor.next_row() && !cursor.is_at(b'$') {
+    let is_more = if cursor.syntax.is_of_words() { cursor.next_word() } else { cursor.next_row() };
+    if is_more && !cursor.is_at(b'$') {
         let problem = format!("${name} goes on after the {announced} it announces");
         return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
     }

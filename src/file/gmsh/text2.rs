@@ -1,7 +1,7 @@
 //! The sections of version 2.2: one line per node and per element.
 
 use super::kind::{kind_of, node_tags};
-use super::{ahead, row};
+use super::{counts, each};
 use crate::error::ReadError;
 use crate::file::heights::Heights;
 use crate::file::sink::{Column, Element, Sink};
@@ -13,20 +13,20 @@ pub(super) fn nodes(
     heights: &mut Heights,
     sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
-    row(cursor, 0, 1, "counts")?;
-    let count = cursor.vertex_count()?;
+    let count = counts(cursor, Cursor::vertex_count, |count| count)?;
     sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
-    let plain = ahead(cursor, count, sink, node, |cursor, sink, (tag, (x_at, at), z)| {
-        sink.node(cursor, tag, 2, x_at, at);
-        heights.see(z);
-        true
-    });
-    for done in plain..count {
-        row(cursor, done, count, "nodes")?;
-        let (tag, (x_at, at), z) = node(cursor)?;
-        sink.node(cursor, tag, 2, x_at, at);
-        heights.see(z);
-    }
+    let list = (count, 0, count, "nodes");
+    each(
+        cursor,
+        list,
+        sink,
+        |cursor, _| node(cursor),
+        |cursor, sink, _, (tag, (x_at, at), z)| {
+            sink.node(cursor, tag, 2, x_at, at);
+            heights.see(z);
+            Ok(())
+        },
+    )?;
     Ok(count)
 }
 
@@ -37,18 +37,13 @@ pub(super) fn columns() -> Vec<Column> {
 
 /// Reads `$Elements` after its first line. Returns their number.
 pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u64, ReadError> {
-    row(cursor, 0, 1, "counts")?;
-    let count = cursor.integer("the number of elements")?;
+    let read = |cursor: &mut Cursor<'_>| cursor.integer("the number of elements");
+    let count = counts(cursor, read, |count| count)?;
     sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
     sink.columns(columns());
-    let plain = ahead(cursor, count, sink, element, |cursor, sink, element| {
-        sink.element(cursor, &element).is_ok()
-    });
-    for done in plain..count {
-        row(cursor, done, count, "elements")?;
-        let element = element(cursor)?;
-        sink.element(cursor, &element)?;
-    }
+    let list = (count, 0, count, "elements");
+    let read = |cursor: &mut Cursor<'_>, _| element(cursor);
+    each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
     Ok(count)
 }
 

@@ -2,10 +2,11 @@
 
 use super::kind::{kind_of, node_tags};
 use super::model::Model;
-use super::{Version, ahead, all_in_blocks, block_fits, row};
+use super::{Version, all_in_blocks, block_fits, by_rows, counts, each, head, row};
 use crate::error::ReadError;
 use crate::file::heights::{Heights, TextNumbers};
 use crate::file::sink::{Element, Sink};
+use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
 use std::fmt::Display;
@@ -16,44 +17,49 @@ pub(super) fn nodes(
     heights: &mut Heights,
     sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
-    row(cursor, 0, 1, "counts")?;
-    let blocks = cursor.integer("the number of node blocks")?;
-    let count = cursor.vertex_count()?;
+    let read = |cursor: &mut Cursor<'_>| {
+        let blocks = cursor.integer("the number of node blocks")?;
+        let count = cursor.vertex_count()?;
+        pass_least_and_greatest(cursor);
+        Ok((blocks, count))
+    };
+    let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(2 * count);
+    let (blocks, count) = counts(cursor, read, rows)?;
     sink.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
     let mut done = 0;
     let mut tags = Vec::new();
     for block in 0..blocks {
-        row(cursor, block, blocks, "node blocks")?;
-        let dimension = cursor.integer("the dimension of a node block")?;
-        let entity = cursor.signed("the entity of a node block").unwrap_or(0);
-        let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+        let read = |cursor: &mut Cursor<'_>| {
+            let dimension = cursor.integer("the dimension of a node block")?;
+            let entity = cursor.signed("the entity of a node block").unwrap_or(0);
+            let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+            let size = cursor.integer("the number of nodes of a block")?;
+            Ok((dimension, entity, parametric, size))
+        };
+        let head = head(cursor, (block, blocks, "node blocks"), read)?;
+        let (dimension, entity, parametric, size) = head;
         let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
-        let size = cursor.integer("the number of nodes of a block")?;
         block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
-        let plain = ahead(cursor, size, sink, node_tag, |_, _, tag| {
+        let read = |cursor: &mut Cursor<'_>, _| cursor.integer("a node tag");
+        each(cursor, (size, done, count, "node tags"), sink, read, |_, _, _, tag| {
             tags.push(tag);
-            true
-        });
-        for at in plain..size {
-            row(cursor, done + at, count, "node tags")?;
-            tags.push(node_tag(cursor)?);
-        }
+            Ok(())
+        })?;
         let before = cursor.clone();
-        let mut owners = tags.iter();
-        let read = |cursor: &mut Cursor<'_>| point(cursor, "a node");
-        let plain = ahead(cursor, size, sink, read, |cursor, sink, ((x_at, at), z)| {
-            heights.see(z);
-            let owner = owners.next();
-            owner.inspect(|&&tag| sink.node(cursor, tag, dimension, x_at, at)).is_some()
-        });
-        for (at, &tag) in (plain..).zip(owners) {
-            row(cursor, done + at, count, "nodes")?;
-            let ((x_at, at), z) = point(cursor, format_args!("node {tag}"))?;
-            sink.node(cursor, tag, dimension, x_at, at);
-            heights.see(z);
-        }
+        let tag = |at: Option<u64>| {
+            at.and_then(|at| tags.get(usize::try_from(at).ok()?)).copied().unwrap_or(0)
+        };
+        let read = |cursor: &mut Cursor<'_>, at| point(cursor, format_args!("node {}", tag(at)));
+        by_rows(cursor, parametric, |cursor| {
+            let list = (size, done, count, "nodes");
+            each(cursor, list, sink, read, |cursor, sink, at, ((x_at, point), z)| {
+                sink.node(cursor, tag(Some(at)), dimension, x_at, point);
+                heights.see(z);
+                Ok(())
+            })
+        })?;
         if wanted {
             parameters(before, &tags, sink)?;
         }
@@ -63,10 +69,17 @@ pub(super) fn nodes(
     Ok(count)
 }
 
+/// Passes over the least and the greatest tag of a section, which are not needed.
+fn pass_least_and_greatest(cursor: &mut Cursor<'_>) {
+    cursor.token();
+    cursor.token();
+}
+
 /// Reads the parameters at the end of the rows of nodes of these tags.
 #[cold]
 fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Result<(), ReadError> {
     let mut numbers = TextNumbers::default();
+    cursor.syntax = Syntax::PLAIN;
     for (done, _) in (0..).zip(tags) {
         row(&mut cursor, done, tags.len() as u64, "nodes")?;
         cursor.tokens(3);
@@ -85,47 +98,45 @@ pub(super) fn elements(
     model: &Model,
     sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
-    row(cursor, 0, 1, "counts")?;
-    let blocks = cursor.integer("the number of element blocks")?;
-    let count = cursor.integer("the number of elements")?;
+    let read = |cursor: &mut Cursor<'_>| {
+        let blocks = cursor.integer("the number of element blocks")?;
+        let count = cursor.integer("the number of elements")?;
+        if version == Version::V4 {
+            pass_least_and_greatest(cursor);
+        }
+        Ok((blocks, count))
+    };
+    let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(count);
+    let (blocks, count) = counts(cursor, read, rows)?;
     sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
     let mut done = 0;
     for block in 0..blocks {
-        row(cursor, block, blocks, "element blocks")?;
-        // The dimension of the entity, which is not needed, stands before its tag in 4.1 and after it in 4.0.
-        if version == Version::V4 {
-            cursor.token();
-        }
-        let entity = cursor.signed("the entity of an element block")?;
-        if version == Version::V40 {
-            cursor.token();
-        }
-        let kind = cursor.integer("the type of an element block")?;
-        let kind = kind_of(cursor, kind)?;
-        sink.within(&model.groups_of(kind, entity));
-        let size = cursor.integer("the number of elements of a block")?;
-        block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>| {
+            // The dimension of the entity, which is not needed, stands before its tag in 4.1 and after it in 4.0.
+            if version == Version::V4 {
+                cursor.token();
+            }
+            let entity = cursor.signed("the entity of an element block")?;
+            if version == Version::V40 {
+                cursor.token();
+            }
+            let kind = cursor.integer("the type of an element block")?;
+            let kind = kind_of(cursor, kind)?;
+            Ok((entity, kind, cursor.integer("the number of elements of a block")?))
+        };
+        let (entity, kind, size) = head(cursor, (block, blocks, "element blocks"), read)?;
+        sink.within(&model.groups_of(kind, entity));
+        block_fits(cursor, size, count - done, "elements")?;
+        let read = |cursor: &mut Cursor<'_>, _| {
             let tag = cursor.integer("an element tag")?;
             Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
         };
-        let plain = ahead(cursor, size, sink, read, |cursor, sink, element| {
-            sink.element(cursor, &element).is_ok()
-        });
-        for at in plain..size {
-            row(cursor, done + at, count, "elements")?;
-            let element = read(cursor)?;
-            sink.element(cursor, &element)?;
-        }
+        let list = (size, done, count, "elements");
+        each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
         done += size;
     }
     all_in_blocks(cursor, done, count, "elements")?;
     Ok(count)
-}
-
-#[inline]
-fn node_tag(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
-    cursor.integer("a node tag")
 }
 
 /// x and y with the place of x, and z with its own.

@@ -8,6 +8,7 @@ use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
 use crate::file::heights::Heights;
+use crate::file::layout::of_rows_or_words;
 use crate::file::numbers::{Form, Numbers, Places};
 use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
@@ -117,7 +118,16 @@ fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>>), ReadErr
                     None => return Err(cursor.error("a property of no element", CORRECT)),
                 }
             }
-            b"end_header" => return Ok((items, lists)),
+            b"end_header" => {
+                if items.order.is_none() {
+                    // Many programs read text as words.
+                    let listed = lists.iter().filter(|list| !list.properties.is_empty());
+                    let count = listed.fold(0, |sum: u64, list| sum.saturating_add(list.count));
+                    cursor.syntax = of_rows_or_words(cursor, cursor.source.bytes.len(), count);
+                    cursor.rest();
+                }
+                return Ok((items, lists));
+            }
             _ => {}
         }
     }
@@ -137,6 +147,9 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
         b"ushort" | b"uint16" => integer(2, false),
         b"int" | b"int32" => integer(4, true),
         b"uint" | b"uint32" => integer(4, false),
+        // meshio writes these of numpy's arrays.
+        b"int64" => integer(8, true),
+        b"uint64" => integer(8, false),
         b"float" | b"float32" => Ok(Number::Float),
         b"double" | b"float64" => Ok(Number::Double),
         other => Err(cursor.error(format!("`{}` is no type of PLY", quoted(other)), CORRECT)),
@@ -227,30 +240,47 @@ impl Items {
         from: u64,
         mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
+        // There is nothing of them in the file, however many there are.
+        if list.properties.is_empty() {
+            return Ok(());
+        }
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); list.properties.len()];
         let mut places = vec![0; list.properties.len()];
+        let (mut missing, mut is_plain) = (None, from > 0);
         for done in from..list.count {
-            if self.order.is_none() {
-                cursor.row(done, list.count, "items")?;
-            }
             let mut item = None;
-            for (index, property) in list.properties.iter().enumerate() {
-                values[index].clear();
-                let length = match property.length {
-                    None => 1,
-                    Some(length) => self.value(cursor, length, &mut item)?.0 as u64,
-                };
-                for n in 0..length {
-                    let (value, at) = self.value(cursor, property.number, &mut item)?;
-                    if n == 0 {
-                        places[index] = at;
+            let mut read = |cursor: &mut Cursor<'a>| {
+                for (index, property) in list.properties.iter().enumerate() {
+                    values[index].clear();
+                    let length = match property.length {
+                        None => 1,
+                        Some(length) => self.value(cursor, length, &mut item)?.0 as u64,
+                    };
+                    for n in 0..length {
+                        let (value, at) = self.value(cursor, property.number, &mut item)?;
+                        if n == 0 {
+                            places[index] = at;
+                        }
+                        values[index].push(value);
                     }
-                    values[index].push(value);
                 }
-            }
-            match item {
-                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places)?,
-                None => take(cursor, &values, &places)?,
+                Ok(())
+            };
+            let read = match self.order {
+                Some(_) => read(cursor),
+                None => cursor
+                    .row(done, list.count, "items")
+                    .and_then(|()| cursor.item(&mut read, &mut missing)),
+            };
+            let taken = read.and_then(|()| match item {
+                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places),
+                None => take(cursor, &values, &places),
+            });
+            match taken {
+                Ok(()) => is_plain |= missing.is_none(),
+                // Where a single row of many lacks a number, the next ones are read wrongly.
+                Err(error) if is_plain => return Err(missing.unwrap_or(error)),
+                Err(error) => return Err(error),
             }
         }
         Ok(())

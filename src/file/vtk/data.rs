@@ -1,14 +1,13 @@
 //! Data of points and cells of a legacy VTK file: what names the regions of cells is read, and what of points the sink
 //! wants; the rest is passed over.
 
-use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::heights::TextNumbers;
 use crate::file::label::Label;
 use crate::file::numbers::{Form, Places};
 use crate::file::sink::{Column, PointNumbers, Sink, Stored};
-use crate::file::text::{CUT_OFF, Cursor};
-use crate::file::token::quoted;
+use crate::file::text::Cursor;
+use crate::file::vtk::passed::{array_name, pass, size_of};
 use crate::file::vtk::take;
 use crate::mesh::Precision;
 use std::borrow::Cow;
@@ -286,66 +285,7 @@ fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
         b"unsigned_char" => |number| (number & 0xff) as f64,
         b"unsigned_short" => |number| (number & 0xffff) as f64,
         b"unsigned_int" => |number| (number & 0xffff_ffff) as f64,
+        b"vtktypeuint64" | b"unsigned_long" => |number| number.cast_unsigned() as f64,
         _ => |number| number as f64,
     }
-}
-
-/// Passes over a list of numbers.
-fn pass(cursor: &mut Cursor<'_>, binary: bool, kind: &[u8], count: u64) -> Result<(), ReadError> {
-    if !binary || kind == b"string" {
-        for _ in 0..count {
-            if !cursor.next_word() {
-                return Err(cursor.error("the file ends within an array", CUT_OFF));
-            }
-            cursor.token();
-        }
-        return Ok(());
-    }
-    match size_of(kind) {
-        Some(size) => take(cursor, count, size).map(|_| ()),
-        None => {
-            let problem = format!("an array of the type `{}`", quoted(kind));
-            Err(cursor.error(problem, "Save without it"))
-        }
-    }
-}
-
-/// How many bytes a number of this type has.
-fn size_of(kind: &[u8]) -> Option<usize> {
-    match kind.to_ascii_lowercase().as_slice() {
-        b"char" | b"unsigned_char" | b"signed_char" => Some(1),
-        b"short" | b"unsigned_short" => Some(2),
-        b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" => Some(4),
-        b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64" => Some(8),
-        _ => None,
-    }
-}
-
-/// Reads the name of an array, and before it what describes the array before.
-fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
-    loop {
-        let name = cursor.token()?;
-        if !name.eq_ignore_ascii_case(b"METADATA") {
-            return Some(name);
-        }
-        while cursor.line().is_some_and(|line| !line.is_empty()) {}
-        cursor.next_row().then_some(())?;
-    }
-}
-
-/// Passes over the arrays of a field of the dataset.
-pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
-    cursor.token();
-    let arrays = cursor.integer("the number of arrays of a field")?;
-    for done in 0..arrays {
-        cursor.row(done, arrays, "arrays of a field")?;
-        if array_name(cursor).is_none() {
-            return Err(cursor.error("the file ends within a field", CUT_OFF));
-        }
-        let components = cursor.integer("the number of components")?;
-        let tuples = cursor.integer("the number of tuples")?;
-        let kind = cursor.token().unwrap_or_default();
-        pass(cursor, binary, kind, components.saturating_mul(tuples))?;
-    }
-    Ok(())
 }

@@ -7,6 +7,7 @@
 mod cells;
 mod data;
 mod lists;
+mod passed;
 
 pub(in crate::file) use cells::{Cell, Triangles, Tries};
 pub(in crate::file) use data::names_regions;
@@ -85,7 +86,7 @@ impl Walk for Vtk {
                 b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
                 b"FIELD" => {
                     sink.leaves_out("field data");
-                    data::pass_field(cursor, binary)?;
+                    passed::pass_field(cursor, binary)?;
                 }
                 // Data of points and cells, to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {

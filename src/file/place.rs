@@ -1,0 +1,103 @@
+//! Where a file has its vertices and triangles, for messages.
+
+use crate::error::Location;
+use crate::file::assemble;
+use crate::file::families::Family;
+use crate::file::format::Format;
+use crate::file::mesh_file::MeshFile;
+use crate::file::triangle;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub path: PathBuf,
+    /// The line or byte.
+    pub location: Location,
+    /// The file's own number or tag for it.
+    pub label: u64,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.path.display(), self.location)
+    }
+}
+
+impl MeshFile {
+    /// Where vertex `index` (zero-based, as in [`Mesh::points`](crate::Mesh::points)) has its coordinates.
+    ///
+    /// Meant for messages: it may search the whole file.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn vertex_place(&self, index: u32) -> Place {
+        let found = self.vertex_places([index]).remove(&index);
+        found.unwrap_or_else(|| panic!("there is no vertex {index}"))
+    }
+
+    /// Where vertices have their coordinates, by their zero-based indices. The file is searched once for all of them.
+    /// Indices of no vertex are left out.
+    pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
+        let wanted: Vec<u32> = indices.into_iter().collect();
+        // A copy is where its vertex is.
+        let count = self.original().points.len();
+        let owner = |v: u32| match self.chart().zip((v as usize).checked_sub(count)) {
+            Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
+            None => v,
+        };
+        let owners = wanted.iter().map(|&v| owner(v) as usize).collect();
+        let found = self.places_of(owners);
+        let place = |&v: &u32| Some((v, found.get(&owner(v))?.clone()));
+        wanted.iter().filter_map(place).collect()
+    }
+
+    fn places_of(&self, mut wanted: Vec<usize>) -> BTreeMap<u32, Place> {
+        keep_ascending(&mut wanted, self.original().points.len());
+        let source = &self.sources()[0];
+        let found = match &Family::of(self.format()).reader {
+            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at().at(v))),
+            Some(reader) => assemble::vertex_places(reader, source, &wanted),
+        };
+        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
+    }
+
+    /// Where triangle `index` (zero-based, as in [`Mesh::triangles`](crate::Mesh::triangles)) lists its vertices.
+    ///
+    /// Meant for messages: it may search the whole file.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn triangle_place(&self, index: usize) -> Place {
+        let found = self.triangle_places([index]).remove(&index);
+        found.unwrap_or_else(|| panic!("there is no triangle {index}"))
+    }
+
+    /// Where triangles list their vertices, by their zero-based indices. The file is searched once for all of them.
+    /// Indices of no triangle are left out.
+    pub fn triangle_places(
+        &self,
+        indices: impl IntoIterator<Item = usize>,
+    ) -> BTreeMap<usize, Place> {
+        let mut wanted: Vec<usize> = indices.into_iter().collect();
+        keep_ascending(&mut wanted, self.mesh().triangles.len());
+        let source = &self.sources()[usize::from(self.format() == Format::Triangle)];
+        let found = match &Family::of(self.format()).reader {
+            None => triangle::triangle_places(source, &wanted),
+            Some(reader) => assemble::triangle_places(reader, source, &wanted),
+        };
+        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        wanted.iter().copied().zip(found.into_iter().map(place)).collect()
+    }
+}
+
+/// Sorts indices, each once, and drops those that are not below `count`.
+fn keep_ascending(indices: &mut Vec<usize>, count: usize) {
+    indices.retain(|&index| index < count);
+    indices.sort_unstable();
+    indices.dedup();
+}

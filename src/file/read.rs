@@ -1,0 +1,142 @@
+//! Reading a mesh from its file, or from a program's memory.
+
+use crate::error::ReadError;
+use crate::file::assemble;
+use crate::file::detect::{self, Content};
+use crate::file::families::TRIANGLE;
+use crate::file::mesh_file::MeshFile;
+use crate::file::sink::Reader;
+use crate::file::source::Source;
+use crate::file::triangle;
+use crate::file::triangle_names::Names;
+use std::path::Path;
+
+impl MeshFile {
+    /// Reads a mesh, in the format its content shows.
+    ///
+    /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
+    /// compressed by gzip or zstd.
+    ///
+    /// # Errors
+    /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
+    /// [`Format`](crate::Format), does not hold what its format asks for, or holds other than first-order
+    /// elements of the plane, or no triangle.
+    pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
+        Self::read_as(path, false)
+    }
+
+    /// Reads a mesh as [`read`](Self::read) does, an STL too: there corners of triangles at the same place become one
+    /// vertex. Vertices are numbered in the order in which the file first has them, and are written wherever it has
+    /// them. Meshes of other formats are read as they are.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for [`read`](Self::read), and for an STL whose corners have not all the same third coordinate.
+    pub fn read_welded(path: &Path) -> Result<MeshFile, ReadError> {
+        Self::read_as(path, true)
+    }
+
+    fn read_as(path: &Path, welds: bool) -> Result<MeshFile, ReadError> {
+        let names = Names::of(path);
+        let has_half = names.node.is_file() || names.ele.is_file();
+        let has_ending = TRIANGLE.has_ending_of(path);
+        if has_half && !has_ending && !path.is_file() {
+            return Self::read_as(&names.node, welds);
+        }
+        let mut given = match Source::load(path) {
+            Err(_) if has_half && has_ending && !path.exists() => half_missing(path, &names)?,
+            given => given?,
+        };
+        given.welds = welds;
+        match content(&given)? {
+            Content::Of(reader) => of_one_file(reader, given),
+            Content::Triangle(names) => Self::read_triangle(given, &names),
+        }
+    }
+
+    /// Reads a mesh that a program has in memory, such as its standard input. `name` stands for it in messages, and its
+    /// ending helps to tell the format where the content is not enough.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for [`read`](Self::read), and for files of Triangle, of which there are two to a mesh.
+    pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        Self::of_source(Source::new(name, bytes)?)
+    }
+
+    /// Reads a mesh in memory as [`from_bytes`](Self::from_bytes) does, an STL too, as
+    /// [`read_welded`](Self::read_welded) tells.
+    ///
+    /// # Errors
+    /// [`ReadError`] as for these two.
+    pub fn from_bytes_welded(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        Self::of_source(Source { welds: true, ..Source::new(name, bytes)? })
+    }
+
+    fn of_source(given: Source) -> Result<MeshFile, ReadError> {
+        match content(&given)? {
+            Content::Of(reader) => of_one_file(reader, given),
+            Content::Triangle(_) => {
+                let problem = "one of the two files of a Triangle mesh";
+                Err(given.error(problem, "Name its .node, so that both are read"))
+            }
+        }
+    }
+
+    fn read_triangle(given: Source, names: &Names) -> Result<MeshFile, ReadError> {
+        let load = |path: &Path| match Source::load(path) {
+            Err(_) if !path.exists() => half_missing(path, names),
+            loaded => loaded,
+        };
+        let (node, ele) = if given.path == names.ele {
+            (load(&names.node)?, given)
+        } else {
+            (given, load(&names.ele)?)
+        };
+        let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
+        if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
+            let problem =
+                "files of Triangle are not read compressed, as there are several to a mesh";
+            return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
+        }
+        if let Some(error) = [&node, &ele].into_iter().chain(&poly).find_map(ends_by_returns) {
+            return Err(error);
+        }
+        let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
+        let sources = [node, ele].into_iter().chain(poly).collect();
+        MeshFile::new(parsed, sources)
+    }
+}
+
+/// What a file holds.
+fn content(given: &Source) -> Result<Content, ReadError> {
+    detect::content(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
+}
+
+fn of_one_file(reader: &Reader, given: Source) -> Result<MeshFile, ReadError> {
+    // Formats that go by words are read whatever ends lines.
+    let ends = ends_by_returns(&given);
+    let read = assemble::parse(reader, &given);
+    let made = read.and_then(|parsed| MeshFile::new(parsed, vec![given]));
+    made.map_err(|error| ends.unwrap_or(error))
+}
+
+/// The error for a text whose lines end as those of old Macintosh systems do.
+fn ends_by_returns(source: &Source) -> Option<ReadError> {
+    let is_control = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\r' | b'\x0C');
+    let is_text = memchr::memchr2(b'\n', 0, &source.bytes).is_none()
+        && !source.bytes[..source.bytes.len().min(512)].iter().any(is_control);
+    (is_text && memchr::memchr(b'\r', &source.bytes).is_some()).then(|| {
+        let problem = "its lines end in carriage returns alone, as on old Macintosh systems";
+        source.error(problem, "Make them line feeds first: tr '\\r' '\\n' < IN > OUT")
+    })
+}
+
+/// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.
+fn half_missing(missing: &Path, names: &Names) -> Result<Source, ReadError> {
+    let there = if missing == names.node { &names.ele } else { &names.node };
+    let remedy = format!(
+        "A Triangle mesh is two files: put it beside {} (Triangle writes both)",
+        there.display()
+    );
+    let source = std::io::Error::new(std::io::ErrorKind::NotFound, "not found");
+    Err(ReadError::Io { path: missing.to_owned(), source, remedy })
+}

@@ -1,0 +1,167 @@
+//! Where a mesh and its report may be written, and under which names meshes go.
+
+use super::files::{Layout, gmsh_text, middle_row, triangle_files, triangle_folder};
+use super::{Folder, assert_holds, disturbed, number, small, support};
+use std::fs;
+
+#[test]
+fn a_mesh_is_replaced_in_place() {
+    let folder = small();
+    let gmsh = gmsh_text(&disturbed(), &middle_row(), Layout::Gmsh41);
+    for name in ["a.msh", "b.msh"] {
+        fs::write(folder.path(name), &gmsh).unwrap();
+    }
+    folder.line("in.node out.node --engine cpu").clean();
+    folder.line("in.node in.node --engine cpu").clean();
+    assert_eq!(folder.text("in.node"), folder.text("out.node"));
+    assert_eq!(folder.text("in.ele"), folder.text("out.ele"));
+    folder.line("a.msh out.msh --engine cpu --quiet").clean();
+    folder.line("b.msh b.msh --engine cpu --quiet").clean();
+    assert_eq!((folder.text("b.msh"), folder.text("a.msh")), (folder.text("out.msh"), gmsh));
+    assert_eq!(folder.content().len(), 7);
+}
+
+#[test]
+fn a_triangle_mesh_goes_by_any_of_its_names() {
+    let folder = small();
+    fs::create_dir(folder.path("a b")).unwrap();
+    for (input, output) in [("in", "a b/1"), ("in.ele", "a b/2.node"), ("in.node", "a b/3.1.ele")] {
+        folder.run([input, output, "--engine", "cpu"]).clean();
+    }
+    let nodes = ["a b/1.node", "a b/2.node", "a b/3.1.node"].map(|name| folder.text(name));
+    assert!(nodes[0] == nodes[1] && nodes[1] == nodes[2] && nodes[0] != folder.text("in.node"));
+    for name in ["a b/1.ele", "a b/2.ele", "a b/3.1.ele"] {
+        assert_eq!(folder.text(name), folder.text("in.ele"));
+    }
+}
+
+#[test]
+fn no_sweep_gives_back_the_bytes() {
+    let files = triangle_files(&disturbed(), 1);
+    let folder = triangle_folder(&files);
+    let run = folder.line("in out --max-sweeps 0 --engine cpu").clean();
+    assert_holds(&run.out, &["stopped after 0 sweeps, the most allowed"]);
+    assert_eq!([folder.text("out.node"), folder.text("out.ele")], files);
+}
+
+#[test]
+fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
+    let folder = small();
+    fs::write(folder.path("in.msh"), support::write_msh22(&disturbed())).unwrap();
+    fs::write(folder.path("old.node"), "old").unwrap();
+    fs::write(folder.path("locked.ele"), "old").unwrap();
+    fs::create_dir(folder.path("dir")).unwrap();
+    fs::write(folder.path("locked.json"), "old").unwrap();
+    for name in ["locked.ele", "locked.json"] {
+        let mut permissions = fs::metadata(folder.path(name)).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(folder.path(name), permissions).unwrap();
+    }
+    let before = folder.content();
+    let cases: [(&str, &[&str]); 13] = [
+        ("in.node none/out.node", &["none: no such directory", "Create the directory first"]),
+        ("in.node out.msh", &["out.msh: its ending is that of gmsh", "end the name in .node"]),
+        ("in.msh out.node", &["out.node: its ending is that of Triangle", "end the name in .msh"]),
+        (
+            "in.msh out.vtk",
+            &["out.vtk: its ending is that of legacy VTK", "and convert the result"],
+        ),
+        ("in.node locked", &["locked.ele: the file is read-only", "Make it writable"]),
+        ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
+        ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),
+        ("in.node out --report dir", &["the report cannot be written: dir: ", "name of a file"]),
+        ("in.node out --report locked.ele", &["locked.ele: the report is JSON, not a mesh"]),
+        ("in.node out --report locked.json", &["the report", "locked.json: the file is read-only"]),
+        ("in.node old --report old.node", &["old.node: the report is JSON", "End its name in"]),
+        ("in.msh out --report out", &["out: the report is JSON, not a mesh"]),
+        ("in.msh out.msh --report in.msh", &["in.msh: the report is JSON, not a mesh"]),
+    ];
+    for (line, parts) in cases {
+        folder.line(&format!("{line} --engine cpu")).refused(parts);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+}
+
+/// A mesh, its `.poly` included, under names that do not end as those of meshes do, and links to them.
+#[cfg(unix)]
+fn linked() -> Folder {
+    use std::os::unix::fs::symlink;
+    let folder = small();
+    fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 50 51\n0\n").unwrap();
+    fs::write(folder.path("mesh"), support::write_msh22(&disturbed())).unwrap();
+    fs::create_dir(folder.path("sub")).unwrap();
+    for name in ["in.node", "in.ele", "in.poly", "out.ele", "later"] {
+        symlink(name, folder.path(&format!("to-{name}.json"))).unwrap();
+    }
+    symlink("to-later.json", folder.path("to-to-later.json")).unwrap();
+    symlink(".", folder.path("here")).unwrap();
+    fs::hard_link(folder.path("mesh"), folder.path("mesh.json")).unwrap();
+    fs::hard_link(folder.path("in.poly"), folder.path("poly.json")).unwrap();
+    folder
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link() {
+    let folder = linked();
+    let before = folder.content();
+    for line in [
+        "mesh out --report ./mesh",
+        "mesh out --report sub/../mesh",
+        "mesh out --report here/mesh",
+        "./mesh out --report mesh",
+        "mesh out --report mesh.json",
+        "in out --report to-in.node.json",
+        "in out --report here/to-in.ele.json",
+        "in out --report to-in.poly.json",
+        "in out --report poly.json",
+        // What is written, there or not.
+        "mesh out --report ./out",
+        "mesh later --report to-later.json",
+        "mesh here/later --report to-to-later.json",
+        "mesh to-later.json --report later",
+        "in out --report to-out.ele.json",
+    ] {
+        folder.line(&format!("{line} --engine cpu")).refused(&["the report is JSON, not a mesh"]);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+    let run = folder.line("mesh out --engine cpu --report sub/out");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert!(number(&folder.json("sub/out")["sweeps"]) > 0.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
+    let folder = small();
+    fs::write(folder.path("r.json"), "old").unwrap();
+    // Writing into the old file instead of replacing it would show here.
+    fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
+    folder.line("in out --engine cpu --report r.json").clean();
+    assert_eq!(folder.text("kept"), "old");
+    assert!(number(&folder.json("r.json")["sweeps"]) > 0.0);
+    assert_eq!(folder.content().len(), 6);
+}
+
+/// Names of files are bytes: what is no text, a line end, or what a terminal obeys.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_of_any_bytes_are_read_and_written_and_told_on_one_line() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = small();
+    let named = |bytes: &'static [u8]| OsStr::from_bytes(bytes);
+    for (from, to) in [("in.node", &b"\xFF\n.node"[..]), ("in.ele", b"\xFF\n.ele")] {
+        fs::rename(folder.path(from), folder.0.path().join(OsStr::from_bytes(to))).unwrap();
+    }
+    let [cpu, quiet, report] = ["--engine=cpu", "-q", "--report"].map(OsStr::new);
+    let args = [named(b"\xFF\n"), named(b"\xFE\x1B[31m"), cpu, quiet, report, named(b"\xFD.json")];
+    folder.run(args).clean();
+    for written in [&b"\xFE\x1B[31m.node"[..], b"\xFE\x1B[31m.ele", b"\xFD.json"] {
+        assert!(folder.0.path().join(OsStr::from_bytes(written)).exists(), "{written:?}");
+    }
+    let run = folder.run([named(b"none\xFF\x1B[31m\x07"), named(b"out"), cpu]);
+    let run = run.refused(&["none\u{FFFD}\\u{1b}[31m\\u{7}"]);
+    assert_eq!(run.err.lines().count(), 1, "{}", run.err);
+}
