@@ -142,11 +142,14 @@ fn an_interrupted_run_leaves_the_best_mesh_so_far() {
 
 #[test]
 fn a_goal_not_reached_is_told_when_interrupted() {
-    let folder = Folder::new(&[]);
-    let plate = plate_path().to_str().unwrap();
-    let args = [plate, "out", "-v", "--engine", "cpu", "--method", "paper", "--desired", "1"];
-    let args = [&args[..], &["--fraction", "1", "--scheme", "edge+imr"]].concat();
-    // Sweeps so slow that the run does not stall before the signal.
+    // A mesh so large, and sweeps so slow, that the run does not stall before the signal.
+    let mesh = support::perturb_random(&support::lattice(90, 90), 1.0, 1);
+    let mut text = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
+    text.extend(mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n")));
+    text.extend(mesh.triangles.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")));
+    let folder = Folder::new(&[("in.off", &text)]);
+    let args = ["in.off", "out.off", "-v", "--engine", "cpu", "--method", "paper"];
+    let args = [&args[..], &["--desired", "1", "--fraction", "1", "--scheme", "edge+imr"]].concat();
     let args = [&args[..], &["--derivatives", "finite-difference", "--inner", "30"]].concat();
     let mut run = Started::new(&folder, &[&args[..], &["--max-sweeps", "100000000"]].concat());
     run.first_of("gpu-smooth: sweep ");
