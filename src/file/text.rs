@@ -397,14 +397,15 @@ impl<'a> Cursor<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn source(text: &[u8]) -> Source {
+    pub(crate) fn source(text: &[u8]) -> Source {
         Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None, welds: false }
     }
 
-    fn row_of(source: &Source) -> Cursor<'_> {
+    /// On the first row.
+    pub(crate) fn row_of(source: &Source) -> Cursor<'_> {
         let mut cursor = Cursor::new(source);
         cursor.next_row();
         cursor

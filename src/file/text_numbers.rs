@@ -183,18 +183,7 @@ impl<'a> Cursor<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::file::source::Source;
-
-    fn source(text: &[u8]) -> Source {
-        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None, welds: false }
-    }
-
-    fn row_of(source: &Source) -> Cursor<'_> {
-        let mut cursor = Cursor::new(source);
-        cursor.next_row();
-        cursor
-    }
+    use crate::file::text::tests::{row_of, source};
 
     #[test]
     fn signed_integers() {
