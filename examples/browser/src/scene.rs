@@ -15,6 +15,9 @@ const WORST: f64 = 8.0;
 /// Where the share of a drag stands in the buffer of numbers, after the objectives.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
 
+/// How good the mesh was when it was last heard of, and where its vertices were.
+pub(crate) type Seen<'a> = (ObjectiveValues, &'a [[f32; 2]]);
+
 pub(crate) struct Scene {
     gpu: Gpu,
     bound: BoundVertices,
@@ -122,7 +125,7 @@ impl Scene {
     }
 
     /// What the last frames that have arrived left: how good the mesh is, and its vertices. `None` until the first has arrived.
-    pub(crate) fn seen(&mut self) -> Result<Option<(ObjectiveValues, &[[f32; 2]])>, SmoothError> {
+    pub(crate) fn seen(&mut self) -> Result<Option<Seen<'_>>, SmoothError> {
         let values = self.values.latest()?.map(|values| values[0]);
         let positions = self.positions.latest()?;
         Ok(values.zip(positions))
