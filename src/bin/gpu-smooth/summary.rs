@@ -146,12 +146,12 @@ impl Report {
             false => "",
         };
         format!(
-            "19 of 20 vertices moved {:.2} edges at most (half {:.2}, the farthest {:.2}), and sizes there changed by {} (half {}, the most {}){keeps}",
-            moved.most_of_twenty,
+            "vertices moved {:.2} edges (median), {:.2} (95 %), {:.2} (most); sizes around them changed by {}, {}, {}{keeps}",
             moved.median,
+            moved.most_of_twenty,
             moved.most,
-            percent(size.most_of_twenty),
             percent(size.median),
+            percent(size.most_of_twenty),
             percent(size.most),
         )
     }
