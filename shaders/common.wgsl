@@ -10,7 +10,10 @@ struct Part {
     // The inverse mean ratio up to which any step may flatten a triangle, NO_GUARD for any.
     shape_guard: f32,
     // Entries of `ring` in front of the binding.
-    @size(12) ring_base: u32,
+    ring_base: u32,
+    // How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's
+    // objective; 1 for never.
+    @size(8) longest: f32,
 }
 
 @group(0) @binding(1) var<uniform> part: Part;

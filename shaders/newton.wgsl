@@ -21,6 +21,16 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     return vec2(sum, 1.0);
 }
 
+// How many times as long as Newton's a step is tried first, where nearly flat triangles make up most of the patch's
+// objective E. `decrease` is gᵀH⁻¹g. See src/run/line_search.rs.
+fn lengthening(decrease: f32, squares: f32) -> f32 {
+    let share = decrease / squares;
+    if part.longest <= 1.0 || squares <= LEAST_FLAT || !(share > MOSTLY_FLAT) {
+        return 1.0;
+    }
+    return 1.0 / max(1.0 - BENT * share, 1.0 / part.longest);
+}
+
 // The Newton step with its line search, in the patch's unit; zero if none improves the patch.
 fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     var value = 0.0;
@@ -52,8 +62,9 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     if down.z >= 0.0 {
         return vec2(0.0);
     }
-    let slack = SLACK * (value + f32(p.end - p.start) * IDEAL_SQUARED);
-    var length = omega;
+    let squares = value + f32(p.end - p.start) * IDEAL_SQUARED;
+    let slack = SLACK * squares;
+    var length = omega * lengthening(-down.z, squares);
     for (var trial = 0u; trial < TRIALS; trial++) {
         let d = down.xy * length;
         let there = objective_at(p, d, limit);

@@ -73,6 +73,19 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     let wanted = slope * line_search::SUFFICIENT_DECREASE;
 
     let mut length = at[0].constant(step.omega);
+    if properties.barrier {
+        let share = -slope / squares;
+        let flat =
+            share.simd_gt(line_search::MOSTLY_FLAT) & squares.simd_gt(line_search::LEAST_FLAT);
+        let rest = Real::max(
+            share.constant(1.0) - share * line_search::BENT,
+            share.constant(1.0 / step.longest),
+        );
+        // A triangle may be as flat as positions are coarse. A step no longer than that would be rounded away.
+        let coarse = Real::max(at[0].abs(), at[1].abs()) * line_search::LEAST_MOVE;
+        let far = Real::max(length / rest, coarse / Real::sqrt(dx * dx + dy * dy));
+        length = flat.select(far, length);
+    }
     let mut searching = going & descends;
     let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
     // A triangle may stay as bad as the patch's worst. Few trials break the guard, so that is found when one does.

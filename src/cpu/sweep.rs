@@ -106,6 +106,7 @@ fn find(
         sharpness,
         derivatives: Derivatives::Analytic,
         shape_guard: f64::INFINITY,
+        longest: 1.0,
     };
     // Color by color, as vertices with equally many neighbors are together within a color.
     for color in problem.colors() {

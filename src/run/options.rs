@@ -5,6 +5,7 @@ use crate::layout::Problem;
 use crate::mesh::Precision;
 use crate::metric::Metric;
 use crate::metric::Scheme;
+use crate::run::line_search::LONGEST;
 use crate::run::plan::Plan;
 use crate::run::step::{Derivatives, Sharpness};
 use crate::run::stop::StopRule;
@@ -260,6 +261,7 @@ impl Options {
             track_all: self.track_all,
             shape_guard: f64::INFINITY,
             worst_guard: f64::INFINITY,
+            longest: if self.is_multilevel() { LONGEST } else { 1.0 },
         }
     }
 }

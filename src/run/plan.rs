@@ -31,6 +31,9 @@ pub struct Plan {
     /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch already had a
     /// worse one. Infinite for none.
     pub worst_guard: f64,
+    /// How many times as long as Newton's a step by a metric with a barrier may be tried where nearly flat triangles make up most of
+    /// a patch's objective; 1 for never.
+    pub longest: f64,
 }
 
 impl Plan {
@@ -76,6 +79,7 @@ impl Plan {
             sharpness,
             derivatives: self.derivatives[metric as usize],
             shape_guard: of_metric.min(self.worst_guard) * (1.0 - line_search::GUARD_RESERVE),
+            longest: if metric.properties().barrier { self.longest } else { 1.0 },
         }
     }
 

@@ -19,6 +19,9 @@ pub struct Step {
     /// [`Plan::shape_guard`](super::Plan::shape_guard) and that of the metric, if it has no barrier, and of
     /// [`Plan::worst_guard`](super::Plan::worst_guard), less a reserve for rounding. Infinite for none.
     pub shape_guard: f64,
+    /// How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's objective; 1
+    /// for never.
+    pub longest: f64,
 }
 
 /// How a metric is differentiated.

@@ -69,6 +69,47 @@ fn a_run_that_ends_before_they_are_open_is_done_on_the_cpu() {
     }
 }
 
+/// A lattice of which some vertices lie as near to an edge opposite as coordinates in double precision can be.
+fn pressed_flat() -> Mesh {
+    let mut mesh = flattened(0.0);
+    for point in &mut mesh.points {
+        *point = [point[0] / 16.0 + 0.5, point[1] / 16.0 + 0.35];
+    }
+    for v in 0..mesh.points.len() {
+        let star = mesh.triangles.iter().filter(|t| t.contains(&(v as u32)));
+        let mut around = Mesh { triangles: star.copied().collect(), ..mesh.clone() };
+        // To the left, as few units in the last place as it takes.
+        while !support::is_ccw(&around) && v % 37 == 5 {
+            around.points[v][0] = around.points[v][0].next_down();
+        }
+        mesh.points = around.points;
+    }
+    mesh
+}
+
+/// Newton's steps out of such a triangle are shorter than positions are rounded to. It once stayed as it was, and as f was that of
+/// this triangle alone, the whole mesh came back unsmoothed and was called converged.
+#[test]
+fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
+    let mesh = pressed_flat();
+    let worst = support::worst_imr(&mesh);
+    assert!(support::is_ccw(&mesh) && worst > 1e13 && worst.is_finite(), "{worst:e}");
+    let smoother = Smoother::new(&mesh).unwrap();
+    for metric in [Metric::Imr, Metric::ShapeSize] {
+        for (method, most) in [(Method::Auto, 40), (Method::Sweeps, 300)] {
+            let options = Options { scheme: metric.into(), method, ..Options::default() };
+            for backend in backends() {
+                let outcome = run(&smoother, &options, backend);
+                let label = format!("{metric} by {method:?} on the {}", name(backend));
+                let after = with_points(&mesh, &outcome.points);
+                let worst = support::worst_imr(&after);
+                assert!(support::is_ccw(&after) && worst < 1.1, "{label}: {worst:e}");
+                assert!(outcome.sweeps <= most, "{label}: {} sweeps", outcome.sweeps);
+            }
+        }
+    }
+}
+
 /// Counts how often a future asks to be polled again.
 #[derive(Default)]
 struct Wakes(AtomicUsize);

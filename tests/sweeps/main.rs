@@ -127,6 +127,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
         worst_guard: f64::INFINITY,
+        longest: 1.0,
         shape_guard: f64::INFINITY,
     }
 }

@@ -63,7 +63,8 @@ pub(crate) struct Part {
     pub(crate) sharpness: u32,
     pub(crate) shape_guard: f32,
     pub(crate) ring_base: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) longest: f32,
+    pub(crate) padding: u32,
 }
 
 /// `LevelOp` in shaders/levels/common.wgsl.
@@ -295,7 +296,7 @@ mod tests {
                 targets,
             }
         );
-        mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base });
+        mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base, longest });
         mirrors!(
             &Kernel::MatrixVector,
             LevelOp {
