@@ -1,10 +1,11 @@
 //! What a run changed: how far vertices moved, and how sizes of elements changed.
 
 use crate::error::MeshError;
+use crate::mesh::Precision;
 use crate::parallel::collect;
 use crate::topology::Topology;
 
-/// What is different between two states of a mesh, at its free vertices.
+/// What is different between two states of a mesh, at its free vertices and at those on lines that have slid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
     /// How far vertices moved, in the mean length of their edges before.
@@ -16,7 +17,7 @@ pub struct Change {
     pub least_altitude: [f64; 2],
 }
 
-/// How a number is spread over the free vertices; all zero if there are none.
+/// How a number is spread over vertices; all zero if there are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Half of the vertices have no more.
@@ -50,21 +51,28 @@ impl Change {
         topology.check_count(after)?;
         let (was, low_before) = around(topology, before);
         let (is, low_after) = around(topology, after);
-        let free: Vec<u32> =
-            (0..).zip(topology.free()).filter(|(_, f)| **f).map(|(v, _)| v).collect();
+        let is_free = |v: usize| topology.free()[v];
+        // A vertex that must stay is rounded where a result is stored in single precision.
+        let is_rounded = |v: usize| before[v].map(|x| Precision::Single.rounded(x)) == after[v];
+        let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && was[v].triangles > 0;
+        let seen: Vec<usize> = (0..before.len()).filter(|&v| is_free(v) || has_slid(v)).collect();
+        // Stars that were forgotten are found again here, not by the first of many threads.
+        if !seen.iter().all(|&v| is_free(v)) {
+            topology.star(0);
+        }
         let moved = |i: usize| {
-            let v = free[i] as usize;
+            let v = seen[i];
             let ([x, y], [a, b]) = (before[v], after[v]);
-            (x - a).hypot(y - b) / was[v].mean_edge()
+            (x - a).hypot(y - b) / mean_edge(topology, before, v, &was[v])
         };
         let size = |i: usize| {
-            let v = free[i] as usize;
+            let v = seen[i];
             let change = is[v].logarithms - was[v].logarithms;
             (0.5 * change / f64::from(was[v].triangles)).abs().exp()
         };
         Ok(Self {
-            moved: spread(collect(free.len(), moved)),
-            size: spread(collect(free.len(), size)),
+            moved: spread(collect(seen.len(), moved)),
+            size: spread(collect(seen.len(), size)),
             least_altitude: [low_before, low_after],
         })
     }
@@ -72,13 +80,27 @@ impl Change {
 
 /// The mean length of the edges at each vertex; not a number at vertices of no triangle.
 pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
-    around(topology, points).0.iter().map(Around::mean_edge).collect()
+    let (around, _) = around(topology, points);
+    around.iter().enumerate().map(|(v, around)| mean_edge(topology, points, v, around)).collect()
 }
 
-impl Around {
-    fn mean_edge(&self) -> f64 {
-        self.lengths / f64::from(2 * self.triangles)
+/// The mean length of the edges at a vertex, each counted once.
+fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Around) -> f64 {
+    // Around a free vertex every edge is of two triangles. On the boundary two edges are of one.
+    if topology.free()[v] {
+        return around.lengths / f64::from(2 * around.triangles);
     }
+    let corners = |&t: &u32| topology.triangles()[t as usize];
+    let mut ends: Vec<u32> = topology.star(v as u32).iter().flat_map(corners).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let [x, y] = points[v];
+    let length = |&end: &u32| {
+        let [a, b] = points[end as usize];
+        (x - a).hypot(y - b)
+    };
+    // The vertex is among them, at no distance.
+    ends.iter().map(length).sum::<f64>() / (ends.len() as f64 - 1.0)
 }
 
 fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
@@ -132,5 +154,30 @@ mod tests {
         assert!((change.size.most - 0.75f64.powf(-0.125)).abs() < 1e-15, "{change:?}");
         assert_eq!(change.least_altitude, [1.0, 0.5]);
         assert!(Change::between(&topology, &mesh.points, &after[1..]).is_err());
+    }
+
+    #[test]
+    fn a_vertex_that_slid_along_the_boundary_counts_with_each_edge_once() {
+        // The middle of the lower side has three edges, of 1, 1 and 2; the two along the side are of one triangle each.
+        let points = vec![[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 2.0]];
+        let mesh = Mesh { points, triangles: vec![[0, 1, 3], [1, 2, 3]], fixed: vec![] };
+        let topology = Topology::new(&mesh).unwrap();
+        let mut after = mesh.points.clone();
+        assert_eq!(Change::between(&topology, &mesh.points, &after).unwrap().moved.most, 0.0);
+        after[1] = [0.5, 0.0];
+        let change = Change::between(&topology, &mesh.points, &after).unwrap();
+        assert!((change.moved.most - 0.5 / (4.0 / 3.0)).abs() < 1e-15, "{change:?}");
+        assert_eq!(change.moved.median, change.moved.most, "those that must stay do not count");
+        // Areas of 1 become 1.5 and 0.5.
+        assert!((change.size.most - 0.75f64.powf(-0.25)).abs() < 1e-15, "{change:?}");
+        // A place that was only rounded is none to which a vertex has slid.
+        let third = |x: f64| vec![[-1.0, 0.0], [x, 0.0], [1.0, 0.0], [0.0, 2.0]];
+        let rounded = third(f64::from((1.0 / 3.0) as f32));
+        assert_eq!(
+            Change::between(&topology, &third(1.0 / 3.0), &rounded).unwrap().moved.most,
+            0.0
+        );
+        let edges = mean_edges(&topology, &mesh.points);
+        assert!((edges[1] - 4.0 / 3.0).abs() < 1e-15, "{edges:?}");
     }
 }

@@ -126,7 +126,7 @@ pub(crate) struct TargetReport {
     pub(crate) f: [f64; 2],
 }
 
-/// How far free vertices moved, and how the sizes of elements at them changed.
+/// How far vertices moved, and how the sizes of elements at them changed.
 #[derive(Serialize)]
 pub(crate) struct ChangeReport {
     /// In lengths of an edge at the vertex.
