@@ -80,6 +80,33 @@ fn contradictions_are_refused() {
 }
 
 #[test]
+fn options_without_effect_are_refused() {
+    let folder = small();
+    let cases = [
+        ("--checkpoint-every 10", "<--checkpoint <FILE>|--continue <FILE>>"),
+        (
+            "--target-rings 3",
+            "--target-rings has no effect without --target keep-size or keep-shape",
+        ),
+        (
+            "--target size=s.sol --target-rings 3",
+            "--target-rings has no effect without --target keep-size or keep-shape",
+        ),
+        ("--target-of place", "--target-of has no effect without another --target"),
+        ("--edge-norm fixed", "--edge-norm has no effect without edge in --scheme"),
+        ("--scheme imr --target size=s.sol", "--target size=s.sol has no effect on imr"),
+    ];
+    for (options, told) in cases {
+        assert_usage(&folder, &format!("in out {options}"), &[told]);
+    }
+    let line = "in out --engine cpu --target keep-shape --target-rings 1 --report r.json";
+    folder.line(line).clean();
+    assert_eq!(folder.json("r.json")["target"]["rings"], 1);
+    folder.line("in out --engine cpu --surface sphere --report r.json").clean();
+    assert!(folder.json("r.json")["target"].get("rings").is_none(), "none are averaged over");
+}
+
+#[test]
 fn quiet_and_verbose_before_a_command_do_not_make_it_a_file() {
     let folder = small();
     let quality = folder.line("quality in").clean().out;

@@ -120,8 +120,9 @@ pub(crate) struct TargetReport {
     pub(crate) of: &'static str,
     /// plane or sphere.
     pub(crate) surface: &'static str,
-    /// Over how many rings of neighbors sizes and shapes were averaged.
-    pub(crate) rings: u32,
+    /// Over how many rings of neighbors sizes and shapes were averaged, if those of the mesh were to be kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rings: Option<u32>,
     /// The base metric's objective of the triangles as targets show them, before and after.
     pub(crate) f: [f64; 2],
 }

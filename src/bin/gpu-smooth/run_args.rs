@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 use gpu_smooth::{
     Derivatives, Desired, Goal, Guard, Method, Metric, Options, Precision, Scheme, Sharpness,
 };
@@ -18,6 +18,7 @@ use crate::target_args::TargetArgs;
 use crate::worst_args::WorstArgs;
 
 #[derive(Args)]
+#[command(group = ArgGroup::new("kept").args(["checkpoint", "continued"]).multiple(true))]
 pub(crate) struct SmoothArgs {
     /// The mesh to read; its format is told by its content. It may be compressed by gzip or zstd, or - for the standard input
     #[arg(required = true, value_name = "IN")]
@@ -78,7 +79,7 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "FILE", help_heading = "Stopping", conflicts_with = "out_dir")]
     pub(crate) checkpoint: Option<PathBuf>,
     /// How often the state is saved
-    #[arg(long, default_value = "300", value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, default_value = "300", value_name = "SECONDS", requires = "kept", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) checkpoint_every: Duration,
     /// Go on with the run that FILE is a checkpoint of, given the same IN and options, to the same mesh as if it had never been left: bit
     /// for bit, on the CPU or on the GPU that it was left on. If the driver of that GPU ended the process, add --engine cpu. The state
@@ -237,9 +238,9 @@ impl SmoothArgs {
     /// What is wrong with options that contradict each other.
     pub(crate) fn contradiction(&self) -> Option<String> {
         if self.target.is_of_sizes() && !self.scheme().metrics().iter().any(sees_sizes) {
-            let scheme = self.scheme();
+            let (scheme, target) = (self.scheme(), self.target.kind());
             return Some(format!(
-                "--target keep-size has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
+                "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
         if self.target.is_of_places() {
@@ -280,6 +281,14 @@ impl SmoothArgs {
         }
         if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
             return Some("--slide keeps no checkpoints: drop one of them".to_owned());
+        }
+        let has_edge = || self.scheme().metrics().contains(&Metric::Edge);
+        let idle = match self.edge_norm {
+            Some(_) if !has_edge() => Some(("--edge-norm", "edge in --scheme")),
+            _ => self.target.without_effect(),
+        };
+        if let Some((option, wanted)) = idle {
+            return Some(format!("{option} has no effect without {wanted}: drop it"));
         }
         let (kept, dropped) = if self.method == MethodChoice::Paper && self.omega.is_some() {
             ("--method paper", "--omega")

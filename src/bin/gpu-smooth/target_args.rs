@@ -25,9 +25,9 @@ pub(crate) struct TargetArgs {
     /// with the name of its point data or such a file for its vertices; or a view of gmsh (.pos), of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     target: Target,
-    /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise
-    #[arg(long, value_name = "N", default_value_t = 2, help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    target_rings: u32,
+    /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 2]
+    #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    target_rings: Option<u32>,
     /// What a target belongs to: vertices, which take it along, or places, so that it is taken anew from where vertices have moved
     /// [default: place for a BACKGROUND, else vertex]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]
@@ -93,18 +93,44 @@ impl TargetArgs {
         before: f64,
         after: impl FnOnce() -> Result<f64, String>,
     ) -> Result<Option<TargetReport>, String> {
-        let kind = match &self.target {
-            Target::Equilateral if self.is_on_plane() => return Ok(None),
+        if self.target == Target::Equilateral && self.is_on_plane() {
+            return Ok(None);
+        }
+        let kind = self.kind();
+        let f = [before, after()?];
+        let surface = self.surface.name();
+        let of = if self.is_of_places() { "place" } else { "vertex" };
+        let rings = self.keeps().then(|| self.rings());
+        Ok(Some(TargetReport { kind, of, surface, rings, f }))
+    }
+
+    /// The target as it is given.
+    pub(crate) fn kind(&self) -> String {
+        match &self.target {
             Target::Equilateral => "equilateral".to_owned(),
             Target::KeepSize => "keep-size".to_owned(),
             Target::KeepShape => "keep-shape".to_owned(),
             Target::Size { source } => format!("size={source}"),
             Target::Metric { source } => format!("metric={source}"),
-        };
-        let f = [before, after()?];
-        let surface = self.surface.name();
-        let of = if self.is_of_places() { "place" } else { "vertex" };
-        Ok(Some(TargetReport { kind, of, surface, rings: self.target_rings, f }))
+        }
+    }
+
+    /// Whether sizes or shapes of the mesh itself are kept.
+    fn keeps(&self) -> bool {
+        matches!(self.target, Target::KeepSize | Target::KeepShape)
+    }
+
+    fn rings(&self) -> u32 {
+        self.target_rings.unwrap_or(2)
+    }
+
+    /// The option that the target leaves without effect, and what would give it one.
+    pub(crate) fn without_effect(&self) -> Option<(&'static str, &'static str)> {
+        if self.target_rings.is_some() && !self.keeps() {
+            return Some(("--target-rings", "--target keep-size or keep-shape"));
+        }
+        let is_uniform = matches!(self.target, Target::Equilateral);
+        (self.target_of.is_some() && is_uniform).then_some(("--target-of", "another --target"))
     }
 
     /// Whether targets belong to places.
@@ -213,7 +239,7 @@ impl TargetArgs {
         told: impl Fn(MeshError) -> String,
     ) -> Result<Option<(Targets, Surface)>, String> {
         let surface = self.surface();
-        let (topology, rings) = (smoother.topology(), self.target_rings);
+        let (topology, rings) = (smoother.topology(), self.rings());
         let in_coordinates = |targets| (targets, Surface::Plane);
         let targets = match &self.target {
             Target::Equilateral if surface == Surface::Plane => return Ok(None),
