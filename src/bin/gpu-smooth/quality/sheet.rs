@@ -1,5 +1,6 @@
 //! What is told of a mesh.
 
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 use gpu_smooth::{
@@ -122,9 +123,19 @@ impl Sheet {
             bad: explain::bad_triangles(&file, &bad[..listed]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
             duplicate_vertices: measured.duplicate_vertices().len(),
-            unused_vertices: measured.unused_vertices().len(),
+            unused_vertices: unused(&file, &measured),
         })
     }
+}
+
+/// How many vertices of the file no triangle uses. On the sphere, triangles at a pole and where the globe is cut have copies of theirs.
+fn unused(file: &MeshFile, measured: &Measured<'_>) -> usize {
+    let unused = measured.unused_vertices();
+    if file.chart().is_none() {
+        return unused.len();
+    }
+    let used: HashSet<&u32> = file.original().triangles.as_flattened().iter().collect();
+    unused.iter().filter(|v| !used.contains(v)).count()
 }
 
 fn regions(file: &MeshFile, measured: &Measured<'_>) -> Result<Vec<Region>, String> {
@@ -145,22 +156,25 @@ fn regions(file: &MeshFile, measured: &Measured<'_>) -> Result<Vec<Region>, Stri
     let places = file.triangle_places(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
     let groups = file.groups().map_err(|error| error.to_string())?;
-    let region = |(first, statistics): (&usize, Vec<Statistics>)| {
-        let groups = groups_of(*first, &groups);
-        Region { first: places[first].clone(), groups, statistics }
+    let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
+        first: places[first].clone(),
+        groups,
+        statistics,
     };
-    Ok(first.iter().zip(statistics).map(region).collect())
+    let named = groups_of(&first, &groups);
+    Ok(first.iter().zip(statistics).zip(named).map(region).collect())
 }
 
-/// The groups that have a triangle; those that have a name first. All triangles of a region are of the same groups.
-fn groups_of(triangle: usize, groups: &Groups) -> Vec<Named> {
-    let index = triangle as u32;
-    let mut found: Vec<(&Group, String)> = groups
-        .iter()
-        .zip(groups.spellings())
-        .filter(|(group, _)| group.triangles().binary_search(&index).is_ok())
-        .collect();
-    found.sort_by_key(|(group, _)| group.name.is_none());
+/// The groups that have each of these triangles; those that have a name first. All triangles of a region are of the same groups.
+fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
+    // Each group is gone through once, as there may be as many regions as groups.
+    let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
+    let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
+    for (group, spelling) in groups.iter().zip(groups.spellings()) {
+        for &region in group.triangles().iter().filter_map(|t| asked.get(t)) {
+            found[region].push((group, spelling.clone()));
+        }
+    }
     let named = |(group, spelling): (&Group, String)| {
         let tag = group.tag.map(|tag| tag.to_string());
         let short = match group.name.clone().or(tag).unwrap_or_default() {
@@ -170,7 +184,11 @@ fn groups_of(triangle: usize, groups: &Groups) -> Vec<Named> {
         };
         Named { spelling, full: group.to_string(), short }
     };
-    found.into_iter().map(named).collect()
+    let told = |mut found: Vec<(&Group, String)>| {
+        found.sort_by_key(|(group, _)| group.name.is_none());
+        found.into_iter().map(named).collect()
+    };
+    found.into_iter().map(told).collect()
 }
 
 /// How many triangles have their value in each bin of a measure.
