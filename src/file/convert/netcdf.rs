@@ -3,10 +3,14 @@
 //! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers have their highest byte
 //! first. Variables of the record dimension come last; there is one record at most.
 
+use std::collections::HashMap;
+
 /// A file under construction.
 #[derive(Default)]
 pub(super) struct NetCdf {
     dimensions: Vec<(String, usize)>,
+    /// Where the dimension of a name is: a file of as many blocks as elements has as many dimensions.
+    places: HashMap<String, usize>,
     attributes: Vec<(&'static str, Values)>,
     variables: Vec<Variable>,
 }
@@ -59,16 +63,20 @@ pub(super) const RECORDS: &str = "time_step";
 
 impl NetCdf {
     pub(super) fn new() -> NetCdf {
-        NetCdf { dimensions: vec![(RECORDS.into(), 0)], ..NetCdf::default() }
+        let mut file = NetCdf::default();
+        file.dimension(RECORDS, 0);
+        file
     }
 
     pub(super) fn attribute(&mut self, name: &'static str, values: Values) {
         self.attributes.push((name, values));
     }
 
-    /// Adds a dimension, which must not be of length zero.
+    /// Adds a dimension, which must not be of length zero but for that of records.
     pub(super) fn dimension(&mut self, name: impl Into<String>, length: usize) {
-        self.dimensions.push((name.into(), length));
+        let name = name.into();
+        self.places.insert(name.clone(), self.dimensions.len());
+        self.dimensions.push((name, length));
     }
 
     /// Adds a variable of these dimensions, with an attribute of text if it has one.
@@ -79,7 +87,7 @@ impl NetCdf {
         attribute: Option<(&'static str, &str)>,
         values: Values,
     ) {
-        let place = |name: &&str| self.dimensions.iter().position(|(own, _)| own == name);
+        let place = |name: &&str| self.places.get(*name).copied();
         let dimensions = dimensions.iter().filter_map(place).collect();
         let text = |(name, text): (_, &str)| (name, Values::Text(text.as_bytes().to_vec()));
         let attributes = attribute.map(text).into_iter().collect();
