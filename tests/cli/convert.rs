@@ -58,6 +58,12 @@ fn what_cannot_be_converted_is_refused() {
     folder
         .line("convert in.2dm out.xyz")
         .refused(&["out.xyz: its ending tells no format", "gmsh22"]);
+    // It could be read, but not smoothed under that name.
+    folder
+        .line("convert in.2dm out.vtk --to su2 --lossy -q")
+        .refused(&["out.vtk: its ending is that of legacy VTK, and not of SU2", ".su2"]);
+    assert!(!folder.path("out.vtk").exists());
+    folder.line("convert in.2dm out.txt --to su2 --lossy -q").clean();
     folder.line("convert in.2dm out.slf").refused(&["out.slf: its ending tells no format"]);
     folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
     folder.line("convert word out.msh").refused(&["word"]);

@@ -7,6 +7,7 @@ use super::job::Job;
 use super::targets::{TARGETS, Target, Write};
 use super::triangle_source;
 use crate::error::{ReadError, WriteError};
+use crate::file::detect;
 use crate::file::families::Family;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
@@ -90,7 +91,8 @@ impl Conversion {
     /// Writes the mesh, compressed if the name of its file ends in `.gz` or `.zst`. Files are replaced once all is written.
     ///
     /// # Errors
-    /// [`WriteError`] if the system refuses, or if several files are to be written under a compressed name.
+    /// [`WriteError`] if the system refuses, if the ending is that of another format, or if several files are to be written
+    /// under a compressed name.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
         let contents = self.contents();
@@ -99,6 +101,14 @@ impl Conversion {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
             Err(WriteError::Format { path, problem, remedy })
         };
+        let family = Family::of(self.target.format);
+        if let Some(owner) = detect::owner_of_ending(path)
+            && !family.has_ending_of(path)
+        {
+            let problem =
+                format!("its ending is that of {owner}, and not of {}", self.target.format);
+            return refused(problem, &format!("End the name in {}", family.endings[0]));
+        }
         if packs.is_some() && destinations.len() > 1 {
             let problem = "a Triangle mesh is of several files, which are not written compressed";
             return refused(problem.into(), "End the name in .node");
