@@ -68,9 +68,15 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
                     Ok(Content::Triangle(Names { node: source.path.clone(), ele, poly }))
                 }
                 None => {
-                    let wanted = file_name(&source.path.with_extension("ele"));
                     let problem = "the vertices of a Triangle mesh, without its triangles";
-                    Err(source.error(problem, format!("Put {wanted} beside it")))
+                    let wanted = file_name(&source.path.with_extension("ele"));
+                    let remedy = match source.path.exists() {
+                        true => format!("Put {wanted} beside it"),
+                        false => {
+                            "Such a mesh is of several files, and is read from them".to_owned()
+                        }
+                    };
+                    Err(source.error(problem, remedy))
                 }
             };
         }

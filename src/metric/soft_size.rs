@@ -7,7 +7,7 @@ use crate::metric::shape_and_size;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "soft-size",
-    formula: "|T|² / 2τ - 1 + (τ - 1)² / 5τ = q², T = A W⁻¹, τ = det T",
+    formula: "sqrt(|T|² / 2τ - 1 + (τ - 1)² / 5τ), T = A W⁻¹, τ = det T",
     citation: "Knupp, Dobrev, Kolev & Tomov, The target-matrix optimization paradigm for high-order meshes, SIAM J. Sci. Comp. 41 (2019), metrics 2 and 56: μ₂ + 0.4 μ₅₆",
     purpose: "good shapes of about the sizes that targets ask for, with a barrier against inversion: sizes give way to shapes",
     barrier: true,

@@ -6,7 +6,7 @@ use crate::metric::properties::Properties;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-80",
-    formula: "(|T|² / 2τ - 1) / 2 + (τ - 1/τ)² / 4 = q², T = A W⁻¹, τ = det T",
+    formula: "sqrt((|T|² / 2τ - 1) / 2 + (τ - 1/τ)² / 4), T = A W⁻¹, τ = det T",
     citation: "Knupp, Dobrev, Kolev & Tomov, The target-matrix optimization paradigm for high-order meshes, SIAM J. Sci. Comp. 41 (2019), metric 80 with γ = 1/2",
     purpose: "good shapes of the sizes that targets ask for, in equal parts, with a barrier against inversion: sizes weigh heavily",
     barrier: true,

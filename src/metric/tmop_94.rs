@@ -7,7 +7,7 @@ use crate::metric::shape_and_size;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-94",
-    formula: "|T|² / 2τ - 1 + 3 (τ - 1)² / 4τ = q², T = A W⁻¹, τ = det T",
+    formula: "sqrt(|T|² / 2τ - 1 + 3 (τ - 1)² / 4τ), T = A W⁻¹, τ = det T",
     citation: "Knupp, Dobrev, Kolev & Tomov, The target-matrix optimization paradigm for high-order meshes, SIAM J. Sci. Comp. 41 (2019), metric 94: μ₂ + 1.5 μ₅₆",
     purpose: "good shapes of the sizes that targets ask for, with a barrier against inversion: sizes weigh less than in tmop-80",
     barrier: true,

@@ -41,6 +41,8 @@ fn each_mesh_ends_as_in_a_run_by_itself_and_a_bad_one_stops_none() {
         assert_holds(&run.err, &["error: 1 of 4 meshes failed\n  none.msh: the format is not"]);
         assert_eq!(run.err.lines().count(), 2, "{}", run.err);
         assert_holds(&run.out, &["\na.1.ele ", "\nc.msh ", "\nnone.msh ", "  failed\n"]);
+        let columns = |line: &str| line.split_whitespace().count();
+        assert!(run.out.lines().skip(1).take(3).all(|line| columns(line) == 8), "{}", run.out);
         assert_holds(&run.out, &["\n3 smoothed, 1 failed of 4 meshes; 297 vertices in "]);
         assert_eq!(names(&folder, engine), ["a.1.ele", "a.1.node", "b.msh", "c.msh"]);
 

@@ -103,6 +103,18 @@ fn options_that_do_not_go_with_sliding_are_refused() {
     }
 }
 
+/// A strip has all its vertices on lines.
+#[test]
+fn a_mesh_without_a_free_vertex_does_not_slide_and_says_so() {
+    let [node, ele] =
+        ["4 2\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n", "2 3\n1 1 2 3\n2 1 3 4\n"].map(str::to_owned);
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    folder.line("in.node out.node --slide").refused(&[
+        "in.node: none of the 4 vertices is free to move, and vertices slide along lines only",
+        "Refine the mesh",
+    ]);
+}
+
 #[test]
 fn the_least_altitude_is_kept_and_certified() {
     let folder = Folder::new(&[("in.mesh", &medit())]);

@@ -42,6 +42,9 @@ fn a_mesh_goes_in_and_out_through_pipes() {
         assert_eq!((run.code, file.as_slice()), (Some(0), &b""[..]));
         assert!(fs::read(folder.path("out.msh")).unwrap() == out);
     }
+    let (run, _) = piped(&folder, "- out.node", b"3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.err, &["standard input: the vertices of a Triangle mesh", "several files"]);
     let (run, told) = piped(&folder, "groups - --json", text.as_bytes());
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&String::from_utf8(told).unwrap(), &["\"standard input\"", "gmsh 2.2 ASCII"]);

@@ -344,7 +344,18 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
     if let Some(message) = choice.nothing_free(file, error) {
         return message.into();
     }
-    let message = explain::mesh_error(file, error);
+    let message = match error {
+        // Sweeps and steps along lines take turns.
+        MeshError::NothingFree { .. }
+            if args.sliding.slide && file.interface_vertices().is_empty() =>
+        {
+            let path = file.path().display();
+            format!(
+                "{path}: {error}, and vertices slide along lines only in a mesh that has such. Refine the mesh, so that it has vertices inside"
+            )
+        }
+        _ => explain::mesh_error(file, error),
+    };
     let triangles = match error {
         MeshError::Infeasible { triangles } if args.report.is_some() => {
             explain::bad_triangles(file, triangles)

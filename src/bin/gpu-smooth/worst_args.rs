@@ -86,7 +86,10 @@ impl ImprovedReport {
             }
             n => {
                 let vertices = if *n == 1 { "vertex" } else { "vertices" };
-                let cost = format!("changed f by {:+.2} %", 100.0 * (f[1] / f[0] - 1.0));
+                let cost = match 100.0 * (f[1] / f[0] - 1.0) {
+                    change if change.abs() < 0.005 => "changed f by less than 0.01 %".to_owned(),
+                    change => format!("changed f by {change:+.2} %"),
+                };
                 // Patches around others may have become better all the same.
                 match (after / before - 1.0).abs() > TO_SPEAK_OF {
                     true => format!(
@@ -107,5 +110,26 @@ impl ImprovedReport {
             n => format!("; {n} triangles are worse, and all their corners are fixed"),
         };
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_improvement_costs_is_told_or_that_it_is_next_to_nothing() {
+        let report = |f| ImprovedReport {
+            measure: "imr",
+            vertices: 2,
+            worst: [2.0, 1.5],
+            stuck: 0,
+            f: [1.0, f],
+        };
+        for (f, told) in
+            [(1.02, "changed f by +2.00 %"), (1.0 - 1e-9, "changed f by less than 0.01 %")]
+        {
+            assert!(report(f).told().ends_with(told), "{}", report(f).told());
+        }
     }
 }

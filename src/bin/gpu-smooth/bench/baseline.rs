@@ -23,9 +23,11 @@ struct Known {
 impl Baseline {
     pub(super) fn read(path: &Path) -> Result<Self, String> {
         let name = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| format!("{name}: {error}"))?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` has printed")
+        })?;
         let rows = serde_json::from_str(&text).map_err(|error| {
-            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` prints")
+            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` has printed")
         })?;
         Ok(Self { rows })
     }

@@ -81,8 +81,12 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
 
 /// Makes the directory, if it is not there.
 fn make(directory: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(directory)
-        .map_err(|error| format!("{}: the directory cannot be made: {error}", directory.display()))
+    std::fs::create_dir_all(directory).map_err(|error| {
+        format!(
+            "{}: the directory cannot be made: {error}. Give another one to --out-dir",
+            directory.display()
+        )
+    })
 }
 
 /// Shows how far the call is, and keeps what became of each mesh.

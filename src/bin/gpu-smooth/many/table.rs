@@ -87,7 +87,7 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
         five(after.f[base]),
         angle(before.min_angle),
         angle(after.min_angle),
-        five(report.seconds.total),
+        format!("{:.3}", report.seconds.total),
     ]
 }
 
