@@ -11,8 +11,8 @@ use crate::metric::Metric;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
 use crate::run::{
-    Checkpoint, Goal, JITTER, Keeper, Keeping, NOISE, Objectives, Observer, Options, Phase,
-    ROUNDING, Stop,
+    Checkpoint, Goal, JITTER, Keeper, Keeping, LEAST_SCALE, NOISE, Objectives, Observer, Options,
+    Phase, ROUNDING, Stop,
 };
 use crate::slide::Sliding;
 use crate::whole::{Attempt, Ended, Improving, altitude};
@@ -136,6 +136,7 @@ impl Smoother<'_> {
         }
         let slid = ways.slid(gains, &points);
         let best = if gains { written } else { initial };
+        let possible = (best - base.ideal_squared()).max(0.0) / best.max(LEAST_SCALE);
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         let improved = improving.map(|improving| {
             let positions = if gains { &judged } else { self.problem.positions() };
@@ -155,7 +156,8 @@ impl Smoother<'_> {
             opening_sweeps: ended.opening_sweeps,
             levels_left_out: ended.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
-            remaining: ended.remaining,
+            // A decay that has only begun may promise more than there is between f and its ideal.
+            remaining: ended.remaining.map(|left| left.min(possible)),
             held_back: ended.held_back,
             lost,
             history: ended.history,

@@ -40,6 +40,16 @@ fn max_sweeps_ends_a_run() {
     assert_holds(&out, &["stopped after 1 sweep, the most"]);
 }
 
+/// What is left is a share of f, or of 1e-6 where f is less: "1.7e-2 of itself" was told of an f of 1.2e-8.
+#[test]
+fn what_is_left_of_a_small_f_is_told_as_it_is() {
+    let folder = small();
+    let (report, out) = run(&folder, "--scheme area --max-sweeps 400 --tolerance 0");
+    let left = number(&report["remaining"]);
+    assert!(f(&report, "area") < 1e-6, "{out}");
+    assert_holds(&out, &[&format!("f is estimated to be {:.1e} above its limit", left * 1e-6)]);
+}
+
 #[test]
 fn strict_makes_it_an_error_to_fall_short_and_writes_the_mesh() {
     let folder = small();

@@ -1,7 +1,7 @@
 //! A tolerance speaks of the distance to the limit, not of the last change.
 
-use crate::{backends, distorted, global, history, name, perturbed, run, support};
-use gpu_smooth::{Method, Metric, Options, Smoother, Stop};
+use crate::{backends, distorted, global, history, name, perturbed, plate, run, support};
+use gpu_smooth::{Backend, Method, Metric, Options, Smoother, Stop, TargetField, Targets};
 
 /// The estimate is one from the last sweeps: it may be this much too small.
 const TRUST: f64 = 1.5;
@@ -53,6 +53,32 @@ fn what_is_left_of_edge_is_within_the_tolerance() {
     let long = run(&smoother, &Options { tolerance: 1e-11, ..options.clone() }, &backends()[0]);
     let limit = history(&long, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min);
     check(&smoother, &options, limit);
+}
+
+/// f cannot fall below its ideal, whatever a decay promises that has only begun.
+#[test]
+fn no_more_is_left_than_there_is_above_the_ideal() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let sizes = Targets::sizes(&vec![1.0; mesh.points.len()]).unwrap();
+    let mut told = 0;
+    for metric in [Metric::Area, Metric::ShapeSize] {
+        let is_of_places = metric == Metric::ShapeSize;
+        if is_of_places {
+            let field = TargetField::new(&mesh, &sizes).unwrap();
+            smoother.set_target_field(field).unwrap();
+        }
+        for max_sweeps in [1, 3, 40] {
+            let options = Options { scheme: metric.into(), max_sweeps, ..Options::default() };
+            let outcome = run(&smoother, &options, &Backend::Cpu);
+            let f = smoother.f(metric, &outcome.points).unwrap();
+            let Some(left) = outcome.remaining else { continue };
+            let above = (f - metric.ideal_squared()) / f.max(1e-6);
+            assert!(left <= above * (1.0 + 1e-9), "{metric}, {max_sweeps}: {left} of {above}");
+            told += 1;
+        }
+    }
+    assert!(told > 2, "{told}");
 }
 
 #[test]

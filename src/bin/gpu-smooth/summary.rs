@@ -17,6 +17,8 @@ const NOT_FINITE: &str = "undone: a sweep made a number that is not finite, whic
 const LARGE_CHANGE: f64 = 1.25;
 /// In a mesh whose f by imr is below this, sizes are likely to be meant.
 const SOUND: f64 = 2.0;
+/// Shares of a smaller f are told of this, as `Outcome::remaining` has them.
+const LEAST_SCALE: f64 = 1e-6;
 
 impl Report {
     /// The metric that judges.
@@ -175,9 +177,14 @@ impl Report {
 
     /// How far the run is from the limit of f, as far as that can be told.
     fn left(&self) -> String {
+        let f = self.target.as_ref().map_or(self.after.f[self.base()], |target| target.f[1]);
         match self.remaining {
+            // A decay that has only begun says nothing.
+            None | Some(0.5..) => "; more sweeps may gain more".into(),
+            Some(left) if f < LEAST_SCALE => {
+                format!("; f is estimated to be {:.1e} above its limit", left * LEAST_SCALE)
+            }
             Some(left) => format!("; f is estimated to be {left:.1e} of itself above its limit"),
-            None => "; more sweeps may gain more".into(),
         }
     }
 
