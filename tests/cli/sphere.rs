@@ -96,6 +96,16 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
     }
 }
 
+/// Triangles at a pole and where the globe is cut have copies of their vertices.
+#[test]
+fn vertices_are_counted_as_the_file_has_them() {
+    let folder = Folder::new(&[("in.gr3", &band(COLUMNS, true))]);
+    let count = (ROWS + 1) * COLUMNS + 1;
+    let run = folder.line("in.gr3 out.gr3 --surface sphere --fix-box -180,0,180,90");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.err, &[&format!("in.gr3: none of the {count} vertices is free to move.")]);
+}
+
 #[test]
 fn what_is_across_the_line_is_refused_with_the_way_out_elsewhere() {
     let folder = Folder::new(&[("in.gr3", &band(9, false))]);

@@ -103,6 +103,11 @@ fn has_twins(file: &MeshFile, triangles: &[usize]) -> bool {
     triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
 }
 
+/// That nothing of a file is free. On the sphere, a mesh may have copies of vertices, which the file has not.
+pub(crate) fn nothing_free(file: &MeshFile) -> MeshError {
+    MeshError::NothingFree { vertices: file.original().points.len() }
+}
+
 /// File, place, problem and remedy, in one line unless several triangles are to be listed.
 pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
     let name = |v: u32| file.vertex_place(v).label;
@@ -157,9 +162,10 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             format!("{}: {error}. Correct the line", file.vertex_place(vertex))
         }
         MeshError::NothingFree { .. } => format!(
-            "{}: {error}: all are on the boundary, on constraint lines, between regions or of other \
+            "{}: {}: all are on the boundary, on constraint lines, between regions or of other \
              elements. {}",
             file.path().display(),
+            nothing_free(file),
             match file.interface_vertices() {
                 [] => "There is nothing to smooth",
                 _ => "Let those between regions move: --free-interfaces",

@@ -116,6 +116,7 @@ impl Choice {
         let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
         let path = file.path().display();
         is_it.then(|| {
+            let error = explain::nothing_free(file);
             format!(
                 "{path}: {error}. --fix, --only and the like leave nothing to smooth: let more move"
             )

@@ -349,7 +349,7 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
         MeshError::NothingFree { .. }
             if args.sliding.slide && file.interface_vertices().is_empty() =>
         {
-            let path = file.path().display();
+            let (path, error) = (file.path().display(), explain::nothing_free(file));
             format!(
                 "{path}: {error}, and vertices slide along lines only in a mesh that has such. Refine the mesh, so that it has vertices inside"
             )
