@@ -1,5 +1,7 @@
 //! Words of a text and the numbers they stand for.
 
+use std::borrow::Cow;
+
 /// Where the line ends that holds this byte, after its line feed.
 pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
@@ -24,6 +26,12 @@ fn on_one_line(text: &[u8], most: usize) -> String {
 /// What the parser of XML says of a file that is none. It may quote a tag, of any length and of several lines.
 pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
     format!("it is no XML: {}", on_one_line(error.to_string().as_bytes(), 120))
+}
+
+/// The text that the value of an attribute in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.
+pub(crate) fn xml_text(value: &[u8]) -> String {
+    let text = String::from_utf8_lossy(value).into_owned();
+    quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)
 }
 
 /// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
@@ -246,6 +254,17 @@ mod tests {
             short += u32::from(found.is_some());
         }
         assert!(short > 20_000, "{short}");
+    }
+
+    #[test]
+    fn values_of_xml_are_the_text_that_they_stand_for() {
+        for (value, text) in [
+            ("a &quot;b&quot; &lt; &amp;amp; &#233;", "a \"b\" < &amp; \u{e9}"),
+            ("R&D", "R&D"),
+            ("&none;", "&none;"),
+        ] {
+            assert_eq!(xml_text(value.as_bytes()), text);
+        }
     }
 
     #[test]

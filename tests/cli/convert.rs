@@ -77,3 +77,30 @@ fn what_cannot_be_converted_is_refused() {
     folder.line("convert plain.2dm out.node").refused(&["out.poly of another mesh is there"]);
     assert!(!folder.path("out.node").exists());
 }
+
+/// Names in XML are written as it demands, and read as they are meant.
+#[test]
+fn names_of_data_come_through_xml_and_those_without_get_one() {
+    let view = |name: &str, value: f64| {
+        let rows: String = (1..=5).map(|node| format!("{node} {value}\n")).collect();
+        format!("$NodeData\n1\n\"{name}\"\n1\n0\n3\n0\n1\n5\n{rows}$EndNodeData\n")
+    };
+    let nodes = "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .4 .3 0\n$EndNodes\n";
+    let triangles = "1 2 2 0 1 1 2 5\n2 2 2 0 1 2 3 5\n3 2 2 0 1 3 4 5\n4 2 2 0 1 4 1 5\n";
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{nodes}$Elements\n4\n{triangles}$EndElements\n{}{}",
+        view("x<y & z", 1.5),
+        view("", 2.5)
+    );
+    let folder = Folder::new(&[("in.msh", &text)]);
+    for out in ["out.vtu", "out.xdmf", "out.vtk", "out.exo", "out.ply"] {
+        folder.line(&format!("convert in.msh {out} --lossy -q")).clean();
+        let told = folder.line(&format!("groups {out}")).clean().out;
+        let name = if out == "out.ply" { "x<y_&_z" } else { "x<y & z" };
+        assert_holds(&told, &[&format!("(--interpolate): {name}, unnamed")]);
+    }
+    folder.line("convert out.vtu back.msh --lossy -q").clean();
+    assert_holds(&folder.text("back.msh"), &["\"x<y & z\"", "\"unnamed\""]);
+    let args = ["out.vtu", "better.vtu", "--engine", "cpu", "-q", "--interpolate", "x<y & z"];
+    folder.run(args).clean();
+}

@@ -40,6 +40,9 @@ pub(crate) struct Collector {
     by_tag: Vec<(Data, Option<Vec<u64>>)>,
 }
 
+/// What data are called that have no name.
+const UNNAMED: &str = "unnamed";
+
 struct Announced {
     name: String,
     components: usize,
@@ -267,7 +270,11 @@ impl Sink for Collector {
     }
 
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
-        let name = String::from_utf8_lossy(name).into_owned();
+        // Most formats take no data without a name.
+        let name = match name.trim_ascii() {
+            b"" => UNNAMED.to_owned(),
+            _ => String::from_utf8_lossy(name).into_owned(),
+        };
         let components = usize::try_from(components).unwrap_or(usize::MAX);
         self.announced = Some(Announced { name, components, is_real, is_height: false });
         true

@@ -5,7 +5,7 @@ use crate::file::binary::Order;
 use crate::file::numbers::Offset;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF};
-use crate::file::token::{ill_formed_xml, quoted};
+use crate::file::token::{ill_formed_xml, quoted, xml_text};
 use crate::file::vtu::blocks::Compressor;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -216,7 +216,7 @@ impl Tag<'_> {
             let attribute =
                 attribute.map_err(|error| self.error(format!("an attribute: {error}"), CORRECT))?;
             if attribute.key.as_ref() == name.as_bytes() {
-                return Ok(Some(String::from_utf8_lossy(&attribute.value).into_owned()));
+                return Ok(Some(xml_text(&attribute.value)));
             }
         }
         Ok(None)

@@ -3,10 +3,9 @@
 use crate::error::{Location, ReadError};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF};
-use crate::file::token::{ill_formed_xml, quoted};
+use crate::file::token::{ill_formed_xml, quoted, xml_text};
 use crate::mesh::Precision;
 use quick_xml::Reader;
-use quick_xml::escape::unescape;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;
 
@@ -102,9 +101,7 @@ fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, 
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute
             .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
-        let value = text(&attribute.value);
-        let value = unescape(&value).map(|value| value.into_owned()).unwrap_or(value);
-        attributes.push((text(attribute.key.as_ref()), value));
+        attributes.push((text(attribute.key.as_ref()), xml_text(&attribute.value)));
     }
     Ok(Section { name: text(tag.name().as_ref()), attributes })
 }
