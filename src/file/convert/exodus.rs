@@ -116,11 +116,12 @@ fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<Sid
         }
     }
     let mut sets: Vec<SideSet> = Vec::new();
+    let mut places: HashMap<u32, usize> = HashMap::new();
     for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
         let (Some(group), &[a, b]) = (job.tags.group(content, line), content.cells.of(line)) else {
             continue;
         };
-        let place = sets.iter().position(|set| set.group == group).unwrap_or(sets.len());
+        let place = *places.entry(group).or_insert(sets.len());
         if place == sets.len() {
             sets.push(SideSet { group, elements: Vec::new(), sides: Vec::new() });
         }

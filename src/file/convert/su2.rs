@@ -2,6 +2,7 @@
 
 use super::job::Job;
 use crate::file::sink::Kind;
+use std::collections::HashMap;
 use std::fmt::Write;
 
 pub(crate) fn write(job: &Job<'_>) -> String {
@@ -20,12 +21,14 @@ pub(crate) fn write(job: &Job<'_>) -> String {
         Some((job.word(group), *cell))
     };
     let mut markers: Vec<(String, Vec<usize>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
     for cell in job.cells() {
         let Some((name, cell)) = marker(&cell) else { continue };
-        match markers.iter_mut().find(|(own, _)| *own == name) {
-            Some((_, cells)) => cells.push(cell),
-            None => markers.push((name, vec![cell])),
+        let place = *places.entry(name.clone()).or_insert(markers.len());
+        if place == markers.len() {
+            markers.push((name, Vec::new()));
         }
+        markers[place].1.push(cell);
     }
     put!(out, "NMARK= {}\n", markers.len());
     for (name, cells) in markers {
