@@ -260,6 +260,11 @@ fn an_edge_of_three_triangles_is_told() {
         "5\n70 2 2 0 2 50 10 20\n7 2 2 0 1 10 20 50",
         &["Some of them have the same vertices: remove these, or save as gmsh 4.1"],
     );
+    // Other formats do not list them so.
+    let ele = "5 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n5 5 1 2\n";
+    let folder = Folder::new(&[("in.node", NODE), ("in.ele", ele)]);
+    let told = folder.line("in.node out.node").refused(&["the same vertices: remove these\n"]);
+    assert!(!told.err.contains("gmsh"), "{}", told.err);
 }
 
 #[test]

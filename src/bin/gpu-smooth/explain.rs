@@ -1,6 +1,6 @@
 //! What is wrong with a mesh, in the terms of its file.
 
-use gpu_smooth::{BadTriangle, Location, MeshError, MeshFile, Place};
+use gpu_smooth::{BadTriangle, Format, Location, MeshError, MeshFile, Place};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -145,11 +145,12 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
-            let remedy = match has_twins(file, triangles) {
-                true => {
+            let remedy = match (has_twins(file, triangles), file.format()) {
+                (true, Format::Gmsh22 | Format::Gmsh22Binary) => {
                     "Some of them have the same vertices: remove these, or save as gmsh 4.1 if version 2.2 lists triangles once for each physical group"
                 }
-                false => "In a 2D mesh an edge has one or two: remove the others",
+                (true, _) => "Some of them have the same vertices: remove these",
+                (false, _) => "In a 2D mesh an edge has one or two: remove the others",
             };
             format!(
                 "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). {remedy}",

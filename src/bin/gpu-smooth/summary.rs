@@ -168,6 +168,7 @@ impl Report {
         };
         let area = match 100.0 * area_change {
             change if change.abs() < 1e-9 => "stayed the same".to_owned(),
+            change if change.abs() >= 0.005 => format!("changed by {change:+.2} %"),
             change => format!("changed by {change:+.2e} %"),
         };
         Some(format!(
