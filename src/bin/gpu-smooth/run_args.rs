@@ -112,7 +112,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) edge_norm: Option<EdgeNorm>,
 
     /// How bad a step may make a triangle: as bad as lowers f where the metric has a barrier (by-metric), or never worse than the worst
-    /// that can be smoothed was (worst)
+    /// that can be smoothed was (worst), by the inverse mean ratio as a --target shows the triangles
     #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
     pub(crate) guard: GuardChoice,
 
