@@ -25,7 +25,8 @@ impl MeshFile {
     /// triangles, and every byte of them is the same but those of coordinates.
     ///
     /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
-    /// themselves compared; so are the offsets of what stands after them.
+    /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
+    /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
         self.difference_besides(other, [&[], &[]])
     }
@@ -76,7 +77,10 @@ impl MeshFile {
         }
         for (part, (mine, theirs)) in mine.iter().zip(theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
-            let ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
+            let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
+            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(fields[side])) {
+                ranges = in_either(bytes, ranges);
+            }
             if let Some(at) = unequal(bytes, ranges) {
                 let text = |side: usize| match self.numbers() {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
@@ -119,6 +123,16 @@ impl MeshFile {
         ranges
     }
 
+    /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
+    fn keeps_places(&self, fields: &[PointField]) -> bool {
+        let of = |field: &PointField| match &field.stored()?.home {
+            Home::Encoded(array) => Some(array.keeps_places()),
+            _ => None,
+        };
+        self.encoded().is_some_and(Encoded::keeps_places)
+            || fields.iter().filter_map(of).any(|keeps| keeps)
+    }
+
     /// The ranges of a file that may change where vertices move and these data change, ascending.
     fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
         if part > 0 {
@@ -135,16 +149,35 @@ impl MeshFile {
             _ => None,
         });
         ranges.extend(arrays.clone().flat_map(Encoded::ranges));
-        // The offsets of arrays that stand after one that may have another length.
+        // What follows from the length of an array.
         let encoded = || self.encoded().into_iter().chain(arrays.clone());
         let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
-            let later = array.offsets().iter().filter(|offset| offset.array_at >= first);
-            ranges.extend(later.map(|offset| offset.place.clone()));
+            ranges.extend(array.followers(first));
         }
         let in_file = |home: &Home| matches!(home, Home::File);
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
+}
+
+/// All that is in the ranges of one of two files in which everything else has the same place, as far as each file goes. What stands
+/// behind the end of the shorter one is chunks, or where chunks were.
+fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<usize>>; 2] {
+    let [mine, theirs] = ranges;
+    let [a, b] = bytes.map(<[u8]>::len);
+    let behind = vec![a.min(b)..a.max(b)];
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for range in merged(merged(mine, theirs), behind) {
+        match joined.last_mut() {
+            Some(last) if last.end >= range.start => last.end = last.end.max(range.end),
+            _ => joined.push(range),
+        }
+    }
+    bytes.map(|bytes| {
+        let inside =
+            |range: &Range<usize>| range.start.min(bytes.len())..range.end.min(bytes.len());
+        joined.iter().map(inside).collect()
+    })
 }
 
 fn is_beside_points(home: &Home) -> bool {

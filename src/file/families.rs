@@ -138,7 +138,7 @@ static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<pl
 static EXODUS: Family = family(
     "Exodus II",
     &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc"],
-    &[b"CDF\x01", b"CDF\x02", b"CDF\x05"],
+    &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
     reader::<exodus::Exodus>(),
 );
 static XDMF: Family =
@@ -149,8 +149,7 @@ static HDF: Family = unread(
     "HDF5",
     &[".h5", ".hdf5", ".med", ".cgns"],
     &[b"\x89HDF"],
-    "If it is Exodus, `nccopy -k classic IN OUT` (-k cdf5 for large ones) makes of it one that is read; convert MED and \
-     CGNS to gmsh or Exodus",
+    "If it is Exodus, end its name in .exo; convert MED and CGNS to gmsh or Exodus",
 );
 static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");

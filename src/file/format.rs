@@ -55,7 +55,7 @@ pub enum Format {
     Stl,
     /// STL, in binary, with corners at the same place joined.
     StlBinary,
-    /// Exodus II, in netCDF's classic formats.
+    /// Exodus II, in netCDF's classic formats and in netCDF-4.
     Exodus,
     /// XDMF, with its numbers in the XML.
     Xdmf,

@@ -24,6 +24,7 @@ mod globe;
 mod gmsh;
 mod group;
 mod group_table;
+mod hdf5;
 mod heights;
 mod label;
 mod layout;

@@ -7,7 +7,7 @@ use crate::file::families::{Family, TRIANGLE};
 use crate::file::field::PointField;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
-use crate::file::numbers::{Encoded, Offset, Splice};
+use crate::file::numbers::{Encoded, Splice};
 use crate::file::packed::Packing;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
@@ -15,6 +15,7 @@ use crate::file::sink::{Home, Stored};
 use crate::file::triangle_names::Names;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl MeshFile {
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -143,7 +144,15 @@ impl MeshFile {
         };
         // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
-        let mut splices = Vec::new();
+        let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();
+        let (mut splices, mut end) = (Vec::new(), bytes.len());
+        let mut again = |array: &dyn Encoded, columns: &[Column<'_>]| -> io::Result<()> {
+            let old = array.bytes();
+            let mut new = Vec::with_capacity(old.len());
+            Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
+            splices.extend(array.splices(bytes, &new, &mut end));
+            Ok(())
+        };
         for field in fields.iter().filter(|field| field.is_changed()) {
             let (Some(column), Some(Stored { home, .. })) = (field.column(), field.stored()) else {
                 continue;
@@ -151,23 +160,36 @@ impl MeshFile {
             match home {
                 Home::File => in_file.push(column),
                 Home::Points => in_points.push(column),
-                Home::Encoded(array) => splices.extend(encoded_again(&**array, &[column])?),
+                Home::Encoded(array) => {
+                    match in_others.iter_mut().find(|(other, _)| Arc::ptr_eq(array, other)) {
+                        Some((_, columns)) => columns.push(column),
+                        None => in_others.push((array, vec![column])),
+                    }
+                }
             }
         }
+        in_others.iter().try_for_each(|(array, columns)| again(&***array, columns))?;
         match self.encoded() {
             None => in_file.extend(points()),
             Some(array) => {
                 in_points.extend(points());
-                splices.extend(encoded_again(array, &in_points)?);
+                again(array, &in_points)?;
             }
         }
         let homes = fields.iter().filter_map(|field| field.stored().map(|stored| &stored.home));
-        let mut arrays = self.encoded().into_iter().chain(homes.filter_map(|home| match home {
+        let arrays = self.encoded().into_iter().chain(homes.filter_map(|home| match home {
             Home::Encoded(array) => Some(&**array),
             _ => None,
         }));
-        let offsets = arrays.next().map_or(&[][..], |array| array.offsets());
-        splices.extend(corrected(offsets, &splices));
+        let mut more: Vec<Splice> = Vec::new();
+        for array in arrays {
+            for own in array.follow(bytes, &splices, end) {
+                if more.iter().all(|splice| splice.range != own.range) {
+                    more.push(own);
+                }
+            }
+        }
+        splices.extend(more);
         splices.sort_by_key(|splice| splice.range.start);
         Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
     }
@@ -259,26 +281,4 @@ impl MeshFile {
             None => Ok(()),
         }
     }
-}
-
-/// What replaces encoded arrays whose numbers change.
-fn encoded_again(array: &dyn Encoded, columns: &[Column<'_>]) -> io::Result<Vec<Splice>> {
-    let old = array.bytes();
-    let mut new = Vec::with_capacity(old.len());
-    Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
-    Ok(array.splices(&new))
-}
-
-/// The offsets that are others once arrays before them have other lengths.
-fn corrected(offsets: &[Offset], splices: &[Splice]) -> Vec<Splice> {
-    let corrected = offsets.iter().filter_map(|offset| {
-        let before = splices.iter().filter(|splice| splice.range.end <= offset.array_at);
-        let (removed, added) = before.fold((0, 0), |(removed, added), splice| {
-            (removed + splice.range.len(), added + splice.bytes.len())
-        });
-        let value = (offset.value + added).saturating_sub(removed);
-        let bytes = value.to_string().into_bytes();
-        (value != offset.value).then(|| Splice { range: offset.place.clone(), bytes })
-    });
-    corrected.collect()
 }

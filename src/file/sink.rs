@@ -9,6 +9,7 @@ use crate::file::records::{NodeRecords, TriangleRecords};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 use crate::periodic::Motion;
+use std::sync::Arc;
 
 /// The kinds of elements: triangles to smooth, and others whose vertices stay fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -251,8 +252,8 @@ pub(crate) enum Home {
     File,
     /// Those of the encoded points.
     Points,
-    /// Those of an array that is encoded itself.
-    Encoded(Box<dyn Encoded>),
+    /// Those of an array that is encoded itself, perhaps with other arrays.
+    Encoded(Arc<dyn Encoded>),
 }
 
 /// How a file has its numbers, known once it was read.

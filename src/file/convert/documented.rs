@@ -186,12 +186,12 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Exodus],
-        "netCDF classic, with 64-bit offsets and CDF-5; `float` and `double`; time steps are kept",
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4; `float` and `double`; time steps are kept",
         [
             "bars, quadrilaterals, spheres, sides in side sets",
             "block",
             "blocks, side sets and node sets, with their names",
-            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; no HDF5: `nccopy -k classic IN OUT` makes of it a file that is read",
+            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; of netCDF-4 what is said of HDF5 below",
         ],
     ),
 ];

@@ -1,25 +1,28 @@
-//! Exodus II, in netCDF's classic formats.
+//! Exodus II, in netCDF's classic formats and in netCDF-4.
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model". Elements stand in blocks, each of one type, and
 //! are numbered through all of them from one. A side set lists sides of elements, a node set nodes.
 
 mod blocks;
+mod classic;
 mod data;
 mod netcdf;
+mod netcdf4;
 mod sets;
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
+use crate::file::hdf5::{Encoding, Hdf5, SIGNATURE};
 use crate::file::heights::Heights;
 use crate::file::label::Label;
-use crate::file::numbers::{Form, Numbers};
+use crate::file::numbers::{Encoded, Form, Numbers};
 use crate::file::records::{Field, NodeRecords, Tags};
-use crate::file::sink::{Column, Layout, Sink, Walk};
+use crate::file::sink::{Column, Home, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
-use netcdf::{Header, Number};
+use netcdf::{Header, Items, Number, Variable};
 use std::ops::Range;
 
 pub(crate) struct Exodus;
@@ -27,7 +30,7 @@ pub(crate) struct Exodus;
 /// A file with its header.
 struct File<'a> {
     source: &'a Source,
-    header: Header,
+    header: Header<'a>,
     /// How many nodes there are.
     nodes: usize,
 }
@@ -39,7 +42,10 @@ impl Walk for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let header = Header::read(source)?;
+        let header = match source.bytes.starts_with(SIGNATURE) {
+            true => netcdf4::read(source)?,
+            false => classic::read(source)?,
+        };
         let start = Cursor::at_byte_of(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
             let problem = "netCDF without the dimension num_nodes, so it is no Exodus";
@@ -47,7 +53,7 @@ impl Walk for Exodus {
         };
         start.check_vertex_count(nodes)?;
         let file = File { source, header, nodes: nodes as usize };
-        let numbers = file.points(sink)?;
+        let layout = file.points(sink)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
         sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
         let blocks = file.blocks(sink)?;
@@ -56,22 +62,36 @@ impl Walk for Exodus {
             file.node_sets(sink)?;
         }
         file.data(&blocks, sink);
-        Ok(Layout::in_place(Format::Exodus, numbers))
+        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        Ok(layout)
     }
+}
+
+/// Where the coordinates of the nodes stand.
+struct Axes {
+    precision: Precision,
+    order: Order,
+    /// Where those of each axis are, in the file or among those that are encoded.
+    ranges: Vec<Range<usize>>,
+    encoded: Option<Encoding>,
 }
 
 impl File<'_> {
     /// Hands on the nodes. Returns how their coordinates stand.
-    fn points(&self, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
-        let (precision, axes) = self.axes()?;
-        let [x, y] = [0, 1].map(|axis| axes.get(axis).cloned().unwrap_or_default());
-        let (order, size) = (Order::Big, precision.bytes());
-        let bytes = &self.source.bytes;
+    fn points(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let Axes { precision, order, ranges, encoded } = self.axes()?;
+        let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
+        let size = precision.bytes();
+        let bytes = encoded.as_ref().map_or(&self.source.bytes[..], Encoding::bytes);
         let number = |at: usize| order.real(precision, &bytes[at..at + size]);
+        // Numbers that are encoded have no place of their own.
+        let place = |at: usize| match &encoded {
+            None => Cursor::at_byte_of(self.source, at),
+            Some(encoding) => Cursor::at_byte_of(self.source, encoding.byte_of(at)),
+        };
         let Some(y_after) = y.start.checked_sub(x.start).filter(|_| y.len() == x.len()) else {
             let problem = "the y of the nodes stand before their x";
-            let start = Cursor::at_byte_of(self.source, y.start);
-            return Err(start.error(problem, "Write the mesh again"));
+            return Err(place(y.start).error(problem, "Write the mesh again"));
         };
         sink.expect_nodes(self.nodes);
         let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
@@ -79,63 +99,69 @@ impl File<'_> {
         let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
         for index in sink.node_records(&records)..self.nodes {
             let x_at = x.start + index * size;
-            let place = &Cursor::at_byte_of(self.source, x_at);
             let (tag, at) = (index as u64 + 1, [number(x_at), number(x_at + y_after)]);
             if !at.iter().all(|x| x.is_finite()) {
                 let problem = format!("a coordinate of node {tag} is not a finite number");
-                return Err(place.error(problem, "Write the mesh again"));
+                return Err(place(x_at).error(problem, "Write the mesh again"));
             }
-            sink.node(place, tag, 2, x_at, at);
+            sink.node(&place(x_at), tag, 2, x_at, at);
         }
-        sink.end_nodes(&Cursor::at_byte_of(self.source, x.start))?;
-        if let Some(z) = axes.get(2) {
+        sink.end_nodes(&place(x.start))?;
+        if let Some(z) = ranges.get(2) {
             let mut heights = Heights::new(sink);
             heights.see_all(field(z), z.len() / size, z.start);
-            heights.send("z", Form::Binary(order, precision), sink);
+            let home = if encoded.is_some() { Home::Points } else { Home::File };
+            heights.send_from("z", Form::Binary(order, precision), home, sink);
         }
-        Ok(Numbers::Binary { order, precision, y_after })
+        let numbers = Numbers::Binary { order, precision, y_after };
+        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
+        Ok(Layout { encoded, ..Layout::in_place(Format::Exodus, numbers) })
     }
 
-    /// How many digits coordinates have, and where those of each axis stand.
-    fn axes(&self) -> Result<(Precision, Vec<Range<usize>>), ReadError> {
+    /// How the coordinates stand, of each axis by itself.
+    fn axes(&self) -> Result<Axes, ReadError> {
         let header = &self.header;
-        let mut axes = Vec::new();
-        let mut numbers = Vec::new();
+        let nodes = self.nodes as u64;
         let each: Vec<_> =
             ["coordx", "coordy", "coordz"].into_iter().map_while(|n| header.variable(n)).collect();
-        if let (true, Some(all)) = (each.is_empty(), header.variable("coord")) {
-            // The coordinates of all axes in one table.
-            if let &[count, nodes] = &all.shape[..]
-                && nodes == self.nodes as u64
-                && !all.is_record
-            {
-                let range = all.range(header, 0);
-                let length = range.len() / (count as usize).max(1);
-                axes.extend((0..count as usize).map(|axis| {
-                    let start = range.start + axis * length;
-                    start..start + length
-                }));
-                numbers.push(all.number);
-            }
-        }
-        for variable in each {
-            if variable.shape == [self.nodes as u64] && !variable.is_record {
-                axes.push(variable.range(header, 0));
-                numbers.push(variable.number);
-            }
-        }
-        let start = Cursor::at_byte_of(self.source, 0);
-        match (&numbers[..], axes.len()) {
-            ([Number::Real(first), rest @ ..], 2..=3)
-                if rest.iter().all(|other| *other == Number::Real(*first)) =>
-            {
-                Ok((*first, axes))
-            }
+        let all = header.variable("coord").filter(|_| each.is_empty());
+        let fits = |variable: &&Variable| match &variable.shape[..] {
+            &[own] => own == nodes && !variable.is_record,
+            _ => false,
+        };
+        // The coordinates of all axes in one table, or each in one of its own.
+        let (count, variables) = match all.map(|all| (all, &all.shape[..], all.is_record)) {
+            Some((all, &[count, own], false)) if own == nodes => (count as usize, vec![all]),
             _ => {
-                let problem =
-                    format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
-                Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"))
+                let each: Vec<_> = each.into_iter().filter(fits).collect();
+                (each.len(), each)
             }
+        };
+        let first = variables.first().map(|first| (first.number, first.order));
+        let is_same = |other: &&Variable| Some((other.number, other.order)) == first;
+        let (Some((Number::Real(precision), order)), 2..=3, true) =
+            (first, count, variables.iter().all(is_same))
+        else {
+            let problem =
+                format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
+            let start = Cursor::at_byte_of(self.source, 0);
+            return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
+        };
+        let mut items =
+            variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
+        let length = self.nodes * precision.bytes();
+        let split = |start: usize, axes: usize| {
+            (0..axes).map(move |axis| start + axis * length..start + (axis + 1) * length)
+        };
+        let of_each = count / variables.len();
+        // In the file itself, if they stand there one after another; else as what is written anew.
+        let places: Option<Vec<usize>> = items.iter().map(Items::place).collect();
+        if let Some(places) = places.filter(|places| places.is_sorted()) {
+            let ranges = places.into_iter().flat_map(|start| split(start, of_each)).collect();
+            return Ok(Axes { precision, order, ranges, encoded: None });
         }
+        let arrays = items.iter_mut().filter_map(Items::take_array).collect();
+        let encoded = header.hdf5.as_ref().map(|file| Encoding::new(file, arrays));
+        Ok(Axes { precision, order, ranges: split(0, count).collect(), encoded })
     }
 }

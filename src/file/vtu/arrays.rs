@@ -137,7 +137,7 @@ impl File<'_> {
             true => (range.end - old.bytes.len(), Home::File),
             false => {
                 let offsets = Arc::clone(&self.offsets);
-                (0, Home::Encoded(Box::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
+                (0, Home::Encoded(Arc::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
             }
         };
         let stored = Some(Stored { places: Places::Regular { start, stride }, form, home });

@@ -1,0 +1,249 @@
+//! Meshes in HDF5, as several programs write them: `h5/make.py` has made the files.
+
+use super::damage::{self, damaged, random};
+use super::spoiled::mesh_or_error;
+use super::{Folder, support::check};
+use gpu_smooth::{Conversion, Format, MeshFile, PointField};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A file, and those beside it that it names.
+struct Sample {
+    name: &'static str,
+    beside: &'static [&'static str],
+    /// Whether all numbers stand in the file as they are, so that its length does not change.
+    is_plain: bool,
+}
+
+const SAMPLES: [Sample; 2] = [
+    Sample { name: "netcdf4.exo", beside: &[], is_plain: true },
+    Sample { name: "zlib.exo", beside: &[], is_plain: false },
+];
+
+fn made(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5").join(name)
+}
+
+impl Sample {
+    /// A folder with the files.
+    fn folder(&self) -> Folder {
+        let folder = Folder::new(&[]);
+        for name in [self.name].iter().chain(self.beside) {
+            fs::copy(made(name), folder.path(name)).unwrap();
+        }
+        folder
+    }
+
+    /// What the files that are called so hold.
+    fn bytes(&self, file: &MeshFile) -> Vec<Vec<u8>> {
+        file.paths().map(|path| fs::read(path).unwrap()).collect()
+    }
+}
+
+fn bits(points: &[[f64; 2]]) -> Vec<[u64; 2]> {
+    points.iter().map(|p| p.map(f64::to_bits)).collect()
+}
+
+/// The points with those that may move at other places, of digits that take room.
+fn moved(file: &MeshFile, by: f64) -> Vec<[f64; 2]> {
+    let mut points = file.mesh().points.clone();
+    let held = check::held(file.mesh());
+    for (v, point) in points.iter_mut().enumerate().filter(|(v, _)| !held[*v]) {
+        let at = (v as f64 + by).sin() * 0.1;
+        *point = point.map(|x| file.precision().rounded(x + at));
+    }
+    points
+}
+
+/// What is read of each is what the plain file has.
+#[test]
+fn every_file_has_the_mesh() {
+    let plain = MeshFile::read(&made("plain.xdmf")).unwrap();
+    for sample in &SAMPLES {
+        let file = MeshFile::read(&made(sample.name)).unwrap();
+        let rounded: Vec<_> =
+            plain.mesh().points.iter().map(|p| p.map(|x| file.precision().rounded(x))).collect();
+        assert_eq!(bits(&file.mesh().points), bits(&rounded), "{}", sample.name);
+        assert_eq!(file.mesh().triangles, plain.mesh().triangles, "{}", sample.name);
+        assert_eq!(file.paths().count(), 1 + sample.beside.len());
+    }
+}
+
+#[test]
+fn what_has_not_moved_keeps_its_bytes() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let file = folder.read(sample.name);
+        let before = sample.bytes(&file);
+        file.write(&folder.path(sample.name), &file.mesh().points).unwrap();
+        assert!(sample.bytes(&file) == before, "{}", sample.name);
+        let fields = file.point_fields(None).unwrap();
+        file.write_with(&folder.path(sample.name), &file.mesh().points, &fields).unwrap();
+        assert!(sample.bytes(&file) == before, "{}", sample.name);
+    }
+}
+
+/// Again and again, as chunks that have gone to the end of the file may go there once more.
+#[test]
+fn only_coordinates_change() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let first = folder.read(sample.name);
+        for round in 0..4 {
+            let file = folder.read(sample.name);
+            let to = moved(&file, f64::from(round));
+            let before = sample.bytes(&file);
+            file.write(&folder.path(sample.name), &to).unwrap();
+            let again = folder.read(sample.name);
+            assert_eq!(bits(&again.mesh().points), bits(&to), "{}", sample.name);
+            assert_eq!(again.mesh().triangles, first.mesh().triangles);
+            let after = sample.bytes(&again);
+            assert!(before != after);
+            let lengths = before.iter().zip(&after).map(|(a, b)| b.len().cmp(&a.len()));
+            assert!(lengths.into_iter().all(|length| length.is_eq() || !sample.is_plain));
+            for other in [&first, &file] {
+                assert_eq!(other.difference(&again), None, "{}", sample.name);
+                assert_eq!(again.difference(other), None, "{}", sample.name);
+            }
+            let groups = |file: &MeshFile| format!("{:?}", file.groups().unwrap());
+            assert_eq!(groups(&first), groups(&again));
+            let values = |file: &MeshFile| -> Vec<_> {
+                let fields = file.point_fields(None).unwrap();
+                fields.iter().map(|field| field.values().to_vec()).collect()
+            };
+            assert_eq!(values(&first), values(&again), "{}", sample.name);
+        }
+    }
+}
+
+/// A byte that is none of a coordinate shows, wherever it is.
+#[test]
+fn other_bytes_are_told() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let first = folder.read(sample.name);
+        first.write(&folder.path(sample.name), &moved(&first, 1.0)).unwrap();
+        let path = first.paths().last().unwrap().to_owned();
+        let bytes = fs::read(&path).unwrap();
+        let mut told = 0;
+        for at in (0..bytes.len()).step_by(97) {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            fs::write(&path, &changed).unwrap();
+            let Ok(again) = MeshFile::read(&folder.path(sample.name)) else { continue };
+            told += usize::from(first.difference(&again).is_some());
+        }
+        assert!(told > bytes.len() / 97 / 4, "{}: {told} were told", sample.name);
+    }
+}
+
+/// Data of vertices are written as coordinates are, and with them.
+#[test]
+fn data_are_replaced() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let file = folder.read(sample.name);
+        let mut fields = file.point_fields(None).unwrap();
+        let original: Vec<Vec<f64>> = fields.iter().map(|field| field.values().to_vec()).collect();
+        for (k, field) in fields.iter_mut().enumerate() {
+            let change = |(v, x): (usize, &f64)| x + (v as f64 * 0.7 + k as f64).sin();
+            let values = field.values().iter().enumerate().map(change).collect();
+            field.set(values).unwrap();
+        }
+        let to = moved(&file, 3.0);
+        file.write_with(&folder.path(sample.name), &to, &fields).unwrap();
+        let again = folder.read(sample.name);
+        assert_eq!(bits(&again.mesh().points), bits(&to));
+        let found = again.point_fields(None).unwrap();
+        assert_eq!(found.len(), fields.len());
+        for (found, wanted) in found.iter().zip(&fields) {
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * (1.0 + b.abs());
+            assert!(found.values().iter().zip(wanted.values()).all(close), "{}", sample.name);
+        }
+        let sides = [&found[..], &fields[..]];
+        assert_eq!(again.difference_besides(&file, sides), None, "{}", sample.name);
+        // And back to the same numbers.
+        let mut back = found;
+        let set =
+            |(field, values): (&mut PointField, &Vec<f64>)| field.set(values.clone()).unwrap();
+        back.iter_mut().zip(&original).for_each(|pair| drop(set(pair)));
+        again.write_with(&folder.path(sample.name), &file.mesh().points, &back).unwrap();
+        let again = folder.read(sample.name);
+        assert_eq!(bits(&again.mesh().points), bits(&file.mesh().points));
+        let values: Vec<Vec<f64>> =
+            again.point_fields(None).unwrap().iter().map(|f| f.values().to_vec()).collect();
+        assert_eq!(values, original, "{}", sample.name);
+    }
+}
+
+/// What netCDF-4 has is what the classic format has: groups and their names, and data in every time step.
+#[test]
+fn netcdf_gives_the_same_in_every_format() {
+    let classic = MeshFile::read(&made("classic.exo")).unwrap();
+    for name in ["netcdf4.exo", "zlib.exo"] {
+        let file = MeshFile::read(&made(name)).unwrap();
+        assert_eq!(file.format(), Format::Exodus);
+        assert_eq!(file.mesh(), classic.mesh());
+        assert_eq!(file.regions(), classic.regions());
+        let groups = |file: &MeshFile| format!("{:?}", file.groups().unwrap());
+        assert_eq!(groups(&file), groups(&classic));
+        assert_eq!(file.data_names(), ["T"]);
+        let values = |file: &MeshFile| -> Vec<_> {
+            let fields = file.point_fields(None).unwrap();
+            fields.iter().map(|field| field.values().to_vec()).collect()
+        };
+        assert_eq!(values(&file).len(), 2);
+        assert_eq!(values(&file), values(&classic));
+        let text = |file: &MeshFile| Conversion::new(file, Format::Gmsh41).unwrap().unwrap().text();
+        assert_eq!(text(&file), text(&classic));
+    }
+}
+
+/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+#[test]
+fn damaged_files_of_hdf5_never_panic() {
+    let mut random = random(23);
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let files: Vec<&str> = [sample.name].iter().chain(sample.beside).copied().collect();
+        let whole: Vec<Vec<u8>> = files.iter().map(|name| fs::read(made(name)).unwrap()).collect();
+        let rounds = damage::rounds(2000) / SAMPLES.len().min(4);
+        let mut read = 0;
+        for round in 0..rounds {
+            let part = round % files.len();
+            let content = match round % 3 {
+                // Text and counts of another length are seldom read: a byte more often is.
+                0 => damaged(&whole[part], &mut random),
+                _ => {
+                    let mut content = whole[part].clone();
+                    let at = random(content.len());
+                    content[at] = [0, 1, 0xFF, content[at] ^ 1][random(4)];
+                    content
+                }
+            };
+            for (name, bytes) in files.iter().zip(&whole) {
+                fs::write(folder.path(name), bytes).unwrap();
+            }
+            fs::write(folder.path(files[part]), &content).unwrap();
+            let start = Instant::now();
+            if let Ok(file) = mesh_or_error(&folder, sample.name) {
+                read += 1;
+                if round % 7 != 0 {
+                    continue;
+                }
+                let before = sample.bytes(&file);
+                file.write(&folder.path(sample.name), &file.mesh().points).unwrap();
+                assert!(sample.bytes(&file) == before, "{}", sample.name);
+                let to = moved(&file, 1.0);
+                file.write(&folder.path(sample.name), &to).unwrap();
+                if let Ok(fields) = file.point_fields(None) {
+                    assert!(fields.len() < 100);
+                }
+            }
+            assert!(start.elapsed().as_secs() < 10, "{} takes forever", sample.name);
+        }
+        let few = rounds / 50;
+        assert!((few..rounds - few).contains(&read), "{}: {read} of {rounds}", sample.name);
+    }
+}
