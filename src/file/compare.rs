@@ -37,12 +37,12 @@ impl MeshFile {
         other: &MeshFile,
         fields: [&[PointField]; 2],
     ) -> Option<Difference> {
-        let (mine, theirs) = (self.sources(), other.sources());
+        let (mine, theirs) = (self.parts(), other.parts());
         let place = |file: &MeshFile, part: usize, at: usize| {
-            let source = &file.sources()[part];
-            let location = match file.numbers() {
-                Numbers::Text { .. } => Location::Line(source.line_of(at)),
-                Numbers::Binary { .. } => Location::Byte(at),
+            let source = file.parts()[part];
+            let location = match file.is_text(part) {
+                true => Location::Line(source.line_of(at)),
+                false => Location::Byte(at),
             };
             Place { path: source.path.clone(), location, label: 0 }
         };
@@ -75,22 +75,22 @@ impl MeshFile {
                 return differ(0, [0; 2], "third coordinates are not the same".into());
             }
         }
-        for (part, (mine, theirs)) in mine.iter().zip(theirs).enumerate() {
+        for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
             let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
-            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(fields[side])) {
+            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(part, fields[side])) {
                 ranges = in_either(bytes, ranges);
             }
             if let Some(at) = unequal(bytes, ranges) {
-                let text = |side: usize| match self.numbers() {
+                let text = |side: usize| match self.is_text(part) {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
-                    Numbers::Text { .. } => {
+                    true => {
                         let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
                         let line = &bytes[side][start.map_or(0, |start| start + 1)..];
                         let line = line.split(|&byte| byte == b'\n').next().unwrap_or_default();
                         format!("`{}`", quoted(line.trim_ascii()))
                     }
-                    Numbers::Binary { .. } => format!("the byte {}", bytes[side][at[side]]),
+                    false => format!("the byte {}", bytes[side][at[side]]),
                 };
                 return differ(part, at, format!("{} and {}", text(0), text(1)));
             }
@@ -107,7 +107,7 @@ impl MeshFile {
         let places = (0..count).map(|index| x_at.at(index));
         match self.numbers() {
             Numbers::Text { .. } => {
-                let bytes = &self.sources()[0].bytes;
+                let bytes = &self.parts()[self.part()].bytes;
                 for x in places {
                     let x_end = number_end(bytes, x);
                     let y = skip_to_number(bytes, x_end);
@@ -123,39 +123,55 @@ impl MeshFile {
         ranges
     }
 
+    /// Whether places in one of the files are told by lines.
+    fn is_text(&self, part: usize) -> bool {
+        match self.numbers() {
+            Numbers::Text { .. } if part == self.part() => true,
+            Numbers::Binary { .. } if part == self.part() => false,
+            _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
+        }
+    }
+
     /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
-    fn keeps_places(&self, fields: &[PointField]) -> bool {
-        let of = |field: &PointField| match &field.stored()?.home {
-            Home::Encoded(array) => Some(array.keeps_places()),
+    fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
+        let of = |field: &PointField| match field.stored()? {
+            Stored { home: Home::Encoded(array), part: own, .. } => {
+                Some(*own == part && array.keeps_places())
+            }
             _ => None,
         };
-        self.encoded().is_some_and(Encoded::keeps_places)
+        (part == self.part() && self.encoded().is_some_and(Encoded::keeps_places))
             || fields.iter().filter_map(of).any(|keeps| keeps)
     }
 
     /// The ranges of a file that may change where vertices move and these data change, ascending.
     fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
-        if part > 0 {
-            return Vec::new();
-        }
-        let bytes = &self.sources()[0].bytes;
-        let mut ranges = match self.encoded() {
-            None => self.coordinates(),
+        let bytes = &self.parts()[part].bytes;
+        let encoded = self.encoded().filter(|_| part == self.part());
+        let mut ranges = match encoded {
+            None if part == self.part() => self.coordinates(),
+            None => Vec::new(),
             Some(points) => points.ranges(),
         };
-        let homes = || fields.iter().filter_map(|field| Some(&field.stored()?.home));
+        if part == 0 {
+            // Files beside it may have other names.
+            let beside = self.sources().iter().flat_map(|source| &source.beside);
+            ranges.extend(beside.flat_map(|beside| beside.named_at.iter().cloned()));
+        }
+        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));
         let arrays = homes().filter_map(|home| match home {
             Home::Encoded(array) => Some(&**array),
             _ => None,
         });
         ranges.extend(arrays.clone().flat_map(Encoded::ranges));
         // What follows from the length of an array.
-        let encoded = || self.encoded().into_iter().chain(arrays.clone());
+        let encoded = || encoded.into_iter().chain(arrays.clone());
         let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
             ranges.extend(array.followers(first));
         }
-        let in_file = |home: &Home| matches!(home, Home::File);
+        let in_file = |stored: &Stored| stored.part == part && matches!(stored.home, Home::File);
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
 }
@@ -180,20 +196,20 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
     })
 }
 
-fn is_beside_points(home: &Home) -> bool {
-    matches!(home, Home::Points)
+fn is_beside_points(stored: &Stored) -> bool {
+    matches!(stored.home, Home::Points)
 }
 
 /// The ranges of the numbers of fields in the bytes that hold them.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
-    in_these: impl Fn(&Home) -> bool,
+    in_these: impl Fn(&Stored) -> bool,
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(Stored { places, form, home }) = field.stored() else { continue };
-        if !in_these(home) {
+        let Some(stored @ Stored { places, form, .. }) = field.stored() else { continue };
+        if !in_these(stored) {
             continue;
         }
         let range = |at: usize| match form {

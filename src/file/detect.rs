@@ -170,8 +170,13 @@ mod tests {
     use super::*;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
-        let source =
-            Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None, welds: false };
+        let source = Source {
+            path: name.into(),
+            bytes: content_bytes.to_vec(),
+            packed: None,
+            welds: false,
+            beside: Vec::new(),
+        };
         match content(&source) {
             Ok(Content::Of(reader)) => {
                 let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));

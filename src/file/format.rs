@@ -57,7 +57,7 @@ pub enum Format {
     StlBinary,
     /// Exodus II, in netCDF's classic formats and in netCDF-4.
     Exodus,
-    /// XDMF, with its numbers in the XML.
+    /// XDMF, with its numbers in the XML or in files beside it, HDF5 or raw.
     Xdmf,
 }
 

@@ -4,6 +4,7 @@ mod adcirc;
 #[cfg(test)]
 mod ahead_tests;
 mod assemble;
+mod beside;
 mod binary;
 mod column;
 mod compare;

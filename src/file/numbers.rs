@@ -148,6 +148,7 @@ impl FoundPlaces {
 }
 
 /// Bytes that replace a range of a file.
+#[derive(Clone)]
 pub(crate) struct Splice {
     pub(crate) range: Range<usize>,
     pub(crate) bytes: Vec<u8>,

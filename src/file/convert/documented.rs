@@ -176,12 +176,12 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Xdmf],
-        "versions 2 and 3 with the numbers in the XML; points as XY or XYZ, `Float` of 4 and 8 bytes; Triangle, Mixed and other topologies; time steps of data are kept",
+        "versions 2 and 3 with the numbers in the XML, in HDF5 or raw files beside it; points as XY or XYZ, `Float` of 4 and 8 bytes; Triangle, Mixed and other topologies; time steps of data are kept",
         [
             "as legacy VTK",
             "cell data of the usual names, of whole numbers",
             "the same",
-            "numbers in HDF5 or binary files beside it are refused, and several grids with points of their own",
+            "several grids with points of their own, hyperslabs and compressed raw files are refused; of HDF5 what is said below",
         ],
     ),
     row(

@@ -91,7 +91,7 @@ impl File<'_> {
             let places = Places::Regular { start, stride: precision.bytes() };
             let form = Form::Binary(variable.order, precision);
             let numbers = reals(variable, bytes.get(range).unwrap_or_default());
-            let stored = Some(Stored { places, form, home });
+            let stored = Some(Stored { places, form, home, part: 0 });
             sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
         }
     }

@@ -111,7 +111,7 @@ impl File<'_> {
             let mut heights = Heights::new(sink);
             heights.see_all(field(z), z.len() / size, z.start);
             let home = if encoded.is_some() { Home::Points } else { Home::File };
-            heights.send_from("z", Form::Binary(order, precision), home, sink);
+            heights.send_from("z", Form::Binary(order, precision), (home, 0), sink);
         }
         let numbers = Numbers::Binary { order, precision, y_after };
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);

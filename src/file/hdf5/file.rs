@@ -156,13 +156,20 @@ impl<'a> Hdf5<'a> {
         Ok(Hdf5 { source, raw, objects })
     }
 
+    /// The same of a file that may be of another format; none if it is.
+    pub(in crate::file) fn open_any(source: &'a Source) -> Result<Option<Hdf5<'a>>, ReadError> {
+        match source.bytes.starts_with(SIGNATURE) {
+            true => Hdf5::open(source).map(Some),
+            false => Ok(None),
+        }
+    }
+
     /// The root group.
     pub(in crate::file) fn root(&self) -> &Object {
         &self.objects[0]
     }
 
     /// The object of a path, with a slash between names. None if there is none.
-    #[cfg_attr(not(test), expect(dead_code))]
     pub(in crate::file) fn find(&self, path: &[u8]) -> Option<&Object> {
         self.follow(self.root(), path, &mut 32)
     }

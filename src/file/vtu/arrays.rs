@@ -140,7 +140,8 @@ impl File<'_> {
                 (0, Home::Encoded(Arc::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
             }
         };
-        let stored = Some(Stored { places: Places::Regular { start, stride }, form, home });
+        let places = Places::Regular { start, stride };
+        let stored = Some(Stored { places, form, home, part: 0 });
         Ok(PointNumbers { numbers, nodes: None, stored })
     }
 
