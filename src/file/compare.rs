@@ -181,9 +181,9 @@ impl MeshFile {
 fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<usize>>; 2] {
     let [mine, theirs] = ranges;
     let [a, b] = bytes.map(<[u8]>::len);
-    let behind = vec![a.min(b)..a.max(b)];
+    let behind = a.min(b)..a.max(b);
     let mut joined: Vec<Range<usize>> = Vec::new();
-    for range in merged(merged(mine, theirs), behind) {
+    for range in merged(merged(mine, theirs), vec![behind]) {
         match joined.last_mut() {
             Some(last) if last.end >= range.start => last.end = last.end.max(range.end),
             _ => joined.push(range),

@@ -209,7 +209,7 @@ mod tests {
             (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
             (b"solid part\n", "STL"),
             (b"CDF\x02\0\0", "Exodus II"),
-            (b"\x89HDF\r\n", "Exodus II"),
+            (b"\x89HDF\r\n", "HDF5"),
             (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
             (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM is not read"),
             (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI) is not read"),

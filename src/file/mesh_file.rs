@@ -34,6 +34,8 @@ use std::path::Path;
 /// | VTK, XDMF | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
 /// | STL | solid |
 /// | Exodus II | block |
+/// | MED | family |
+/// | CGNS | section |
 /// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in

@@ -33,7 +33,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 18] = [
+const ROWS: [Row; 20] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -192,6 +192,26 @@ const ROWS: [Row; 18] = [
             "block",
             "blocks, side sets and node sets, with their names",
             "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; of netCDF-4 what is said of HDF5 below",
+        ],
+    ),
+    row(
+        &[Format::Med],
+        "versions 3 and 4, of Salome, Code_Aster, gmsh and meshio, one mesh at one time",
+        [
+            "PO1, SE2, QU4",
+            "family",
+            "groups of elements and of nodes by name, families",
+            "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; of HDF5 what is said below",
+        ],
+    ),
+    row(
+        &[Format::Cgns],
+        "one unstructured zone in HDF5, as gmsh writes it; `R4` and `R8`; sections of BAR_2, TRI_3, QUAD_4, NODE and MIXED",
+        [
+            "BAR_2, QUAD_4, NODE",
+            "section",
+            "sections, boundary conditions and their families by name",
+            "several zones, structured zones, NGON_n and files in ADF are refused; of HDF5 what is said below",
         ],
     ),
 ];

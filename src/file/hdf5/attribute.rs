@@ -2,9 +2,10 @@
 
 use super::btree;
 use super::bytes::{Bytes, Fault};
-use super::file::{Hdf5, Object, Raw};
+use super::file::{Hdf5, Object};
 use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
 use super::heap::Heap;
+use super::raw::Raw;
 use super::types::{Number, Space};
 
 /// The content of an attribute.
@@ -33,6 +34,14 @@ impl<'a> Attribute<'a> {
     pub(in crate::file) fn text(&self) -> Option<&'a [u8]> {
         let Number::Text(_) = self.number else { return None };
         self.bytes.split(|&byte| byte == 0).next()
+    }
+}
+
+impl Attribute<'_> {
+    /// The first of its whole numbers.
+    pub(in crate::file) fn whole(&self) -> Option<i64> {
+        let Number::Whole(size, order) = self.number else { return None };
+        Some(order.signed(self.bytes.get(..size)?))
     }
 }
 

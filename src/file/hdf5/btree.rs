@@ -1,7 +1,7 @@
 //! Trees of both versions that tell where parts of a file stand.
 
 use super::bytes::{Bytes, Fault};
-use super::file::Raw;
+use super::raw::Raw;
 use super::sum::Sum;
 
 /// How deep a tree may be. One of so many levels would have more leaves than there are bytes on any disk.

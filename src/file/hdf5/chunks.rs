@@ -2,36 +2,12 @@
 
 use super::btree::Tree;
 use super::bytes::Fault;
-use super::file::Raw;
+use super::entry::{Chunk, Entry};
 use super::filters::Filter;
-use super::fixed_array;
+use super::fixed_array::{self, Slot};
 use super::layout::Index;
+use super::raw::Raw;
 use super::sum::Sum;
-use std::ops::Range;
-
-/// Where a chunk stands, and where the file says so.
-#[derive(Clone, Debug)]
-pub(super) struct Chunk {
-    /// Its place among all chunks of the dataset, the last dimension first.
-    pub(super) number: usize,
-    /// The bytes of it in the file.
-    pub(super) range: Range<usize>,
-    /// The filters that were left out.
-    pub(super) mask: u32,
-    /// None where its place follows from that of others, or is the only one.
-    pub(super) entry: Option<Entry>,
-}
-
-/// Where an index has the place of a chunk.
-#[derive(Clone, Debug)]
-pub(super) struct Entry {
-    /// Where its address starts.
-    pub(super) address: usize,
-    /// Where its size stands, if that is told.
-    pub(super) size: Option<Range<usize>>,
-    /// The checksum that covers these.
-    pub(super) sum: Option<Sum>,
-}
 
 /// A dataset as a lattice of chunks. One that is not in chunks is a single one.
 #[derive(Clone, Debug)]
@@ -207,7 +183,7 @@ impl Lattice {
                 let slots = fixed_array::read(raw, address, rooms, !filters.is_empty())?;
                 for number in 0..self.count().min(slots.count()) {
                     let room = self.room(number).ok_or_else(damaged)?;
-                    if let Some((address, length, mask, entry)) = slots.slot(raw, room)? {
+                    if let Some(Slot { address, length, mask, entry }) = slots.slot(raw, room)? {
                         let range = address..address.saturating_add(length.unwrap_or(whole));
                         chunks.push(Chunk { number, range, mask, entry: Some(entry) });
                     }

@@ -1,11 +1,13 @@
 //! Datasets: what their headers say, and their numbers.
 
 use super::bytes::{DAMAGED, Fault};
-use super::chunks::{Chunk, Lattice};
-use super::file::{Hdf5, Object, Raw};
+use super::chunks::Lattice;
+use super::entry::Chunk;
+use super::file::{Hdf5, Object};
 use super::filters::{self, Filter};
 use super::header::{FILTERS, Header, LAYOUT, SPACE, TYPE};
 use super::layout::{Index, Layout};
+use super::raw::Raw;
 use super::sum::Sum;
 use super::types::{Number, Space};
 use crate::error::ReadError;
@@ -106,13 +108,25 @@ impl<'a> Hdf5<'a> {
         Ok(Some(Dataset { at, number, space, layout, filters, sum }))
     }
 
+    /// The whole numbers of the dataset that an object is; none if it has none that can be read.
+    pub(in crate::file) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
+        let dataset = self.dataset(object).ok()??;
+        let Number::Whole(size, order) = dataset.number else { return None };
+        let array = self.array(&dataset).ok()?;
+        Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
+    }
+
     /// The items of a dataset.
     ///
     /// # Errors
     /// If they do not all stand in the file, or are damaged.
     pub(in crate::file) fn array(&self, dataset: &Dataset) -> Result<Array<'a>, ReadError> {
         let array = dataset.pieces(&self.raw).and_then(|pieces| {
-            self.raw.take_data(pieces.chunks.iter().map(|chunk| chunk.range.clone()), dataset.at);
+            // What stands in the header was read with it.
+            if !matches!(dataset.layout, Layout::Compact(_)) {
+                let ranges = pieces.chunks.iter().map(|chunk| chunk.range.clone());
+                self.raw.take_data(ranges, dataset.at);
+            }
             let bytes = pieces.items(self.raw.bytes, dataset.at)?;
             Ok(Array { bytes, pieces })
         });

@@ -1,9 +1,10 @@
 //! What becomes of a file when numbers of its datasets change.
 
-use super::chunks::{Chunk, Entry};
 use super::dataset::{Array, Pieces};
-use super::file::{End, Hdf5};
+use super::entry::{Chunk, Entry};
+use super::file::Hdf5;
 use super::filters;
+use super::raw::End;
 use super::sum::Sum;
 use crate::file::numbers::{Encoded, Splice};
 use std::ops::Range;

@@ -1,8 +1,8 @@
 //! Fixed arrays, in which datasets that do not grow have the places of their chunks.
 
 use super::bytes::{Bytes, Fault};
-use super::chunks::Entry;
-use super::file::Raw;
+use super::entry::Entry;
+use super::raw::Raw;
 use super::sum::Sum;
 
 /// The array of a dataset.
@@ -19,6 +19,16 @@ pub(super) struct Slots {
     pages: Option<Vec<u8>>,
     /// The checksum of all, if they are on one page.
     sum: Option<Sum>,
+}
+
+/// What the array says of a chunk.
+pub(super) struct Slot {
+    pub(super) address: usize,
+    /// How many bytes it has, if that is told.
+    pub(super) length: Option<usize>,
+    /// The filters that were left out.
+    pub(super) mask: u32,
+    pub(super) entry: Entry,
 }
 
 const WHAT: &str = "the list of chunks of a dataset";
@@ -69,13 +79,8 @@ impl Slots {
         self.count
     }
 
-    /// What a slot says of its chunk: its address, its size if that is told, the filters left out, and where this stands. None if there
-    /// is no chunk.
-    pub(super) fn slot(
-        &self,
-        raw: &Raw<'_>,
-        number: usize,
-    ) -> Result<Option<(usize, Option<usize>, u32, Entry)>, Fault> {
+    /// What a slot says of its chunk; none if there is no chunk.
+    pub(super) fn slot(&self, raw: &Raw<'_>, number: usize) -> Result<Option<Slot>, Fault> {
         let (page, place) = (number / self.page, number % self.page);
         let mut sum = self.sum.clone();
         let mut start = self.first;
@@ -96,13 +101,13 @@ impl Slots {
         let Some(address) = bytes.address()? else { return Ok(None) };
         let mut entry = Entry { address: address_at, size: None, sum };
         if !self.has_sizes {
-            return Ok(Some((address, None, 0, entry)));
+            return Ok(Some(Slot { address, length: None, mask: 0, entry }));
         }
         let start = bytes.at();
         let length = bytes.count(self.size - raw.widths.address - 4)?;
         entry.size = Some(start..bytes.at());
         let mask = bytes.number(4)? as u32;
-        Ok(Some((address, Some(length), mask, entry)))
+        Ok(Some(Slot { address, length: Some(length), mask, entry }))
     }
 
     fn page_sum(&self, raw: &Raw<'_>, bytes: &mut Bytes<'_>, own: usize) -> Result<Sum, Fault> {

@@ -1,7 +1,7 @@
 //! The header of an object: its messages, which tell what it is.
 
 use super::bytes::{Bytes, Fault};
-use super::file::Raw;
+use super::raw::Raw;
 use super::sum::Sum;
 use std::ops::Range;
 
@@ -56,7 +56,8 @@ impl Header {
         bytes.skip(1 + 2 + 4)?;
         let size = bytes.count(4)?;
         bytes.align(at, 8)?;
-        let mut blocks = vec![bytes.at()..bytes.at().saturating_add(size)];
+        let first = bytes.at()..bytes.at().saturating_add(size);
+        let mut blocks = vec![first];
         raw.take(at..bytes.at(), &bytes)?;
         let mut header = Header::default();
         // Blocks are found while others are read.

@@ -4,11 +4,13 @@
 //! old style and of the new; datasets in the header, in one piece or in chunks; of filters deflate, shuffle and Fletcher's checksum.
 
 mod attribute;
+mod axes;
 mod btree;
 mod bytes;
 mod chunks;
 mod dataset;
 mod encoding;
+mod entry;
 mod file;
 mod filters;
 mod fixed_array;
@@ -16,12 +18,15 @@ mod groups;
 mod header;
 mod heap;
 mod layout;
+mod raw;
 mod sum;
 #[cfg(test)]
 mod tests;
 mod types;
 
+pub(in crate::file) use axes::Axes;
 pub(in crate::file) use dataset::{Array, Dataset};
 pub(in crate::file) use encoding::Encoding;
-pub(in crate::file) use file::{Hdf5, SIGNATURE};
+pub(in crate::file) use file::{Hdf5, Object};
+pub(in crate::file) use raw::SIGNATURE;
 pub(in crate::file) use types::Number;

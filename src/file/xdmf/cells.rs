@@ -19,7 +19,7 @@ enum Words<'a> {
     Text(Cursor<'a>),
     /// Those of a file beside the XML, and how many of them were taken.
     Heavy {
-        numbers: heavy::Numbers<'a>,
+        numbers: Box<heavy::Numbers<'a>>,
         whole: Whole<'a>,
         taken: usize,
         size: usize,
@@ -126,7 +126,7 @@ impl<'a> File<'a> {
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };
         let whole = Whole::binary(std::mem::take(&mut numbers.bytes), size, order);
-        Ok(Words::Heavy { numbers, whole, taken: 0, size })
+        Ok(Words::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
     /// Hands on triangles of a file beside the XML, as many as the sink takes at once. Returns how many these are, and how many

@@ -78,6 +78,14 @@ xdmf(
     topology(text(triangles), form="XML"),
 )
 
+def compact(group, name, data):
+    p = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    p.set_layout(h5py.h5d.COMPACT)
+    space = h5py.h5s.create_simple(data.shape)
+    d = h5py.h5d.create(group.id, name, h5py.h5t.py_create(data.dtype), space, p)
+    d.write(h5py.h5s.ALL, h5py.h5s.ALL, data)
+
+
 # dolfin (FEniCS) and dolfinx: groups of the old style, datasets as they are.
 with h5py.File("dolfin.h5", "w", libver=("earliest", "v108")) as f:
     f.create_dataset("Mesh/mesh/geometry", data=points)
@@ -85,11 +93,13 @@ with h5py.File("dolfin.h5", "w", libver=("earliest", "v108")) as f:
     t.attrs["celltype"] = np.bytes_("triangle")
     t.attrs["partition"] = np.array([0], dtype="u8")
     f.create_dataset("Function/T/0", data=depth.reshape(-1, 1))
+    compact(f["Function"], b"c", depth)
 xdmf(
     "dolfin.xdmf",
     geometry("dolfin.h5:/Mesh/mesh/geometry"),
     topology("dolfin.h5:/Mesh/mesh/topology"),
-    attribute("T", "Node", "dolfin.h5:/Function/T/0", f"{len(points)} 1", ' Precision="8"'),
+    attribute("T", "Node", "dolfin.h5:/Function/T/0", f"{len(points)} 1", ' Precision="8"')
+    + attribute("c", "Node", "dolfin.h5:/Function/c", len(points), ' Precision="8"'),
 )
 
 # meshio: several kinds of cells, chunks compressed by gzip.
@@ -119,6 +129,7 @@ with h5py.File("latest.h5", "w", libver="latest") as f:
         g.id, b"implicit", h5py.h5t.IEEE_F32LE, h5py.h5s.create_simple((len(points),)), s
     )
     d.write(h5py.h5s.ALL, h5py.h5s.ALL, depth.astype("f4"))
+    compact(g, b"c", depth)
     f["linked"] = h5py.SoftLink("/Mesh/geometry")
 n, m = len(points), len(triangles)
 xdmf(
@@ -127,6 +138,7 @@ xdmf(
     topology("latest.h5:/Mesh/topology"),
     attribute("T", "Node", "latest.h5:/Mesh/T", n)
     + attribute("u", "Node", "latest.h5:/Mesh/u", n)
+    + attribute("c", "Node", "latest.h5:/Mesh/c", n)
     + attribute("w", "Node", "latest.h5:/Mesh/implicit", n)
     + attribute("region", "Cell", "latest.h5:/Mesh/region", m, ' NumberType="Int"'),
 )
