@@ -64,9 +64,20 @@ impl MeshFile {
             )
         };
         let mut jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
-        // The one with the vertices takes its place last.
-        jobs.swap(0, self.part());
+        // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
+        // leave its place if that is left to the one with the coordinates.
+        if self.part() > 0 && self.is_written(&jobs[0], renamed) {
+            jobs.swap(0, self.part());
+        }
         replace::replace_all(&jobs)
+    }
+
+    /// Whether what the first file becomes stands there already.
+    fn is_written(&self, (path, _): &Job<'_>, renamed: &[Splice]) -> bool {
+        let mut new = Vec::new();
+        let bytes = &self.sources()[0].bytes;
+        let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
+        written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
     }
 
     /// Writes what [`write`](Self::write) does to where bytes can be written, such as the standard output. It is compressed if

@@ -427,6 +427,33 @@ fn files_that_are_not_beside_it_are_told() {
     folder.read("out.xdmf");
 }
 
+/// Where a file cannot take its place, all are as they were.
+#[test]
+fn all_files_are_replaced_or_none() {
+    let sample = &SAMPLES[0];
+    let folder = sample.folder();
+    let file = folder.read(sample.name);
+    let to = moved(&file, 1.0);
+    file.write(&folder.path("out.xdmf"), &file.mesh().points).unwrap();
+    let old = ["out.xdmf", "out.h5"].map(|name| fs::read(folder.path(name)).unwrap());
+    let count = folder.count();
+    // The text stays as it is, and then it does not.
+    for text in [old[0].clone(), b"another".to_vec()] {
+        fs::write(folder.path("out.xdmf"), &text).unwrap();
+        fs::remove_file(folder.path("out.h5")).unwrap();
+        fs::create_dir(folder.path("out.h5")).unwrap();
+        let error = file.write(&folder.path("out.xdmf"), &to).unwrap_err().to_string();
+        assert!(error.contains("out.h5"), "{error}");
+        assert!(fs::read(folder.path("out.xdmf")).unwrap() == text);
+        fs::remove_dir(folder.path("out.h5")).unwrap();
+        fs::write(folder.path("out.h5"), &old[1]).unwrap();
+        assert_eq!(folder.count(), count);
+    }
+    file.write(&folder.path("out.xdmf"), &to).unwrap();
+    assert_eq!(bits(&folder.read("out.xdmf").mesh().points), bits(&to));
+    assert_eq!(folder.count(), count);
+}
+
 /// What would replace a file that another part of the mesh was read from is refused before anything is written.
 #[test]
 fn a_file_of_the_mesh_is_not_replaced_by_another() {
