@@ -52,7 +52,7 @@ pub(super) fn read(
     let own = raw.widths.address + if has_sizes { 4 + 1 } else { 0 };
     let page = 1_usize.checked_shl(bits).filter(|_| (1..32).contains(&bits));
     let page = page.ok_or_else(|| bytes.damaged())?;
-    if count < least || size < own || size > own + 8 || count > raw.bytes.len() {
+    if count < least || size < own || size > own + 7 || count > raw.bytes.len() {
         return Err(bytes.damaged());
     }
     let mut bytes = raw.at(address, WHAT);

@@ -48,7 +48,7 @@ impl Heap {
         let is_sound = first.is_power_of_two()
             && largest.is_power_of_two()
             && first <= largest
-            && largest <= 1 << 32
+            && largest.ilog2() < 32
             && width.is_power_of_two()
             && (1..=64).contains(&bits);
         if !is_sound {
