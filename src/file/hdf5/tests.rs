@@ -27,7 +27,8 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
     let mut groups = vec![Vec::new()];
     let mut found = Vec::new();
     while let Some(group) = groups.pop() {
-        let object = file.find(&group).unwrap();
+        // A damaged name may have slashes.
+        let Some(object) = file.find(&group) else { continue };
         if groups.len() > 1000 {
             break;
         }

@@ -65,7 +65,7 @@ impl<'a> File<'a> {
             }
             (_, Some(second)) => {
                 let problem = format!("this is the second {section}");
-                let remedy = "Save each mesh to a file of its own";
+                let remedy = "Save each mesh to a file of its own, and tags of a mesh too";
                 Err(self.cursor(second).error(problem, remedy))
             }
         }
