@@ -23,6 +23,32 @@ pub(crate) fn any_file(bytes: &[u8]) {
     }
 }
 
+/// Reads any bytes as a file beside an XDMF, in HDF5 or raw.
+pub(crate) fn any_file_beside(folder: &Path, bytes: &[u8]) {
+    const NAMING: [(&str, &str); 3] = [
+        ("dolfin.h5", include_str!("../tests/formats/h5/dolfin.xdmf")),
+        ("latest.h5", include_str!("../tests/formats/h5/latest.xdmf")),
+        ("raw.bin", include_str!("../tests/formats/h5/raw.xdmf")),
+    ];
+    let path = folder.join("fuzzed.xdmf");
+    for (named, text) in NAMING {
+        // The cells of the raw one stand in the same file.
+        let text = text.replace("raw-cells.bin", named).replace(named, "fuzzed.h5");
+        fs::write(&path, &text).unwrap();
+        fs::write(folder.join("fuzzed.h5"), bytes).unwrap();
+        match MeshFile::read(&path) {
+            Ok(file) => {
+                use_file(&file);
+                file.write(&path, &file.mesh().points).unwrap();
+                assert_eq!(fs::read_to_string(&path).unwrap(), text);
+                let again = fs::read(folder.join("fuzzed.h5")).unwrap();
+                assert!(again == bytes, "a file that has not changed is written otherwise");
+            }
+            Err(error) => assert_told(&error.to_string()),
+        }
+    }
+}
+
 /// Reads any bytes as the two or three files of a Triangle mesh, which a byte that no text holds parts.
 pub(crate) fn any_triangle_files(folder: &Path, bytes: &[u8]) {
     let mut parts = bytes.splitn(3, |byte| *byte == 0xFF);

@@ -82,6 +82,26 @@ fn a_closing_tag_of_several_lines_is_told_on_one() {
     checks::any_file(b"<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n</Xdmf>\n</4 5 6\n4 5 10 Center=\"Node\">\n");
 }
 
+/// Files of HDF5, of which the first is Exodus and the others stand beside an XDMF.
+const HDF5: [&[u8]; 4] = [
+    include_bytes!("formats/h5/netcdf4.exo"),
+    include_bytes!("formats/h5/dolfin.h5"),
+    include_bytes!("formats/h5/latest.h5"),
+    include_bytes!("formats/h5/raw.bin"),
+];
+
+#[test]
+fn files_of_hdf5_of_any_bytes() {
+    let mut random = SplitMix64::new(16);
+    let folder = tempfile::tempdir().unwrap();
+    for round in 0..rounds(120) {
+        let bytes = HDF5[round % HDF5.len()];
+        let bytes = if round < HDF5.len() { bytes.to_vec() } else { damaged(bytes, &mut random) };
+        checks::any_file(&bytes);
+        checks::any_file_beside(folder.path(), &bytes);
+    }
+}
+
 #[test]
 fn triangle_files_of_any_bytes() {
     let mut random = SplitMix64::new(12);
@@ -125,7 +145,8 @@ fn the_corpus_can_be_written() {
         std::fs::write(folder.join(name.to_string()), bytes).unwrap();
     };
     let (texts, parts) = samples();
-    texts.iter().enumerate().for_each(|(name, text)| write("read", name, text));
+    let all = texts.iter().map(Vec::as_slice).chain(HDF5);
+    all.enumerate().for_each(|(name, bytes)| write("read", name, bytes));
     write("read_triangle", 0, parts);
     let mut random = SplitMix64::new(15);
     (0..40).for_each(|name| write("smooth", name, &any_bytes(&mut random, 260)));

@@ -26,7 +26,7 @@ pub(crate) fn parse_by(
 ) -> Result<Parsed, ReadError> {
     let vertices_of = reader.vertices;
     let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
-    let Layout { format, numbers, encoded, copies } = (reader.walk)(source, &mut assembler)?;
+    let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
     let has_parameters = assembler.has_parameters;
     let Assembler { mut mesh, x_at, regions, curves, .. } = assembler;
     let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
@@ -41,7 +41,8 @@ pub(crate) fn parse_by(
     for (vertex, point) in mesh.points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let (location, label) = vertex_places(reader, source, &[vertex])[0];
+            let (location, label, part) = vertex_places(reader, source, &[vertex])[0];
+            let source = source.parts().nth(part).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
             return Err(source.error_at(location, problem, CORRECT));
@@ -58,6 +59,7 @@ pub(crate) fn parse_by(
         x_at,
         owners,
         numbers,
+        part,
         encoded,
         regions,
         curves,
@@ -67,21 +69,21 @@ pub(crate) fn parse_by(
     })
 }
 
-/// Location and tag of the vertices with these indices, ascending, in a file that was read before.
+/// Location and tag, and which of the files that is, of the vertices with these indices, ascending, in a file that was read before.
 pub(crate) fn vertex_places(
     reader: &Reader,
     source: &Source,
     indices: &[usize],
-) -> Vec<(Location, u64)> {
+) -> Vec<(Location, u64, usize)> {
     find(reader, source, indices, &[])
 }
 
-/// Location and tag of the triangles with these indices, ascending, in a file that was read before.
+/// Location and tag, and which of the files that is, of the triangles with these indices, ascending, in a file that was read before.
 pub(crate) fn triangle_places(
     reader: &Reader,
     source: &Source,
     indices: &[usize],
-) -> Vec<(Location, u64)> {
+) -> Vec<(Location, u64, usize)> {
     find(reader, source, &[], indices)
 }
 
@@ -298,7 +300,8 @@ impl Sink for Assembler {
 struct Locator<'a> {
     nodes: Wanted<'a>,
     triangles: Wanted<'a>,
-    places: Vec<(Location, u64)>,
+    places: Vec<(Location, u64, usize)>,
+    source: &'a Source,
 }
 
 /// What is looked for in a list.
@@ -314,10 +317,11 @@ fn find(
     source: &Source,
     nodes: &[usize],
     triangles: &[usize],
-) -> Vec<(Location, u64)> {
+) -> Vec<(Location, u64, usize)> {
     let wanted = |left| Wanted { left, next: 0 };
     let places = Vec::with_capacity(nodes.len() + triangles.len());
-    let mut locator = Locator { nodes: wanted(nodes), triangles: wanted(triangles), places };
+    let mut locator =
+        Locator { nodes: wanted(nodes), triangles: wanted(triangles), places, source };
     // There is no error to handle: the file was read before without one.
     let _ = (reader.walk)(source, &mut locator);
     locator.places
@@ -325,9 +329,15 @@ fn find(
 
 impl Wanted<'_> {
     /// Notes the place of the next node or triangle in the file, if it is looked for.
-    fn pass(&mut self, places: &mut Vec<(Location, u64)>, cursor: &Cursor<'_>, tag: u64) {
+    fn pass(
+        &mut self,
+        (places, source): (&mut Vec<(Location, u64, usize)>, &Source),
+        cursor: &Cursor<'_>,
+        tag: u64,
+    ) {
         if self.left.first() == Some(&self.next) {
-            places.push((cursor.location(), tag));
+            let part = source.parts().position(|part| std::ptr::eq(part, cursor.source));
+            places.push((cursor.location(), tag, part.unwrap_or(0)));
             self.left = &self.left[1..];
         }
         self.next += 1;
@@ -336,12 +346,12 @@ impl Wanted<'_> {
 
 impl Sink for Locator<'_> {
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.nodes.pass(&mut self.places, cursor, tag);
+        self.nodes.pass((&mut self.places, self.source), cursor, tag);
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == Kind::Triangle {
-            self.triangles.pass(&mut self.places, cursor, element.tag);
+            self.triangles.pass((&mut self.places, self.source), cursor, element.tag);
         }
         Ok(())
     }

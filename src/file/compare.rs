@@ -25,7 +25,8 @@ impl MeshFile {
     /// triangles, and every byte of them is the same but those of coordinates.
     ///
     /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
-    /// themselves compared; so are the offsets of what stands after them.
+    /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
+    /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
         self.difference_besides(other, [&[], &[]])
     }
@@ -36,12 +37,12 @@ impl MeshFile {
         other: &MeshFile,
         fields: [&[PointField]; 2],
     ) -> Option<Difference> {
-        let (mine, theirs) = (self.sources(), other.sources());
+        let (mine, theirs) = (self.parts(), other.parts());
         let place = |file: &MeshFile, part: usize, at: usize| {
-            let source = &file.sources()[part];
-            let location = match file.numbers() {
-                Numbers::Text { .. } => Location::Line(source.line_of(at)),
-                Numbers::Binary { .. } => Location::Byte(at),
+            let source = file.parts()[part];
+            let location = match file.is_text(part) {
+                true => Location::Line(source.line_of(at)),
+                false => Location::Byte(at),
             };
             Place { path: source.path.clone(), location, label: 0 }
         };
@@ -74,19 +75,22 @@ impl MeshFile {
                 return differ(0, [0; 2], "third coordinates are not the same".into());
             }
         }
-        for (part, (mine, theirs)) in mine.iter().zip(theirs).enumerate() {
+        for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
-            let ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
+            let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
+            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(part, fields[side])) {
+                ranges = in_either(bytes, ranges);
+            }
             if let Some(at) = unequal(bytes, ranges) {
-                let text = |side: usize| match self.numbers() {
+                let text = |side: usize| match self.is_text(part) {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
-                    Numbers::Text { .. } => {
+                    true => {
                         let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
                         let line = &bytes[side][start.map_or(0, |start| start + 1)..];
                         let line = line.split(|&byte| byte == b'\n').next().unwrap_or_default();
                         format!("`{}`", quoted(line.trim_ascii()))
                     }
-                    Numbers::Binary { .. } => format!("the byte {}", bytes[side][at[side]]),
+                    false => format!("the byte {}", bytes[side][at[side]]),
                 };
                 return differ(part, at, format!("{} and {}", text(0), text(1)));
             }
@@ -103,7 +107,7 @@ impl MeshFile {
         let places = (0..count).map(|index| x_at.at(index));
         match self.numbers() {
             Numbers::Text { .. } => {
-                let bytes = &self.sources()[0].bytes;
+                let bytes = &self.parts()[self.part()].bytes;
                 for x in places {
                     let x_end = number_end(bytes, x);
                     let y = skip_to_number(bytes, x_end);
@@ -119,48 +123,93 @@ impl MeshFile {
         ranges
     }
 
+    /// Whether places in one of the files are told by lines.
+    fn is_text(&self, part: usize) -> bool {
+        match self.numbers() {
+            Numbers::Text { .. } if part == self.part() => true,
+            Numbers::Binary { .. } if part == self.part() => false,
+            _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
+        }
+    }
+
+    /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
+    fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
+        let of = |field: &PointField| match field.stored()? {
+            Stored { home: Home::Encoded(array), part: own, .. } => {
+                Some(*own == part && array.keeps_places())
+            }
+            _ => None,
+        };
+        (part == self.part() && self.encoded().is_some_and(Encoded::keeps_places))
+            || fields.iter().filter_map(of).any(|keeps| keeps)
+    }
+
     /// The ranges of a file that may change where vertices move and these data change, ascending.
     fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
-        if part > 0 {
-            return Vec::new();
-        }
-        let bytes = &self.sources()[0].bytes;
-        let mut ranges = match self.encoded() {
-            None => self.coordinates(),
+        let bytes = &self.parts()[part].bytes;
+        let encoded = self.encoded().filter(|_| part == self.part());
+        let mut ranges = match encoded {
+            None if part == self.part() => self.coordinates(),
+            None => Vec::new(),
             Some(points) => points.ranges(),
         };
-        let homes = || fields.iter().filter_map(|field| Some(&field.stored()?.home));
+        if part == 0 {
+            // Files beside it may have other names.
+            let beside = self.sources().iter().flat_map(|source| &source.beside);
+            ranges.extend(beside.flat_map(|beside| beside.named_at.iter().cloned()));
+        }
+        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));
         let arrays = homes().filter_map(|home| match home {
             Home::Encoded(array) => Some(&**array),
             _ => None,
         });
         ranges.extend(arrays.clone().flat_map(Encoded::ranges));
-        // The offsets of arrays that stand after one that may have another length.
-        let encoded = || self.encoded().into_iter().chain(arrays.clone());
+        // What follows from the length of an array.
+        let encoded = || encoded.into_iter().chain(arrays.clone());
         let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
-            let later = array.offsets().iter().filter(|offset| offset.array_at >= first);
-            ranges.extend(later.map(|offset| offset.place.clone()));
+            ranges.extend(array.followers(first));
         }
-        let in_file = |home: &Home| matches!(home, Home::File);
+        let in_file = |stored: &Stored| stored.part == part && matches!(stored.home, Home::File);
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
 }
 
-fn is_beside_points(home: &Home) -> bool {
-    matches!(home, Home::Points)
+/// All that is in the ranges of one of two files in which everything else has the same place, as far as each file goes. What stands
+/// behind the end of the shorter one is chunks, or where chunks were.
+fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<usize>>; 2] {
+    let [mine, theirs] = ranges;
+    let [a, b] = bytes.map(<[u8]>::len);
+    let behind = a.min(b)..a.max(b);
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for range in merged(merged(mine, theirs), vec![behind]) {
+        match joined.last_mut() {
+            Some(last) if last.end >= range.start => last.end = last.end.max(range.end),
+            _ => joined.push(range),
+        }
+    }
+    bytes.map(|bytes| {
+        let inside =
+            |range: &Range<usize>| range.start.min(bytes.len())..range.end.min(bytes.len());
+        joined.iter().map(inside).collect()
+    })
+}
+
+fn is_beside_points(stored: &Stored) -> bool {
+    matches!(stored.home, Home::Points)
 }
 
 /// The ranges of the numbers of fields in the bytes that hold them.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
-    in_these: impl Fn(&Home) -> bool,
+    in_these: impl Fn(&Stored) -> bool,
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(Stored { places, form, home }) = field.stored() else { continue };
-        if !in_these(home) {
+        let Some(stored @ Stored { places, form, .. }) = field.stored() else { continue };
+        if !in_these(stored) {
             continue;
         }
         let range = |at: usize| match form {

@@ -176,8 +176,13 @@ mod tests {
     use super::*;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
-        let source =
-            Source { path: name.into(), bytes: content_bytes.to_vec(), packed: None, welds: false };
+        let source = Source {
+            path: name.into(),
+            bytes: content_bytes.to_vec(),
+            packed: None,
+            welds: false,
+            beside: Vec::new(),
+        };
         match content(&source) {
             Ok(Content::Of(reader)) => {
                 let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
@@ -210,7 +215,7 @@ mod tests {
             (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
             (b"solid part\n", "STL"),
             (b"CDF\x02\0\0", "Exodus II"),
-            (b"\x89HDF\r\n", "HDF5 is not read"),
+            (b"\x89HDF\r\n", "HDF5"),
             (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
             (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM is not read"),
             (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI) is not read"),

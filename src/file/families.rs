@@ -4,8 +4,8 @@ use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
-    adcirc, exodus, freefem, gmsh, medit, meditb, obj, off, packed, ply, selafin, sms, stl, su2,
-    vtk, vtu, xdmf,
+    adcirc, cgns, container, exodus, freefem, gmsh, med, medit, meditb, obj, off, packed, ply,
+    selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -54,6 +54,8 @@ impl Family {
             Format::Selafin => &SELAFIN,
             Format::Stl | Format::StlBinary => &STL,
             Format::Exodus => &EXODUS,
+            Format::Med => &MED,
+            Format::Cgns => &CGNS,
             Format::Xdmf => &XDMF,
         }
     }
@@ -137,21 +139,20 @@ pub(crate) static STL: Family =
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
 static EXODUS: Family = family(
     "Exodus II",
-    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc"],
-    &[b"CDF\x01", b"CDF\x02", b"CDF\x05"],
+    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".h5", ".hdf5"],
+    &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
     reader::<exodus::Exodus>(),
 );
+static MED: Family = family("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
+/// Any of these, where the ending does not tell which.
+static HDF: Family =
+    family("HDF5", &[".h5", ".hdf5"], &[b"\x89HDF"], reader::<container::Container>());
+static CGNS: Family =
+    family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
 static XDMF: Family =
     family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
 static ABAQUS: Family =
     unread("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"], BY_MESHIO);
-static HDF: Family = unread(
-    "HDF5",
-    &[".h5", ".hdf5", ".med", ".cgns"],
-    &[b"\x89HDF"],
-    "If it is Exodus, `nccopy -k classic IN OUT` (-k cdf5 for large ones) makes of it one that is read; convert MED and \
-     CGNS to gmsh or Exodus",
-);
 static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 
@@ -192,7 +193,7 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 39] = [
+pub(crate) static FAMILIES: [&Family; 41] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -209,10 +210,12 @@ pub(crate) static FAMILIES: [&Family; 39] = [
     &VTK_XML_POLYGONS,
     &STL,
     &PLY,
+    &HDF,
     &EXODUS,
+    &MED,
+    &CGNS,
     &XDMF,
     &ABAQUS,
-    &HDF,
     &GMSH_1,
     &NASTRAN,
     &UNV,

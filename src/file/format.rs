@@ -55,15 +55,19 @@ pub enum Format {
     Stl,
     /// STL, in binary, with corners at the same place joined.
     StlBinary,
-    /// Exodus II, in netCDF's classic formats.
+    /// Exodus II, in netCDF's classic formats and in netCDF-4.
     Exodus,
-    /// XDMF, with its numbers in the XML.
+    /// MED, of Salome and Code_Aster, versions 3 and 4.
+    Med,
+    /// CGNS, in HDF5.
+    Cgns,
+    /// XDMF, with its numbers in the XML or in files beside it, HDF5 or raw.
     Xdmf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 26] = [
+    pub const ALL: [Format; 28] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -89,6 +93,8 @@ impl Format {
         Format::Stl,
         Format::StlBinary,
         Format::Exodus,
+        Format::Med,
+        Format::Cgns,
         Format::Xdmf,
     ];
 
@@ -120,6 +126,8 @@ impl Format {
             Format::Stl => "STL ASCII",
             Format::StlBinary => "STL binary",
             Format::Exodus => "Exodus II",
+            Format::Med => "MED",
+            Format::Cgns => "CGNS",
             Format::Xdmf => "XDMF",
         }
     }

@@ -53,11 +53,17 @@ impl Heights {
 
     /// Hands them to the sink under this name, if they differ or it asks for data.
     pub(crate) fn send(self, name: &str, form: Form, sink: &mut dyn Sink) {
-        self.send_from(name, form, Home::File, sink);
+        self.send_from(name, form, (Home::File, 0), sink);
     }
 
-    /// The same, if they stand elsewhere than in the file itself.
-    pub(crate) fn send_from(self, name: &str, form: Form, home: Home, sink: &mut dyn Sink) {
+    /// The same, if they stand elsewhere than in the file itself, or in this one of the files of the mesh.
+    pub(crate) fn send_from(
+        self,
+        name: &str,
+        form: Form,
+        (home, part): (Home, usize),
+        sink: &mut dyn Sink,
+    ) {
         let is_any = self.collected.is_some() && self.first.is_some() && !self.is_partial;
         let is_told = self.differ || is_any;
         if is_told
@@ -67,8 +73,12 @@ impl Heights {
             let precision = form.precision();
             numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
             // There is no place for those that a file does not have.
-            let stored =
-                (!self.is_partial).then_some(Stored { places: Places::List(places), form, home });
+            let stored = (!self.is_partial).then_some(Stored {
+                places: Places::List(places),
+                form,
+                home,
+                part,
+            });
             sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
         }
     }

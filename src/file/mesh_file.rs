@@ -34,6 +34,8 @@ use std::path::Path;
 /// | VTK, XDMF | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
 /// | STL | solid |
 /// | Exodus II | block |
+/// | MED | family |
+/// | CGNS | section |
 /// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in
@@ -64,13 +66,15 @@ pub struct MeshFile {
     notes: Vec<String>,
     data: Vec<String>,
     has_parameters: bool,
-    /// The bytes at which the x of vertices start in the first of the sources.
+    /// The bytes at which the x of vertices start in the part that has the coordinates.
     x_at: Places,
     /// The vertex of each of these, if there are several to a vertex.
     owners: Option<Vec<u32>>,
-    /// How the first of the sources has the coordinates.
+    /// How that part has the coordinates.
     numbers: Numbers,
-    /// The points, if the first of the sources has them encoded.
+    /// Which of the parts has the coordinates.
+    part: usize,
+    /// The points, if that part has them encoded.
     encoded: Option<Box<dyn Encoded>>,
     regions: Option<Vec<u32>>,
     curves: Curves,
@@ -97,6 +101,7 @@ impl MeshFile {
             x_at,
             owners,
             numbers,
+            part,
             encoded,
             regions,
             curves,
@@ -124,6 +129,7 @@ impl MeshFile {
             x_at,
             owners,
             numbers,
+            part,
             encoded,
             regions,
             curves,
@@ -139,14 +145,15 @@ impl MeshFile {
         &self.sources[0].path
     }
 
-    /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`.
+    /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`; of an XDMF the files beside it
+    /// that it has numbers in.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.sources.iter().map(|source| source.path.as_path())
+        self.parts().into_iter().map(|source| source.path.as_path())
     }
 
     /// All files that were read, in the order of [`paths`](Self::paths), with their bytes as they were read.
     pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
-        self.sources.iter().map(|source| {
+        self.parts().into_iter().map(|source| {
             let bytes = source.packed.as_ref().map_or(&source.bytes, |packed| &packed.bytes);
             (source.path.as_path(), &bytes[..])
         })
@@ -297,6 +304,16 @@ impl MeshFile {
         &self.sources
     }
 
+    /// All files of the mesh, each of the sources with those beside it.
+    pub(crate) fn parts(&self) -> Vec<&Source> {
+        self.sources.iter().flat_map(Source::parts).collect()
+    }
+
+    /// Which of the parts has the coordinates.
+    pub(crate) fn part(&self) -> usize {
+        self.part
+    }
+
     pub(crate) fn x_at(&self) -> &Places {
         &self.x_at
     }
@@ -341,7 +358,7 @@ impl MeshFile {
 
 impl fmt::Debug for MeshFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let paths: Vec<_> = self.sources.iter().map(|source| &source.path).collect();
+        let paths: Vec<_> = self.paths().collect();
         f.debug_struct("MeshFile")
             .field("paths", &paths)
             .field("format", &self.format)

@@ -24,6 +24,9 @@ impl MeshFile {
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
     /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them |
     /// | OBJ | `material`, `object` and `group` |
+    /// | Exodus II | `block`, `sideset` and `nodeset`, with their names |
+    /// | CGNS | `section`, `boundary` and its `family`, by name |
+    /// | MED | `group` of elements and of nodes, by name; `family` of elements |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
     /// | VTK | values of the cell data that tell [regions](Self#regions), called as these arrays are |
     /// | others | none |

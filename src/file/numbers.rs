@@ -148,6 +148,7 @@ impl FoundPlaces {
 }
 
 /// Bytes that replace a range of a file.
+#[derive(Clone)]
 pub(crate) struct Splice {
     pub(crate) range: Range<usize>,
     pub(crate) bytes: Vec<u8>,
@@ -169,10 +170,16 @@ pub(crate) trait Encoded: Send + Sync {
     fn bytes(&self) -> &[u8];
     /// Where they stand in the file.
     fn ranges(&self) -> Vec<Range<usize>>;
-    /// What of that is replaced if these become the numbers.
-    fn splices(&self, new: &[u8]) -> Vec<Splice>;
-    /// What the file says of places in the data at its end: the same for all of its arrays.
-    fn offsets(&self) -> &[Offset];
+    /// What of the file is replaced if these become the numbers. `end` is where the file ends, with what was put behind it so far; what
+    /// is put there is a splice at its end as it was read.
+    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice>;
+    /// What else is replaced in a file, once all is known that its arrays replace and where it ends then. What several arrays say
+    /// of one range is the same.
+    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice>;
+    /// Where that may be in a file of which nothing changes before this byte.
+    fn followers(&self, first: usize) -> Vec<Range<usize>>;
+    /// Whether everything else stays at its place in the file, whatever the lengths of the arrays.
+    fn keeps_places(&self) -> bool;
 }
 
 #[cfg(test)]

@@ -199,7 +199,7 @@ mod tests {
             if random(3) == 0 {
                 text.truncate(text.len() - random(4).min(text.len() as u64 - 11) as usize);
             }
-            let source = Source { path: "m.txt".into(), bytes: text, packed: None, welds: false };
+            let source = Source::new("m.txt".as_ref(), text).expect("it is not compressed");
             for count in [0, 1, random(40), 40] {
                 let plain = seen(&source, count, None);
                 for size in [1, 7, 40, 1 << 10] {

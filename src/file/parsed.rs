@@ -16,6 +16,8 @@ pub(crate) struct Parsed {
     pub(crate) owners: Option<Vec<u32>>,
     /// How the file has its coordinates.
     pub(crate) numbers: Numbers,
+    /// Which of the files of the mesh holds them, counted from zero.
+    pub(crate) part: usize,
     /// The points, if they are encoded.
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// The region of each triangle, or none if all are of one.

@@ -59,10 +59,16 @@ impl MeshFile {
         keep_ascending(&mut wanted, self.original().points.len());
         let source = &self.sources()[0];
         let found = match &Family::of(self.format()).reader {
-            None => triangle::vertex_places(source, wanted.iter().map(|&v| self.x_at().at(v))),
+            None => {
+                let x_at = wanted.iter().map(|&v| self.x_at().at(v));
+                of_one_file(triangle::vertex_places(source, x_at))
+            }
             Some(reader) => assemble::vertex_places(reader, source, &wanted),
         };
-        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        let place = |(location, label, part)| {
+            let path = source.parts().nth(part).unwrap_or(source).path.clone();
+            Place { path, location, label }
+        };
         wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
     }
 
@@ -87,12 +93,20 @@ impl MeshFile {
         keep_ascending(&mut wanted, self.mesh().triangles.len());
         let source = &self.sources()[usize::from(self.format() == Format::Triangle)];
         let found = match &Family::of(self.format()).reader {
-            None => triangle::triangle_places(source, &wanted),
+            None => of_one_file(triangle::triangle_places(source, &wanted)),
             Some(reader) => assemble::triangle_places(reader, source, &wanted),
         };
-        let place = |(location, label)| Place { path: source.path.clone(), location, label };
+        let place = |(location, label, part)| {
+            let path = source.parts().nth(part).unwrap_or(source).path.clone();
+            Place { path, location, label }
+        };
         wanted.iter().copied().zip(found.into_iter().map(place)).collect()
     }
+}
+
+/// Places that are all in the first file.
+fn of_one_file(places: Vec<(Location, u64)>) -> Vec<(Location, u64, usize)> {
+    places.into_iter().map(|(location, label)| (location, label, 0)).collect()
 }
 
 /// Sorts indices, each once, and drops those that are not below `count`.

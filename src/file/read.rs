@@ -1,12 +1,15 @@
 //! Reading a mesh from its file, or from a program's memory.
 
-use crate::error::ReadError;
+use crate::error::{Location, ReadError};
 use crate::file::assemble;
 use crate::file::detect::{self, Content};
 use crate::file::families::TRIANGLE;
 use crate::file::mesh_file::MeshFile;
+use crate::file::replace::same_file;
 use crate::file::sink::Reader;
-use crate::file::source::Source;
+use crate::file::source::{Beside, Named, Source};
+use crate::file::text::CORRECT;
+use crate::file::token::quoted;
 use crate::file::triangle;
 use crate::file::triangle_names::Names;
 use std::path::Path;
@@ -15,7 +18,7 @@ impl MeshFile {
     /// Reads a mesh, in the format its content shows.
     ///
     /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
-    /// compressed by gzip or zstd.
+    /// compressed by gzip or zstd. Of an XDMF that has numbers in other files, these are read too.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
@@ -48,7 +51,10 @@ impl MeshFile {
         };
         given.welds = welds;
         match content(&given)? {
-            Content::Of(reader) => of_one_file(reader, given),
+            Content::Of(reader) => {
+                load_beside(reader, &mut given)?;
+                of_one_file(reader, given)
+            }
             Content::Triangle(names) => Self::read_triangle(given, &names),
         }
     }
@@ -73,7 +79,14 @@ impl MeshFile {
 
     fn of_source(given: Source) -> Result<MeshFile, ReadError> {
         match content(&given)? {
-            Content::Of(reader) => of_one_file(reader, given),
+            Content::Of(reader) => {
+                if let Some(named) = (reader.beside)(&given)?.first() {
+                    let name = quoted(named.name.as_bytes());
+                    let problem = format!("its numbers are in {name}, a file beside it");
+                    return Err(given.error(problem, "Name the file, so that both are read"));
+                }
+                of_one_file(reader, given)
+            }
             Content::Triangle(_) => {
                 let problem = "one of the two files of a Triangle mesh";
                 Err(given.error(problem, "Name its .node, so that both are read"))
@@ -109,6 +122,49 @@ impl MeshFile {
 /// What a file holds.
 fn content(given: &Source) -> Result<Content, ReadError> {
     detect::content(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
+}
+
+/// Reads the files that a file names, each once.
+fn load_beside(reader: &Reader, given: &mut Source) -> Result<(), ReadError> {
+    let named = (reader.beside)(given)?;
+    if !named.is_empty() && given.packed.is_some() {
+        let problem = "it is compressed, but a mesh of several files";
+        return Err(given.error(problem, "Decompress it first (gunzip, unzstd)"));
+    }
+    for Named { name, at } in named {
+        if let Some(known) = given.beside.iter_mut().find(|own| own.names.contains(&name)) {
+            known.named_at.push(at);
+            continue;
+        }
+        let path = given.path.parent().unwrap_or(Path::new("")).join(&name);
+        if same_file(&path, &given.path) {
+            let place = Location::Line(given.line_of(at.start));
+            let problem = "it names itself as a file of numbers";
+            return Err(given.error_at(place, problem, CORRECT));
+        }
+        // By another name.
+        if let Some(known) = given.beside.iter_mut().find(|own| same_file(&own.source.path, &path))
+        {
+            known.names.push(name);
+            known.named_at.push(at);
+            continue;
+        }
+        let source = match Source::load(&path) {
+            Err(_) if !path.exists() => {
+                let place = Location::Line(given.line_of(at.start));
+                let shown = quoted(name.as_bytes());
+                let problem = format!("its numbers are in {shown}, which is not there");
+                return Err(given.error_at(place, problem, "Put the file beside it"));
+            }
+            loaded => loaded?,
+        };
+        if source.packed.is_some() {
+            let problem = "it is compressed, but one of the files of a mesh";
+            return Err(source.error(problem, "Decompress it first (gunzip, unzstd)"));
+        }
+        given.beside.push(Beside { names: vec![name], named_at: vec![at], source });
+    }
+    Ok(())
 }
 
 fn of_one_file(reader: &Reader, given: Source) -> Result<MeshFile, ReadError> {

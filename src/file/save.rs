@@ -1,13 +1,14 @@
 //! Writing a mesh file again, with the coordinates of moved vertices replaced.
 
 use crate::error::WriteError;
+use crate::file::beside;
 use crate::file::column::Column;
 use crate::file::detect;
 use crate::file::families::{Family, TRIANGLE};
 use crate::file::field::PointField;
 use crate::file::format::Format;
 use crate::file::mesh_file::MeshFile;
-use crate::file::numbers::{Encoded, Offset, Splice};
+use crate::file::numbers::{Encoded, Splice};
 use crate::file::packed::Packing;
 use crate::file::replace::{self, Job};
 use crate::file::rewrite::Rewrite;
@@ -15,6 +16,7 @@ use crate::file::sink::{Home, Stored};
 use crate::file::triangle_names::Names;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl MeshFile {
     /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
@@ -50,18 +52,39 @@ impl MeshFile {
         self.check_points(path, points)?;
         self.check_destination(path)?;
         let packs = self.packs(path);
+        let renamed = &beside::renamed(&self.sources()[0], path);
         let job = |(part, destination)| -> Job<'_> {
-            (destination, Box::new(move |out| self.put(part, (points, fields), packs, out)))
+            let content = (points, fields);
+            (
+                destination,
+                Box::new(move |out| match part {
+                    0 if !renamed.is_empty() => self.put_plain(0, content, renamed, out),
+                    _ => self.put(part, content, packs, out),
+                }),
+            )
         };
-        let jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
+        let mut jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
+        // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
+        // leave its place if that is left to the one with the coordinates.
+        if self.part() > 0 && self.is_written(&jobs[0], renamed) {
+            jobs.swap(0, self.part());
+        }
         replace::replace_all(&jobs)
+    }
+
+    /// Whether what the first file becomes stands there already.
+    fn is_written(&self, (path, _): &Job<'_>, renamed: &[Splice]) -> bool {
+        let mut new = Vec::new();
+        let bytes = &self.sources()[0].bytes;
+        let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
+        written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
     }
 
     /// Writes what [`write`](Self::write) does to where bytes can be written, such as the standard output. It is compressed if
     /// the file that was read is.
     ///
     /// # Errors
-    /// [`WriteError`] if the points are not finite or not one per vertex, for a Triangle mesh, which is of several files, or
+    /// [`WriteError`] if the points are not finite or not one per vertex, for a mesh of several files, or
     /// if nothing can be written; `name` stands in it for where that is.
     pub fn write_to(
         &self,
@@ -84,8 +107,8 @@ impl MeshFile {
         fields: &[PointField],
     ) -> Result<(), WriteError> {
         self.check_points(name, points)?;
-        if self.sources().len() > 1 {
-            let problem = "a Triangle mesh is of several files".to_owned();
+        if self.parts().len() > 1 {
+            let problem = "the mesh is of several files".to_owned();
             let remedy = "Name a file to write to".to_owned();
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
@@ -112,30 +135,31 @@ impl MeshFile {
     fn put(
         &self,
         part: usize,
-        (points, fields): (&[[f64; 2]], &[PointField]),
+        content: (&[[f64; 2]], &[PointField]),
         packs: Option<Packing>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
-        // Only the first file holds vertices.
-        let content = if part == 0 { Some((points, fields)) } else { None };
-        let Some(packing) = packs else { return self.put_plain(part, content, out) };
+        let (points, fields) = content;
+        let Some(packing) = packs else { return self.put_plain(part, content, &[], out) };
         let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
-        match &self.sources()[part].packed {
+        match &self.parts()[part].packed {
             // Another program may pack the same content into other bytes.
             Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
-            _ => packing.pack(out, |out| self.put_plain(part, content, out)),
+            _ => packing.pack(out, |out| self.put_plain(part, content, &[], out)),
         }
     }
 
+    /// Writes one of the files, with what of it is replaced because files beside it get other names.
     fn put_plain(
         &self,
         part: usize,
-        content: Option<(&[[f64; 2]], &[PointField])>,
+        (points, fields): (&[[f64; 2]], &[PointField]),
+        renamed: &[Splice],
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
-        let bytes = &self.sources()[part].bytes;
-        let Some((points, fields)) = content else { return out.write_all(bytes) };
-        let given = self.chart().map(|chart| chart.given(points));
+        let bytes = &self.parts()[part].bytes[..];
+        let has_points = part == self.part();
+        let given = self.chart().filter(|_| has_points).map(|chart| chart.given(points));
         let new = given.as_deref().unwrap_or(points);
         let points = || {
             let places = (self.x_at(), self.owners());
@@ -143,31 +167,56 @@ impl MeshFile {
         };
         // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
-        let mut splices = Vec::new();
-        for field in fields.iter().filter(|field| field.is_changed()) {
+        let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();
+        let (mut splices, mut end) = (renamed.to_vec(), bytes.len());
+        let mut again = |array: &dyn Encoded, columns: &[Column<'_>]| -> io::Result<()> {
+            let old = array.bytes();
+            let mut new = Vec::with_capacity(old.len());
+            Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
+            splices.extend(array.splices(bytes, &new, &mut end));
+            Ok(())
+        };
+        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        for field in fields.iter().filter(own).filter(|field| field.is_changed()) {
             let (Some(column), Some(Stored { home, .. })) = (field.column(), field.stored()) else {
                 continue;
             };
             match home {
                 Home::File => in_file.push(column),
                 Home::Points => in_points.push(column),
-                Home::Encoded(array) => splices.extend(encoded_again(&**array, &[column])?),
+                Home::Encoded(array) => {
+                    match in_others.iter_mut().find(|(other, _)| Arc::ptr_eq(array, other)) {
+                        Some((_, columns)) => columns.push(column),
+                        None => in_others.push((array, vec![column])),
+                    }
+                }
             }
         }
-        match self.encoded() {
-            None => in_file.extend(points()),
+        in_others.iter().try_for_each(|(array, columns)| again(&***array, columns))?;
+        let encoded = self.encoded().filter(|_| has_points);
+        match encoded {
+            None if has_points => in_file.extend(points()),
+            None => {}
             Some(array) => {
                 in_points.extend(points());
-                splices.extend(encoded_again(array, &in_points)?);
+                again(array, &in_points)?;
             }
         }
-        let homes = fields.iter().filter_map(|field| field.stored().map(|stored| &stored.home));
-        let mut arrays = self.encoded().into_iter().chain(homes.filter_map(|home| match home {
+        let homes = fields.iter().filter(own);
+        let homes = homes.filter_map(|field| field.stored().map(|stored| &stored.home));
+        let arrays = encoded.into_iter().chain(homes.filter_map(|home| match home {
             Home::Encoded(array) => Some(&**array),
             _ => None,
         }));
-        let offsets = arrays.next().map_or(&[][..], |array| array.offsets());
-        splices.extend(corrected(offsets, &splices));
+        let mut more: Vec<Splice> = Vec::new();
+        for array in arrays {
+            for own in array.follow(bytes, &splices, end) {
+                if more.iter().all(|splice| splice.range != own.range) {
+                    more.push(own);
+                }
+            }
+        }
+        splices.extend(more);
         splices.sort_by_key(|splice| splice.range.start);
         Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
     }
@@ -200,8 +249,8 @@ impl MeshFile {
         };
         let ends_in_separator =
             path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
-        // A device takes a single file, not the two or three of a Triangle mesh.
-        let is_device = path.exists() && !path.is_file() && self.sources().len() > 1;
+        // A device takes a single file, not several.
+        let is_device = path.exists() && !path.is_file() && self.parts().len() > 1;
         if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
         }
@@ -239,6 +288,24 @@ impl MeshFile {
                 }
                 [node, ele, poly].into_iter().take(self.sources().len()).collect()
             }
+            _ if self.parts().len() > 1 => {
+                let all = beside::destinations(&self.sources()[0], path);
+                if Packing::of(path).is_some() {
+                    let problem = "the mesh is of several files, which are not written compressed";
+                    return refused(problem.into(), format!("End the name in {usual}"));
+                }
+                // Each file of the mesh may be replaced by what it becomes, and by nothing else.
+                for (part, own) in all.iter().enumerate() {
+                    let mut others = self.paths().enumerate().filter(|(other, _)| *other != part);
+                    if others.any(|(_, other)| replace::same_file(own, other)) {
+                        let name = own.display();
+                        let problem =
+                            format!("{name} would be written, which the mesh was read from");
+                        return refused(problem, "Take another name".into());
+                    }
+                }
+                all
+            }
             _ => vec![path.to_owned()],
         })
     }
@@ -259,26 +326,4 @@ impl MeshFile {
             None => Ok(()),
         }
     }
-}
-
-/// What replaces encoded arrays whose numbers change.
-fn encoded_again(array: &dyn Encoded, columns: &[Column<'_>]) -> io::Result<Vec<Splice>> {
-    let old = array.bytes();
-    let mut new = Vec::with_capacity(old.len());
-    Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
-    Ok(array.splices(&new))
-}
-
-/// The offsets that are others once arrays before them have other lengths.
-fn corrected(offsets: &[Offset], splices: &[Splice]) -> Vec<Splice> {
-    let corrected = offsets.iter().filter_map(|offset| {
-        let before = splices.iter().filter(|splice| splice.range.end <= offset.array_at);
-        let (removed, added) = before.fold((0, 0), |(removed, added), splice| {
-            (removed + splice.range.len(), added + splice.bytes.len())
-        });
-        let value = (offset.value + added).saturating_sub(removed);
-        let bytes = value.to_string().into_bytes();
-        (value != offset.value).then(|| Splice { range: offset.place.clone(), bytes })
-    });
-    corrected.collect()
 }

@@ -6,9 +6,10 @@ use crate::file::label::Label;
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::parallel_rows::take_rows;
 use crate::file::records::{NodeRecords, TriangleRecords};
-use crate::file::source::Source;
+use crate::file::source::{Named, Source};
 use crate::file::text::Cursor;
 use crate::periodic::Motion;
+use std::sync::Arc;
 
 /// The kinds of elements: triangles to smooth, and others whose vertices stay fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,12 +238,14 @@ pub(crate) struct Stored {
     pub(crate) places: Places,
     pub(crate) form: Form,
     pub(crate) home: Home,
+    /// Which file of the mesh that is.
+    pub(crate) part: usize,
 }
 
 impl Stored {
     /// Numbers that stand in the file itself.
     pub(crate) fn in_place(places: Places, form: Form) -> Option<Stored> {
-        Some(Stored { places, form, home: Home::File })
+        Some(Stored { places, form, home: Home::File, part: 0 })
     }
 }
 
@@ -251,8 +254,8 @@ pub(crate) enum Home {
     File,
     /// Those of the encoded points.
     Points,
-    /// Those of an array that is encoded itself.
-    Encoded(Box<dyn Encoded>),
+    /// Those of an array that is encoded itself, perhaps with other arrays.
+    Encoded(Arc<dyn Encoded>),
 }
 
 /// How a file has its numbers, known once it was read.
@@ -263,6 +266,8 @@ pub(crate) struct Layout {
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// Where the coordinates stand, if a vertex may have them in several places.
     pub(crate) copies: Option<Copies>,
+    /// Which file of the mesh has the coordinates: 0, or the one beside it of this number, counted from one.
+    pub(crate) part: usize,
 }
 
 /// All places of coordinates in a file that repeats them.
@@ -276,7 +281,7 @@ pub(crate) struct Copies {
 impl Layout {
     /// Of a file that has its coordinates in place.
     pub(crate) fn in_place(format: Format, numbers: Numbers) -> Layout {
-        Layout { format, numbers, encoded: None, copies: None }
+        Layout { format, numbers, encoded: None, copies: None, part: 0 }
     }
 }
 
@@ -284,6 +289,13 @@ impl Layout {
 pub(crate) trait Walk {
     /// Where the file lists its vertices, for messages.
     const VERTICES: &'static str;
+    /// The files that it names, in which it has numbers.
+    ///
+    /// # Errors
+    /// If it is damaged.
+    fn beside(_source: &Source) -> Result<Vec<Named>, ReadError> {
+        Ok(Vec::new())
+    }
     /// Feeds the file's nodes and elements to the sink.
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError>;
 }
@@ -293,13 +305,15 @@ pub(crate) trait Walk {
 pub(crate) struct Reader {
     /// [`Walk::walk`].
     pub(crate) walk: fn(&Source, &mut dyn Sink) -> Result<Layout, ReadError>,
+    /// [`Walk::beside`].
+    pub(crate) beside: fn(&Source) -> Result<Vec<Named>, ReadError>,
     /// [`Walk::VERTICES`].
     pub(crate) vertices: &'static str,
 }
 
 impl Reader {
     pub(crate) const fn of<W: Walk>() -> Reader {
-        Reader { walk: W::walk, vertices: W::VERTICES }
+        Reader { walk: W::walk, beside: W::beside, vertices: W::VERTICES }
     }
 }
 

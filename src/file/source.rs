@@ -5,6 +5,7 @@ use crate::file::packed::{self, Packed, Unpackable};
 use crate::parallel::map_parts;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A file as it was read.
@@ -15,6 +16,22 @@ pub(crate) struct Source {
     pub(crate) packed: Option<Packed>,
     /// Whether corners at the same place are to be one vertex, where the format has no vertices.
     pub(crate) welds: bool,
+    /// The files that it names, in which numbers of the mesh stand.
+    pub(crate) beside: Vec<Beside>,
+}
+
+/// A file that a mesh has numbers in, beside the one that names it.
+pub(crate) struct Beside {
+    /// What it is called there, and where, ascending.
+    pub(crate) names: Vec<String>,
+    pub(crate) named_at: Vec<Range<usize>>,
+    pub(crate) source: Source,
+}
+
+/// Where a file names another one.
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) at: Range<usize>,
 }
 
 impl Source {
@@ -36,12 +53,13 @@ impl Source {
 
     /// The content of a file, decompressed if need be.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
-        let source = Source { path: path.to_owned(), bytes, packed: None, welds: false };
+        let source =
+            Source { path: path.to_owned(), bytes, packed: None, welds: false, beside: Vec::new() };
         match packed::unpack(&source.bytes) {
             Ok(None) => Ok(source),
             Ok(Some((packing, content))) => {
                 let packed = Some(Packed { packing, bytes: source.bytes });
-                Ok(Source { bytes: content, packed, path: source.path, welds: false })
+                Ok(Source { bytes: content, packed, ..source })
             }
             Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
         }
@@ -72,6 +90,11 @@ impl Source {
     /// One-based line of a byte.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
+    }
+
+    /// The file itself and those beside it.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &Source> {
+        std::iter::once(self).chain(self.beside.iter().map(|beside| &beside.source))
     }
 
     /// The last part of the path, for messages.

@@ -401,7 +401,13 @@ pub(crate) mod tests {
     use super::*;
 
     pub(crate) fn source(text: &[u8]) -> Source {
-        Source { path: "m.txt".into(), bytes: text.to_vec(), packed: None, welds: false }
+        Source {
+            path: "m.txt".into(),
+            bytes: text.to_vec(),
+            packed: None,
+            welds: false,
+            beside: Vec::new(),
+        }
     }
 
     /// On the first row.

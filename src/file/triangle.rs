@@ -43,6 +43,7 @@ pub(crate) fn parse(
         mesh,
         x_at: numbers::Places::List(x_at),
         owners: None,
+        part: 0,
         numbers: numbers::Numbers::TEXT,
         encoded: None,
         regions,

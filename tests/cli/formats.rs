@@ -112,3 +112,36 @@ fn what_a_file_holds_after_a_run_is_what_its_report_tells() {
         }
     }
 }
+
+/// An XDMF with its numbers in HDF5 beside it: to another folder, in place, with a report, many at once and through a pipe.
+#[test]
+fn an_xdmf_comes_with_the_files_beside_it() {
+    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    let folder = Folder::new(&[]);
+    for name in ["dolfin.xdmf", "dolfin.h5", "meshio.xdmf", "meshio.h5"] {
+        fs::copy(made.join(name), folder.path(name)).unwrap();
+    }
+    fs::create_dir(folder.path("sub")).unwrap();
+    let line = "dolfin.xdmf sub/out.xdmf --interpolate all --report run.json --engine cpu";
+    assert_eq!(folder.line(line).code, Some(0));
+    assert_eq!(fs::read_dir(folder.path("sub")).unwrap().count(), 2);
+    let report = folder.json("run.json");
+    assert_eq!(report["certificate"]["connectivity_identical"], true, "{report:#}");
+    let compared = folder.line("compare dolfin.xdmf sub/out.xdmf --interpolate all");
+    assert_eq!(compared.code, Some(0), "{}", compared.err);
+    assert!(compared.out.contains("sub/out.h5"), "{}", compared.out);
+    let text = folder.text("dolfin.xdmf");
+    assert_eq!(
+        folder.line("dolfin.xdmf dolfin.xdmf -q --interpolate all --engine cpu").code,
+        Some(0)
+    );
+    assert_eq!(folder.text("dolfin.xdmf"), text);
+    assert!(
+        fs::read(folder.path("dolfin.h5")).unwrap() == fs::read(folder.path("sub/out.h5")).unwrap()
+    );
+    assert_eq!(folder.line("dolfin.xdmf meshio.xdmf --out-dir many --engine cpu").code, Some(0));
+    assert_eq!(folder.line("compare meshio.xdmf many/meshio.xdmf").code, Some(0));
+    assert!(folder.path("many/dolfin.h5").is_file());
+    folder.line("dolfin.xdmf - --engine cpu").refused(&["of several files: name OUT"]);
+    folder.line("dolfin.h5 out.h5").refused(&["name the .xdmf"]);
+}

@@ -68,7 +68,10 @@ fn replaced(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
 
 #[test]
 fn other_files_are_refused_with_what_to_do() {
-    refused(b"\x89HDF\r\n\x1a\n\0\0", &["HDF5 is not read", "nccopy -k classic IN OUT"]);
+    refused(
+        b"\x89HDF\r\n\x1a\n\0\0",
+        &["in.exo, byte 0: the superblock of the HDF5 file is damaged"],
+    );
     refused(b"CDF\x03\0\0\0\0", &["in.exo, byte 0: netCDF of an unknown version"]);
     let made = &samples()[2];
     assert!(made.bytes.starts_with(b"CDF\x02"));

@@ -8,6 +8,7 @@ mod errors;
 mod exodus;
 mod grouped;
 mod groups;
+mod hdf5;
 mod layouts;
 mod long;
 mod made;

@@ -119,14 +119,19 @@ impl Content {
     /// What groups of a dimension are called, those first that matter most.
     pub(crate) fn whats(&self, dimension: u8) -> Vec<&str> {
         // What users give names to comes before what programs number.
-        const LAST: [&str; 4] = ["reference", "block", "entity", "zone"];
+        const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
+        let is_number = |what: &str| {
+            let mut own = self.groups.iter().filter(|group| group.what == what);
+            own.any(|group| matches!(group.label, Label::Tag(_)))
+        };
+        let last = |what: &str| LAST.iter().position(|last| *last == what && is_number(what));
         let mut whats: Vec<&str> = Vec::new();
         for group in self.groups.iter().filter(|group| group.dimension == dimension) {
             if !whats.contains(&group.what.as_str()) {
                 whats.push(&group.what);
             }
         }
-        whats.sort_by_key(|what| LAST.iter().position(|last| last == what).map_or(0, |at| at + 1));
+        whats.sort_by_key(|what| last(what).map_or(0, |at| at + 1));
         whats
     }
 }

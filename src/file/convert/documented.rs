@@ -33,7 +33,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 18] = [
+const ROWS: [Row; 20] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -176,22 +176,42 @@ const ROWS: [Row; 18] = [
     ),
     row(
         &[Format::Xdmf],
-        "versions 2 and 3 with the numbers in the XML; points as XY or XYZ, `Float` of 4 and 8 bytes; Triangle, Mixed and other topologies; time steps of data are kept",
+        "versions 2 and 3 with the numbers in the XML, in HDF5 or raw files beside it; points as XY or XYZ, `Float` of 4 and 8 bytes; Triangle, Mixed and other topologies; time steps of data are kept",
         [
             "as legacy VTK",
             "cell data of the usual names, of whole numbers",
             "the same",
-            "numbers in HDF5 or binary files beside it are refused, and several grids with points of their own",
+            "several grids with points of their own, hyperslabs and compressed raw files are refused; of HDF5 what is said below",
         ],
     ),
     row(
         &[Format::Exodus],
-        "netCDF classic, with 64-bit offsets and CDF-5; `float` and `double`; time steps are kept",
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4; `float` and `double`; time steps are kept",
         [
             "bars, quadrilaterals, spheres, sides in side sets",
             "block",
             "blocks, side sets and node sets, with their names",
-            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; no HDF5: `nccopy -k classic IN OUT` makes of it a file that is read",
+            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; of netCDF-4 what is said of HDF5 below",
+        ],
+    ),
+    row(
+        &[Format::Med],
+        "versions 3 and 4, of Salome, Code_Aster, gmsh and meshio, one mesh at one time",
+        [
+            "PO1, SE2, QU4",
+            "family",
+            "groups of elements and of nodes by name, families",
+            "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; of HDF5 what is said below",
+        ],
+    ),
+    row(
+        &[Format::Cgns],
+        "one unstructured zone in HDF5, as gmsh writes it; `R4` and `R8`; sections of BAR_2, TRI_3, QUAD_4, NODE and MIXED",
+        [
+            "BAR_2, QUAD_4, NODE",
+            "section",
+            "sections, boundary conditions and their families by name",
+            "several zones, structured zones, NGON_n and files in ADF are refused; of HDF5 what is said below",
         ],
     ),
 ];

@@ -1,7 +1,7 @@
 //! The blocks of elements of an Exodus file.
 
 use super::File;
-use super::netcdf::{Number, Variable};
+use super::netcdf::{Items, Number, Variable};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::records::{Field, Region, TriangleRecords};
@@ -10,7 +10,7 @@ use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::quoted;
 
 /// Elements of one type.
-pub(super) struct Block {
+pub(super) struct Block<'a> {
     /// Its place among the blocks, counted from one.
     pub(super) number: usize,
     pub(super) kind: Kind,
@@ -19,29 +19,30 @@ pub(super) struct Block {
     /// How many elements stand before it, and how many it has.
     pub(super) before: u64,
     pub(super) count: u64,
-    /// Where its elements start, and how many bytes the number of a node has.
-    start: usize,
+    /// Its elements, how many bytes the number of a node has, and in which order.
+    items: Items<'a>,
     width: usize,
+    order: Order,
 }
 
-impl Block {
+impl Block<'_> {
     /// The nodes of an element by its place in the block, and where it stands.
-    pub(super) fn element(&self, bytes: &[u8], place: u64) -> ([u64; 4], usize) {
-        let at = self.start + place as usize * self.kind.nodes() * self.width;
+    pub(super) fn element(&self, place: u64) -> ([u64; 4], usize) {
+        let at = self.items.range(0).start + place as usize * self.kind.nodes() * self.width;
         let mut nodes = [0; 4];
         for (corner, node) in nodes[..self.kind.nodes()].iter_mut().enumerate() {
-            let number = Order::Big.signed(&bytes[at + corner * self.width..][..self.width]);
-            *node = u64::try_from(number).unwrap_or(0);
+            let number = &self.items.bytes[at + corner * self.width..][..self.width];
+            *node = u64::try_from(self.order.signed(number)).unwrap_or(0);
         }
-        (nodes, at)
+        (nodes, self.items.byte_of(at))
     }
 }
 
-impl File<'_> {
+impl<'a> File<'a> {
     /// Hands on the elements of all blocks.
-    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block>, ReadError> {
+    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block<'a>>, ReadError> {
         let ids = self.ids("eb_prop1");
-        let names = self.header.variable("eb_names").map(|names| names.texts(self.source));
+        let names = self.header.variable("eb_names").map(|names| self.header.texts(names));
         let mut blocks = Vec::new();
         let mut before = 0;
         for (number, variable) in self.header.numbered("connect") {
@@ -56,10 +57,13 @@ impl File<'_> {
             let mut taken = 0;
             if block.kind == Kind::Triangle {
                 sink.expect_elements(block.count as usize);
-                let bytes = self.source.bytes.get(block.start..);
                 taken = sink.triangle_records(&TriangleRecords {
                     count: block.count as usize,
-                    corners: Field::new(bytes, (3 * block.width, block.width), Order::Big),
+                    corners: Field::new(
+                        Some(block.items.own()),
+                        (3 * block.width, block.width),
+                        block.order,
+                    ),
                     first: 0,
                     below: u64::MAX,
                     regions: [Region::Same(id), Region::Same(0)],
@@ -67,7 +71,7 @@ impl File<'_> {
                 });
             }
             for place in taken as u64..block.count {
-                let (nodes, at) = block.element(&self.source.bytes, place);
+                let (nodes, at) = block.element(place);
                 let (tag, kind) = (before + place + 1, block.kind);
                 let cursor = &Cursor::at_byte_of(self.source, at);
                 sink.element(cursor, &Element { tag, kind, region: [id, 0], nodes })?;
@@ -78,8 +82,13 @@ impl File<'_> {
         Ok(blocks)
     }
 
-    fn block(&self, number: usize, before: u64, variable: &Variable) -> Result<Block, ReadError> {
-        let start = variable.begin();
+    fn block(
+        &self,
+        number: usize,
+        before: u64,
+        variable: &Variable,
+    ) -> Result<Block<'a>, ReadError> {
+        let start = self.header.place(variable);
         let cursor = Cursor::at_byte_of(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
         let (&[count, corners], Number::Whole(width), false) = found else {
@@ -108,13 +117,15 @@ impl File<'_> {
             }
         };
         let is_shell = is(&["SHELL", "TRISHELL"]);
-        Ok(Block { number, kind, is_shell, before, count, start, width })
+        let items = self.header.items(variable)?;
+        let order = variable.order;
+        Ok(Block { number, kind, is_shell, before, count, items, width, order })
     }
 
     /// The numbers that are properties of blocks or sets, by their places.
     pub(super) fn ids(&self, name: &str) -> Vec<i64> {
         let variable = self.header.variable(name).filter(|variable| !variable.is_record);
-        variable.and_then(|ids| ids.integers(self.source)).unwrap_or_default()
+        variable.and_then(|ids| self.header.integers(ids)).unwrap_or_default()
     }
 
     /// The number of a block or set; its place if it has none.

@@ -3,15 +3,15 @@
 use super::File;
 use super::blocks::Block;
 use super::netcdf::{Number, Variable};
-use crate::file::binary::Order;
-use crate::file::numbers::{Form, Places};
-use crate::file::sink::{PointNumbers, Sink, Stored};
-use std::ops::Range;
+use crate::file::hdf5::Encoding;
+use crate::file::numbers::{Encoded, Form, Places};
+use crate::file::sink::{Home, PointNumbers, Sink, Stored};
+use std::sync::Arc;
 
 impl File<'_> {
     /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
     /// the lengths it should have is passed over.
-    pub(super) fn data(&self, blocks: &[Block], sink: &mut dyn Sink) {
+    pub(super) fn data(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
         self.of_nodes(sink);
         if sink.asks_for_data() {
             self.of_elements(blocks, sink);
@@ -19,15 +19,16 @@ impl File<'_> {
         }
     }
 
-    fn names(&self, table: &str) -> Vec<&[u8]> {
+    fn names(&self, table: &str) -> Vec<Vec<u8>> {
         let table = self.header.variable(table);
-        table.map(|names| names.texts(self.source)).unwrap_or_default()
+        table.map(|names| self.header.texts(names)).unwrap_or_default()
     }
 
     fn of_nodes(&self, sink: &mut dyn Sink) {
         let names = self.names("name_nod_var");
         let nodes = self.nodes as u64;
         let each = self.header.numbered("vals_nod_var");
+        let mut encoded = Vec::new();
         for (place, name) in names.iter().enumerate() {
             if !sink.asks_for_data() {
                 sink.point_array(name, 1, true);
@@ -44,28 +45,60 @@ impl File<'_> {
             else {
                 continue;
             };
-            for range in self.steps(variable) {
-                let size = range.len() / if own.is_some() { 1 } else { names.len() };
-                let start = range.start + part * size;
-                self.point_array(name, variable.number, start..start + size, sink);
-            }
+            let share = if own.is_some() { 1 } else { names.len() };
+            self.point_steps(name, variable, (part, share), &mut encoded, sink);
         }
     }
 
-    fn point_array(&self, name: &[u8], number: Number, range: Range<usize>, sink: &mut dyn Sink) {
-        let Number::Real(precision) = number else { return };
-        if sink.point_array(name, 1, true) {
-            let size = precision.bytes();
-            let places = Places::Regular { start: range.start, stride: size };
-            let stored = Stored::in_place(places, Form::Binary(Order::Big, precision));
-            let numbers = self.reals(number, range);
+    /// Hands on one of so many parts of each record of a variable. What is encoded of one is shared by all of its parts and records.
+    fn point_steps<'v>(
+        &self,
+        name: &[u8],
+        variable: &'v Variable,
+        (part, share): (usize, usize),
+        encoded: &mut Vec<(&'v [u8], Arc<Encoding>)>,
+        sink: &mut dyn Sink,
+    ) {
+        let Number::Real(precision) = variable.number else { return };
+        let mut items = None;
+        for step in 0..self.header.steps(variable) {
+            if !sink.point_array(name, 1, true) {
+                continue;
+            }
+            if items.is_none() {
+                let Ok(mut own) = self.header.items(variable) else { return };
+                let is_known = encoded.iter().any(|(known, _)| *known == variable.name);
+                if own.place().is_none()
+                    && !is_known
+                    && let (Some(file), Some(array)) = (&self.header.hdf5, own.take_array())
+                {
+                    encoded.push((&variable.name, Arc::new(Encoding::new(file, vec![array]))));
+                }
+                items = Some(own);
+            }
+            let Some(items) = &items else { return };
+            let encoding = encoded.iter().find(|(known, _)| *known == variable.name);
+            let bytes = encoding.map_or(&items.bytes[..], |(_, encoding)| encoding.bytes());
+            let mut range = items.range(step);
+            let size = range.len() / share;
+            range = range.start + part * size..range.start + (part + 1) * size;
+            let (start, home) = match encoding {
+                None => (items.byte_of(range.start), Home::File),
+                Some((_, encoding)) => {
+                    (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+                }
+            };
+            let places = Places::Regular { start, stride: precision.bytes() };
+            let form = Form::Binary(variable.order, precision);
+            let numbers = reals(variable, bytes.get(range).unwrap_or_default());
+            let stored = Some(Stored { places, form, home, part: 0 });
             sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
         }
     }
 
-    fn of_elements(&self, blocks: &[Block], sink: &mut dyn Sink) {
+    fn of_elements(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
         for (place, name) in self.names("name_elem_var").iter().enumerate() {
-            let of = |block: &Block| {
+            let of = |block: &Block<'_>| {
                 let name = format!("vals_elem_var{}eb{}", place + 1, block.number);
                 let found = self.header.variable(&name);
                 found.filter(|variable| variable.shape == [block.count])
@@ -73,14 +106,16 @@ impl File<'_> {
             let parts: Vec<_> =
                 blocks.iter().filter_map(|block| Some((block, of(block)?))).collect();
             let Some((_, first)) = parts.first() else { continue };
-            for step in 0..self.steps(first).len() {
+            let mut read: Vec<Option<Vec<Vec<f64>>>> = parts.iter().map(|_| None).collect();
+            for step in 0..self.header.steps(first) {
                 if !sink.cell_array(name, 1, true) {
                     continue;
                 }
                 let (mut numbers, mut tags) = (Vec::new(), Vec::new());
-                for (block, variable) in &parts {
-                    let Some(range) = self.steps(variable).nth(step) else { continue };
-                    numbers.extend(self.reals(variable.number, range));
+                for ((block, variable), read) in parts.iter().zip(&mut read) {
+                    let steps = read.get_or_insert_with(|| self.steps(variable));
+                    let Some(own) = steps.get_mut(step) else { continue };
+                    numbers.append(own);
                     tags.extend(block.before + 1..=block.before + block.count);
                 }
                 sink.cell_numbers(numbers, Some(tags));
@@ -88,18 +123,12 @@ impl File<'_> {
         }
     }
 
-    /// The ranges of a variable in each time step.
-    fn steps(&self, variable: &Variable) -> impl ExactSizeIterator<Item = Range<usize>> {
-        let steps = if variable.is_record { self.header.records } else { 1 };
-        let ranges: Vec<_> = (0..steps).map(|step| variable.range(&self.header, step)).collect();
-        ranges.into_iter()
-    }
-
-    /// The real numbers of a range; none if they are others.
-    fn reals(&self, number: Number, range: Range<usize>) -> Vec<f64> {
-        let Number::Real(precision) = number else { return Vec::new() };
-        let numbers = self.source.bytes[range].chunks_exact(precision.bytes());
-        numbers.map(|number| Order::Big.real(precision, number)).collect()
+    /// The real numbers of a variable in each time step; none if they are others.
+    fn steps(&self, variable: &Variable) -> Vec<Vec<f64>> {
+        let Ok(items) = self.header.items(variable) else { return Vec::new() };
+        let steps = 0..self.header.steps(variable);
+        let own = |step| reals(variable, items.bytes.get(items.range(step)).unwrap_or_default());
+        steps.map(own).collect()
     }
 
     fn left_out(&self, sink: &mut dyn Sink) {
@@ -119,9 +148,8 @@ impl File<'_> {
         }
         // A single step at the time zero is what data without a time stand in.
         let has_times = self.header.variable("time_whole").is_some_and(|times| {
-            let mut steps = self.steps(times);
-            steps.len() > 1
-                || steps.any(|step| self.reals(times.number, step).iter().any(|&t| t != 0.0))
+            let steps = self.steps(times);
+            steps.len() > 1 || steps.iter().flatten().any(|&time| time != 0.0)
         });
         if has_times {
             sink.leaves_out("times of time steps");
@@ -134,8 +162,7 @@ impl File<'_> {
             sink.leaves_out("numbers of nodes and elements in their maps");
         }
         let is_weighted = |(_, factors): &(usize, &Variable)| {
-            let reals = self.reals(factors.number, factors.range(&self.header, 0));
-            !factors.is_record && reals.iter().any(|&factor| factor != 1.0)
+            !factors.is_record && self.steps(factors).iter().flatten().any(|&factor| factor != 1.0)
         };
         if ["dist_fact_ss", "dist_fact_ns"]
             .iter()
@@ -144,4 +171,11 @@ impl File<'_> {
             sink.leaves_out("distribution factors of sets");
         }
     }
+}
+
+/// The numbers of a variable in these bytes; none if they are not real.
+fn reals(variable: &Variable, bytes: &[u8]) -> Vec<f64> {
+    let Number::Real(precision) = variable.number else { return Vec::new() };
+    let numbers = bytes.chunks_exact(precision.bytes());
+    numbers.map(|number| variable.order.real(precision, number)).collect()
 }

@@ -1,33 +1,30 @@
-//! Exodus II, in netCDF's classic formats.
+//! Exodus II, in netCDF's classic formats and in netCDF-4.
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model". Elements stand in blocks, each of one type, and
 //! are numbered through all of them from one. A side set lists sides of elements, a node set nodes.
 
 mod blocks;
+mod classic;
 mod data;
 mod netcdf;
+mod netcdf4;
 mod sets;
 
 use crate::error::ReadError;
-use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::heights::Heights;
+use crate::file::hdf5::{Axes, Hdf5, SIGNATURE};
 use crate::file::label::Label;
-use crate::file::numbers::{Form, Numbers};
-use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Column, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
-use netcdf::{Header, Number};
-use std::ops::Range;
+use netcdf::{Header, Items, Number, Variable};
 
 pub(crate) struct Exodus;
 
 /// A file with its header.
 struct File<'a> {
     source: &'a Source,
-    header: Header,
+    header: Header<'a>,
     /// How many nodes there are.
     nodes: usize,
 }
@@ -39,15 +36,23 @@ impl Walk for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let header = Header::read(source)?;
+        let header = match source.bytes.starts_with(SIGNATURE) {
+            true => netcdf4::read(source)?,
+            false => classic::read(source)?,
+        };
         let start = Cursor::at_byte_of(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
+            if header.hdf5.is_some() {
+                let problem = "HDF5 that holds no mesh of Exodus II, MED or CGNS";
+                let remedy = "If it has the numbers of an XDMF, name the .xdmf";
+                return Err(start.error(problem, remedy));
+            }
             let problem = "netCDF without the dimension num_nodes, so it is no Exodus";
             return Err(start.error(problem, "Convert it to Exodus or another format that is read"));
         };
         start.check_vertex_count(nodes)?;
         let file = File { source, header, nodes: nodes as usize };
-        let numbers = file.points(sink)?;
+        let layout = file.axes()?.send(Format::Exodus, file.nodes, sink)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
         sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
         let blocks = file.blocks(sink)?;
@@ -56,86 +61,52 @@ impl Walk for Exodus {
             file.node_sets(sink)?;
         }
         file.data(&blocks, sink);
-        Ok(Layout::in_place(Format::Exodus, numbers))
+        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        Ok(layout)
     }
 }
 
-impl File<'_> {
-    /// Hands on the nodes. Returns how their coordinates stand.
-    fn points(&self, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
-        let (precision, axes) = self.axes()?;
-        let [x, y] = [0, 1].map(|axis| axes.get(axis).cloned().unwrap_or_default());
-        let (order, size) = (Order::Big, precision.bytes());
-        let bytes = &self.source.bytes;
-        let number = |at: usize| order.real(precision, &bytes[at..at + size]);
-        let Some(y_after) = y.start.checked_sub(x.start).filter(|_| y.len() == x.len()) else {
-            let problem = "the y of the nodes stand before their x";
-            let start = Cursor::at_byte_of(self.source, y.start);
-            return Err(start.error(problem, "Write the mesh again"));
-        };
-        sink.expect_nodes(self.nodes);
-        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
-        let (count, x_at, tags) = (self.nodes, x.start, Tags::From(1));
-        let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
-        for index in sink.node_records(&records)..self.nodes {
-            let x_at = x.start + index * size;
-            let place = &Cursor::at_byte_of(self.source, x_at);
-            let (tag, at) = (index as u64 + 1, [number(x_at), number(x_at + y_after)]);
-            if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("a coordinate of node {tag} is not a finite number");
-                return Err(place.error(problem, "Write the mesh again"));
-            }
-            sink.node(place, tag, 2, x_at, at);
-        }
-        sink.end_nodes(&Cursor::at_byte_of(self.source, x.start))?;
-        if let Some(z) = axes.get(2) {
-            let mut heights = Heights::new(sink);
-            heights.see_all(field(z), z.len() / size, z.start);
-            heights.send("z", Form::Binary(order, precision), sink);
-        }
-        Ok(Numbers::Binary { order, precision, y_after })
-    }
-
-    /// How many digits coordinates have, and where those of each axis stand.
-    fn axes(&self) -> Result<(Precision, Vec<Range<usize>>), ReadError> {
+impl<'a> File<'a> {
+    /// How the coordinates stand, of each axis by itself.
+    fn axes(&self) -> Result<Axes<'a>, ReadError> {
         let header = &self.header;
-        let mut axes = Vec::new();
-        let mut numbers = Vec::new();
+        let nodes = self.nodes as u64;
         let each: Vec<_> =
             ["coordx", "coordy", "coordz"].into_iter().map_while(|n| header.variable(n)).collect();
-        if let (true, Some(all)) = (each.is_empty(), header.variable("coord")) {
-            // The coordinates of all axes in one table.
-            if let &[count, nodes] = &all.shape[..]
-                && nodes == self.nodes as u64
-                && !all.is_record
-            {
-                let range = all.range(header, 0);
-                let length = range.len() / (count as usize).max(1);
-                axes.extend((0..count as usize).map(|axis| {
-                    let start = range.start + axis * length;
-                    start..start + length
-                }));
-                numbers.push(all.number);
-            }
-        }
-        for variable in each {
-            if variable.shape == [self.nodes as u64] && !variable.is_record {
-                axes.push(variable.range(header, 0));
-                numbers.push(variable.number);
-            }
-        }
-        let start = Cursor::at_byte_of(self.source, 0);
-        match (&numbers[..], axes.len()) {
-            ([Number::Real(first), rest @ ..], 2..=3)
-                if rest.iter().all(|other| *other == Number::Real(*first)) =>
-            {
-                Ok((*first, axes))
-            }
+        let all = header.variable("coord").filter(|_| each.is_empty());
+        let fits = |variable: &&Variable| match &variable.shape[..] {
+            &[own] => own == nodes && !variable.is_record,
+            _ => false,
+        };
+        // The coordinates of all axes in one table, or each in one of its own.
+        let (count, variables) = match all.map(|all| (all, &all.shape[..], all.is_record)) {
+            Some((all, &[count, own], false)) if own == nodes => (count as usize, vec![all]),
             _ => {
-                let problem =
-                    format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
-                Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"))
+                let each: Vec<_> = each.into_iter().filter(fits).collect();
+                (each.len(), each)
             }
-        }
+        };
+        let first = variables.first().map(|first| (first.number, first.order));
+        let is_same = |other: &&Variable| Some((other.number, other.order)) == first;
+        let (Some((Number::Real(precision), order)), 2..=3, true) =
+            (first, count, variables.iter().all(is_same))
+        else {
+            let problem =
+                format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
+            let start = Cursor::at_byte_of(self.source, 0);
+            return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
+        };
+        let mut items =
+            variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
+        let form = (order, precision);
+        let Some(file) = &header.hdf5 else {
+            let length = self.nodes * precision.bytes();
+            let of_each = count / items.len().max(1);
+            let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
+            let starts: Vec<usize> = items.iter().filter_map(Items::place).flat_map(of).collect();
+            return Ok(Axes::in_place(self.source, form, &starts, self.nodes));
+        };
+        let arrays = items.iter_mut().filter_map(Items::take_array).collect();
+        Ok(Axes::of_arrays(file, form, arrays, (count, self.nodes)))
     }
 }

@@ -9,15 +9,19 @@ use crate::file::text::{CORRECT, Cursor};
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.
-    pub(super) fn side_sets(&self, blocks: &[Block], sink: &mut dyn Sink) -> Result<(), ReadError> {
+    pub(super) fn side_sets(
+        &self,
+        blocks: &[Block<'_>],
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
         let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, sink);
         for (number, elements) in self.header.numbered("elem_ss") {
             let sides = self.header.variable(&format!("side_ss{number}"));
-            let start = elements.begin();
+            let start = self.header.place(elements);
             let cursor = Cursor::at_byte_of(self.source, start);
             let found = sides.filter(|sides| !sides.is_record && !elements.is_record);
             let lists = found.and_then(|sides| {
-                Some((elements.integers(self.source)?, sides.integers(self.source)?))
+                Some((self.header.integers(elements)?, self.header.integers(sides)?))
             });
             let Some((elements, sides)) = lists.filter(|(a, b)| a.len() == b.len()) else {
                 let problem = format!("side set {number} has not as many sides as elements");
@@ -43,7 +47,7 @@ impl File<'_> {
     }
 
     /// The ends of a side; none if it is no line, such as the face of a shell. None at all if there is no such side.
-    fn side(&self, blocks: &[Block], element: i64, side: i64) -> Option<Option<[u64; 2]>> {
+    fn side(&self, blocks: &[Block<'_>], element: i64, side: i64) -> Option<Option<[u64; 2]>> {
         let place = u64::try_from(element).ok()?.checked_sub(1)?;
         let block = &blocks[blocks.partition_point(|block| block.before + block.count <= place)..];
         let block = block.first()?;
@@ -58,7 +62,7 @@ impl File<'_> {
             Kind::Triangle | Kind::Quadrilateral => block.kind.nodes(),
             _ => return Some(None),
         };
-        let (nodes, _) = block.element(&self.source.bytes, place - block.before);
+        let (nodes, _) = block.element(place - block.before);
         (side < corners).then(|| Some([nodes[side], nodes[(side + 1) % corners]]))
     }
 
@@ -66,12 +70,13 @@ impl File<'_> {
     pub(super) fn node_sets(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
         let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, sink);
         for (number, variable) in self.header.numbered("node_ns") {
-            let nodes = if variable.is_record { None } else { variable.integers(self.source) };
+            let header = &self.header;
+            let nodes = if variable.is_record { None } else { header.integers(variable) };
             let id = self.id(&ids, number);
             for node in nodes.unwrap_or_default() {
                 let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
                 let Some(index) = index else {
-                    let cursor = Cursor::at_byte_of(self.source, variable.begin());
+                    let cursor = Cursor::at_byte_of(self.source, header.place(variable));
                     let problem = format!("node set {number} has node {node}");
                     return Err(cursor.error(problem, "There is no such node: correct the set"));
                 };
@@ -91,7 +96,7 @@ impl File<'_> {
     ) -> Vec<i64> {
         let ids = self.ids(numbers);
         if let (true, Some(names)) = (sink.asks_for_groups(), self.header.variable(names)) {
-            for (name, &id) in names.texts(self.source).iter().zip(&ids) {
+            for (name, &id) in self.header.texts(names).iter().zip(&ids) {
                 if !name.is_empty() {
                     sink.name(what, Some(dimension), id, name);
                 }

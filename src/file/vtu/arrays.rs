@@ -137,10 +137,11 @@ impl File<'_> {
             true => (range.end - old.bytes.len(), Home::File),
             false => {
                 let offsets = Arc::clone(&self.offsets);
-                (0, Home::Encoded(Box::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
+                (0, Home::Encoded(Arc::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
             }
         };
-        let stored = Some(Stored { places: Places::Regular { start, stride }, form, home });
+        let places = Places::Regular { start, stride };
+        let stored = Some(Stored { places, form, home, part: 0 });
         Ok(PointNumbers { numbers, nodes: None, stored })
     }
 

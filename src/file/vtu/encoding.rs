@@ -52,7 +52,7 @@ impl Encoded for Encoding {
         self.parts.iter().map(|part| part.range.clone()).collect()
     }
 
-    fn splices(&self, new: &[u8]) -> Vec<Splice> {
+    fn splices(&self, _: &[u8], new: &[u8], _: &mut usize) -> Vec<Splice> {
         let changed = self.parts.iter().filter(|part| {
             let own = part.own.clone();
             new[own.clone()] != self.bytes[own]
@@ -64,7 +64,27 @@ impl Encoded for Encoding {
         changed.map(splice).collect()
     }
 
-    fn offsets(&self) -> &[Offset] {
-        &self.offsets
+    /// The offsets that are others once arrays before them have other lengths.
+    fn follow(&self, _: &[u8], splices: &[Splice], _: usize) -> Vec<Splice> {
+        let corrected = self.offsets.iter().filter_map(|offset| {
+            let before = splices.iter().filter(|splice| splice.range.end <= offset.array_at);
+            let (removed, added) = before.fold((0, 0), |(removed, added), splice| {
+                (removed + splice.range.len(), added + splice.bytes.len())
+            });
+            let value = (offset.value + added).saturating_sub(removed);
+            let bytes = value.to_string().into_bytes();
+            (value != offset.value).then(|| Splice { range: offset.place.clone(), bytes })
+        });
+        corrected.collect()
+    }
+
+    /// The offsets of what stands after an array that may have another length.
+    fn followers(&self, first: usize) -> Vec<Range<usize>> {
+        let later = self.offsets.iter().filter(|offset| offset.array_at >= first);
+        later.map(|offset| offset.place.clone()).collect()
+    }
+
+    fn keeps_places(&self) -> bool {
+        false
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadE
         Box::new(Encoding::new(encoded, offsets)) as Box<dyn Encoded>
     });
     sink.end_nodes(&Cursor::new(file.source))?;
-    heights.send_from("z", numbers.into(), home, sink);
+    heights.send_from("z", numbers.into(), (home, 0), sink);
     Ok(Stored { numbers, encoded })
 }
 

@@ -1,7 +1,9 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
 use crate::error::{Location, ReadError};
-use crate::file::source::Source;
+use crate::file::binary::Order;
+use crate::file::hdf5::Number;
+use crate::file::source::{Named, Source};
 use crate::file::text::{CORRECT, CUT_OFF};
 use crate::file::token::{ill_formed_xml, quoted, xml_text};
 use crate::mesh::Precision;
@@ -9,7 +11,17 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;
 
-/// A `DataItem` whose numbers stand in the file.
+/// Where the numbers of an item stand.
+pub(super) enum Content {
+    /// In the XML, in this range.
+    Text(Range<usize>),
+    /// In HDF5: the name of the file and the path in it.
+    Hdf5 { file: String, path: String, named_at: Range<usize> },
+    /// In a file of the name, from a byte on.
+    Raw { file: String, seek: u64, number: Number, named_at: Range<usize> },
+}
+
+/// A `DataItem` with numbers.
 pub(super) struct Item {
     /// `Geometry`, `Topology` or `Attribute`.
     pub(super) section: String,
@@ -24,8 +36,7 @@ pub(super) struct Item {
     pub(super) dimensions: Vec<u64>,
     /// How many digits the numbers have, if they are real.
     pub(super) precision: Option<Precision>,
-    /// Where its text stands.
-    pub(super) content: Range<usize>,
+    pub(super) content: Content,
     /// Where its tag starts.
     pub(super) at: usize,
 }
@@ -35,6 +46,16 @@ impl Item {
     pub(super) fn announced(&self) -> Option<u64> {
         let product = || self.dimensions.iter().try_fold(1_u64, |n, &length| n.checked_mul(length));
         (!self.dimensions.is_empty()).then(|| product().unwrap_or(u64::MAX))
+    }
+
+    /// The file beside the XML that it names, and where.
+    pub(super) fn named(self) -> Option<Named> {
+        match self.content {
+            Content::Text(_) => None,
+            Content::Hdf5 { file, named_at, .. } | Content::Raw { file, named_at, .. } => {
+                Some(Named { name: file, at: named_at })
+            }
+        }
     }
 }
 
@@ -114,20 +135,6 @@ fn item(
     tag: &Section,
     of: &Section,
 ) -> Result<Item, ReadError> {
-    match tag.value(&["Format"]).unwrap_or("XML").to_ascii_uppercase().as_str() {
-        "XML" => {}
-        other => {
-            let problem = match other {
-                "HDF" | "HDF5" => {
-                    "its numbers are in an HDF5 file beside it, which is not read".into()
-                }
-                "BINARY" => "its numbers are in a binary file beside it, which is not read".into(),
-                _ => format!("numbers of the format {}", quoted(other.as_bytes())),
-            };
-            let remedy = "Save with the numbers in the XML, as meshio does by data_format=\"XML\"";
-            return Err(error_at(source, at, &problem, remedy));
-        }
-    }
     let Some(length) = memchr::memchr(b'<', &source.bytes[after..]) else {
         return Err(error_at(source, at, "an item without an end", CUT_OFF));
     };
@@ -146,6 +153,41 @@ fn item(
         Some(8) => Precision::Double,
         _ => Precision::Single,
     };
+    let text = after..after + length;
+    let format = tag.value(&["Format"]).unwrap_or("XML").to_ascii_uppercase();
+    let content = match format.as_str() {
+        "XML" => Content::Text(text),
+        "HDF" | "HDF5" => in_hdf5(source, text)?,
+        "BINARY" => {
+            if tag.value(&["Compression"]).is_some_and(|c| !c.eq_ignore_ascii_case("raw")) {
+                let problem = "numbers in a file beside it that is compressed";
+                return Err(error_at(source, at, problem, SAVE));
+            }
+            let precision = optional(tag, &["Precision"])?.unwrap_or(4);
+            let order = match small(tag, &["Endian"]).as_str() {
+                "big" => Order::Big,
+                _ => Order::Little,
+            };
+            let number = match (is_real.as_str(), precision) {
+                ("" | "float", 4) => Number::Real(Precision::Single, order),
+                ("" | "float", 8) => Number::Real(Precision::Double, order),
+                ("char" | "uchar", _) => Number::Whole(1, order),
+                ("short" | "ushort", _) => Number::Whole(2, order),
+                ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
+                _ => {
+                    let problem = format!("numbers of {precision} bytes");
+                    return Err(error_at(source, at, &problem, SAVE));
+                }
+            };
+            let seek = optional(tag, &["Seek"])?.unwrap_or(0);
+            let (file, named_at) = name(source, text);
+            Content::Raw { file, seek, number, named_at }
+        }
+        other => {
+            let problem = format!("numbers of the format {}", quoted(other.as_bytes()));
+            return Err(error_at(source, at, &problem, SAVE));
+        }
+    };
     let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
     let dimensions = dimensions.split_whitespace().map(number).collect::<Result<_, _>>()?;
     Ok(Item {
@@ -157,9 +199,41 @@ fn item(
         corners: optional(of, &["NodesPerElement"])?,
         dimensions,
         precision: (is_real.is_empty() || is_real == "float").then_some(precision),
-        content: after..after + length,
+        content,
         at,
     })
+}
+
+/// What to do about numbers that are not read.
+const SAVE: &str = "Save with the numbers in the XML, as meshio does by data_format=\"XML\"";
+
+/// The name of a file that a text is, and where that stands without blanks.
+fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
+    let own = &source.bytes[text.clone()];
+    let start = text.start + (own.len() - own.trim_ascii_start().len());
+    let name = own.trim_ascii();
+    (plain(name), start..start + name.len())
+}
+
+/// The content of an element as the text that it stands for.
+fn plain(text: &[u8]) -> String {
+    let text = String::from_utf8_lossy(text);
+    unescape(&text).map(|text| text.into_owned()).unwrap_or_else(|_| text.into_owned())
+}
+
+/// A file and the path of a dataset in it, with a colon between.
+fn in_hdf5(source: &Source, text: Range<usize>) -> Result<Content, ReadError> {
+    let (_, all) = name(source, text);
+    let own = &source.bytes[all.clone()];
+    let slash = memchr::memmem::rfind(own, b":/");
+    let Some(colon) = slash.or_else(|| memchr::memrchr(b':', own)).filter(|&colon| colon > 0)
+    else {
+        let problem = format!("`{}` names no dataset of an HDF5 file", quoted(own));
+        return Err(error_at(source, all.start, &problem, SAVE));
+    };
+    let named_at = all.start..all.start + colon;
+    let (file, path) = (plain(&own[..colon]), plain(&own[colon + 1..]));
+    Ok(Content::Hdf5 { file, path, named_at })
 }
 
 #[cold]

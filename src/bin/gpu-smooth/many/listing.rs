@@ -65,14 +65,34 @@ fn stem(path: &Path) -> Option<PathBuf> {
     matches!(&*ending, "node" | "ele" | "poly").then(|| path.with_extension(""))
 }
 
-/// The files of the mesh that a path names, as far as they are there: two or three of Triangle, else one.
+/// Whether files of this name may have numbers in files beside them, which are called after them.
+fn is_xdmf(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    matches!(&*ending, "xdmf" | "xmf" | "xdmf3")
+}
+
+/// What meshes have in common of which some files would be written to the same place.
+fn key_of(out: &Path) -> PathBuf {
+    match stem(out) {
+        Some(stem) => stem,
+        None if is_xdmf(out) => out.with_extension("xdmf"),
+        None => out.to_owned(),
+    }
+}
+
+/// The files of the mesh that a path names, as far as they are there and their names tell: two or three of Triangle, an XDMF and its
+/// HDF5, else one.
 fn parts(path: &Path) -> Vec<PathBuf> {
     let with = |ending: &str| {
         let mut name = path.with_extension("").into_os_string();
         name.push(ending);
         PathBuf::from(name)
     };
-    let (Some(_), Some(own)) = (stem(path), path.extension()) else { return vec![path.to_owned()] };
+    let (Some(_), Some(own)) = (stem(path), path.extension()) else {
+        let beside = with(".h5");
+        let has_beside = is_xdmf(path) && beside.is_file();
+        return [path.to_owned()].into_iter().chain(has_beside.then_some(beside)).collect();
+    };
     let is_upper = own.to_string_lossy().starts_with(char::is_uppercase);
     let endings = match is_upper {
         true => [".NODE", ".ELE", ".POLY"],
@@ -102,7 +122,7 @@ pub(crate) fn list<'p>(
                 own.display()
             ));
         }
-        let key = stem(&mesh.out).unwrap_or_else(|| mesh.out.clone());
+        let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
             Some(known) if is_same(known, &mesh) => {
                 // Its outline is not the mesh.
@@ -144,7 +164,12 @@ fn is_any(path: &Path, others: &[PathBuf]) -> bool {
 
 /// Whether two meshes are of the same files.
 fn is_same(a: &Listed, b: &Listed) -> bool {
-    a.input == b.input || a.inputs.iter().any(|part| is_any(part, &b.inputs))
+    let (mine, theirs) = match is_xdmf(&a.input) {
+        // Several may have their numbers in one file.
+        true => (&a.inputs[..1], &b.inputs[..1]),
+        false => (&a.inputs[..], &b.inputs[..]),
+    };
+    a.input == b.input || mine.iter().any(|part| is_any(part, theirs))
 }
 
 #[cfg(test)]
@@ -182,6 +207,17 @@ mod tests {
         );
         // By the name without an ending, and twice.
         assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
+    }
+
+    /// The files beside both would be called after them.
+    #[test]
+    fn files_beside_an_xdmf_are_its_own() {
+        let folder = folder(&["a.xdmf", "a.xmf", "a.h5", "b.xdmf"]);
+        let listed = of(&folder, &["a.xdmf", "a.xdmf", "b.xdmf"]).unwrap();
+        assert_eq!(listed.iter().map(|mesh| mesh.inputs.len()).collect::<Vec<_>>(), [2, 1]);
+        assert_eq!(listed[0].bytes(), 2);
+        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap();
+        assert!(error.contains("would both be written to"), "{error}");
     }
 
     #[test]

@@ -1,0 +1,22 @@
+//! Files of HDF5, of which the content tells the format.
+
+use crate::error::ReadError;
+use crate::file::cgns::{self, Cgns};
+use crate::file::exodus::Exodus;
+use crate::file::med::{self, Med};
+use crate::file::sink::{Layout, Sink, Walk};
+use crate::file::source::Source;
+
+pub(crate) struct Container;
+
+impl Walk for Container {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        match med::is_in(source)? {
+            true => Med::walk(source, sink),
+            false if cgns::is_in(source)? => Cgns::walk(source, sink),
+            false => Exodus::walk(source, sink),
+        }
+    }
+}

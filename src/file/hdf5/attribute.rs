@@ -1,0 +1,88 @@
+//! Attributes of objects.
+
+use super::btree;
+use super::bytes::{Bytes, Fault};
+use super::file::{Hdf5, Object};
+use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
+use super::heap::Heap;
+use super::raw::Raw;
+use super::types::{Number, Space};
+
+/// The content of an attribute.
+#[derive(Clone, Debug)]
+pub(in crate::file) struct Attribute<'a> {
+    pub(in crate::file) number: Number,
+    pub(in crate::file) bytes: &'a [u8],
+}
+
+impl<'a> Hdf5<'a> {
+    /// The attribute of this name; none if there is none that can be read.
+    pub(in crate::file) fn attribute(&self, object: &Object, name: &[u8]) -> Option<Attribute<'a>> {
+        let header = object.header.as_ref().ok()?;
+        let raw = &self.raw;
+        let own = header.of(ATTRIBUTE).filter_map(|message| {
+            let bytes = raw.at(message.content.start, "an attribute");
+            read(bytes.within(message.content.clone())).ok()
+        });
+        let mut all = own.chain(elsewhere(raw, header).unwrap_or_default());
+        all.find(|(own, _)| *own == name).map(|(_, attribute)| attribute)
+    }
+}
+
+impl<'a> Attribute<'a> {
+    /// Its text, up to where it ends.
+    pub(in crate::file) fn text(&self) -> Option<&'a [u8]> {
+        let Number::Text(_) = self.number else { return None };
+        self.bytes.split(|&byte| byte == 0).next()
+    }
+}
+
+impl Attribute<'_> {
+    /// The first of its whole numbers.
+    pub(in crate::file) fn whole(&self) -> Option<i64> {
+        let Number::Whole(size, order) = self.number else { return None };
+        Some(order.signed(self.bytes.get(..size)?))
+    }
+}
+
+/// Attributes of an object that has many, in a heap.
+fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attribute<'a>)>, Fault> {
+    let mut all = Vec::new();
+    for message in header.of(ATTRIBUTE_INFO) {
+        let mut bytes = raw.at(message.content.start, "attributes").within(message.content.clone());
+        bytes.expect(&[0])?;
+        let flags = bytes.byte()?;
+        bytes.skip(if flags & 1 != 0 { 2 } else { 0 })?;
+        if let (Some(heap), Some(tree)) = (bytes.address()?, bytes.address()?) {
+            let heap = Heap::read(raw, heap)?;
+            for record in btree::records(raw, tree)? {
+                all.extend(heap.object(raw, record).and_then(read).ok());
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The name and the content of an attribute message.
+fn read(mut bytes: Bytes<'_>) -> Result<(&[u8], Attribute<'_>), Fault> {
+    let version = bytes.byte()?;
+    let flags = bytes.byte()?;
+    let sizes = [bytes.count(2)?, bytes.count(2)?, bytes.count(2)?];
+    if version > 3 || version == 0 || (version > 1 && flags & 3 != 0) {
+        return Err(bytes.unread("an attribute of a type that stands elsewhere"));
+    }
+    bytes.skip(if version == 3 { 1 } else { 0 })?;
+    let mut part = |size: usize| {
+        let start = bytes.at();
+        bytes.skip(if version == 1 { size.next_multiple_of(8) } else { size })?;
+        Ok(bytes.within(start..start + size))
+    };
+    let (mut name, number, space) = (part(sizes[0])?, part(sizes[1])?, part(sizes[2])?);
+    let name = name.take(sizes[0])?;
+    let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
+    let (number, space) = (Number::read(number)?, Space::read(space)?);
+    let size = space.count().and_then(|count| usize::try_from(count).ok());
+    let size = size.and_then(|size| size.checked_mul(number.bytes())).unwrap_or(usize::MAX);
+    let bytes = bytes.take(size)?;
+    Ok((name, Attribute { number, bytes }))
+}

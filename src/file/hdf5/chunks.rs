@@ -1,0 +1,213 @@
+//! The chunks of a dataset: where each stands, and which of the items it has.
+
+use super::btree::Tree;
+use super::bytes::Fault;
+use super::entry::{Chunk, Entry};
+use super::filters::Filter;
+use super::fixed_array::{self, Slot};
+use super::layout::Index;
+use super::raw::Raw;
+use super::sum::Sum;
+
+/// A dataset as a lattice of chunks. One that is not in chunks is a single one.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice {
+    /// How many items there are in each dimension, at least one of which there is, and how many in each of a chunk.
+    shape: Vec<usize>,
+    lengths: Vec<usize>,
+    /// How many bytes an item has.
+    item: usize,
+    /// How many chunks there are in each dimension, and how many the index has room for.
+    counts: Vec<usize>,
+    rooms: Vec<usize>,
+}
+
+impl Lattice {
+    /// None if its sizes are no numbers. `most` are the lengths that the dataset may grow to.
+    pub(super) fn new(
+        shape: &[u64],
+        most: &[u64],
+        lengths: &[u64],
+        item: usize,
+    ) -> Option<Lattice> {
+        let sizes = |numbers: &[u64]| {
+            numbers.iter().map(|&n| usize::try_from(n).ok()).collect::<Option<Vec<usize>>>()
+        };
+        let (mut shape, mut lengths) = (sizes(shape)?, sizes(lengths)?);
+        let mut most: Vec<usize> =
+            most.iter().map(|&n| usize::try_from(n).unwrap_or(usize::MAX)).collect();
+        if shape.is_empty() {
+            (shape, lengths, most) = (vec![1], vec![1], vec![1]);
+        }
+        let counts: Vec<usize> = shape.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
+        let rooms: Vec<usize> = most.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
+        let lattice = Lattice { shape, lengths, item, counts, rooms };
+        let product =
+            |of: &[usize]| of.iter().try_fold(item.max(1), |all: usize, &n| all.checked_mul(n));
+        // Both sizes are numbers, and so is the number of chunks.
+        product(&lattice.shape)?;
+        product(&lattice.lengths)?;
+        product(&lattice.counts)?;
+        Some(lattice)
+    }
+
+    /// How many bytes all items have.
+    pub(super) fn bytes(&self) -> usize {
+        self.shape.iter().product::<usize>() * self.item
+    }
+
+    /// How many bytes a chunk has.
+    pub(super) fn chunk_bytes(&self) -> usize {
+        self.lengths.iter().product::<usize>() * self.item
+    }
+
+    /// How many chunks there are.
+    pub(super) fn count(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// The number of the chunk whose first item is this one; none if there is no such chunk.
+    fn number_of(&self, first: impl Iterator<Item = usize>) -> Option<usize> {
+        let mut each = first.zip(&self.lengths).zip(&self.counts);
+        each.try_fold(0, |number: usize, ((at, length), count)| {
+            let place = at / length;
+            (at % length == 0 && place < *count).then(|| number * count + place)
+        })
+    }
+
+    /// Where the place of a chunk is in a list of as many as the dataset may grow to.
+    fn room(&self, number: usize) -> Option<usize> {
+        let places = self.places(number);
+        places
+            .iter()
+            .zip(&self.rooms)
+            .try_fold(0, |all: usize, (place, room)| all.checked_mul(*room)?.checked_add(*place))
+    }
+
+    /// How many chunks the dataset may grow to.
+    pub(super) fn rooms(&self) -> usize {
+        self.rooms.iter().try_fold(1, |all: usize, &n| all.checked_mul(n)).unwrap_or(usize::MAX)
+    }
+
+    fn places(&self, number: usize) -> Vec<usize> {
+        let mut left = number;
+        let mut places = vec![0; self.counts.len()];
+        for (place, count) in places.iter_mut().zip(&self.counts).rev() {
+            (*place, left) = (left % count, left / count);
+        }
+        places
+    }
+
+    /// Hands on each run of bytes that stand side by side both among all items and in a chunk: where they start in each, and how many
+    /// there are.
+    pub(super) fn runs(&self, number: usize, mut take: impl FnMut(usize, usize, usize)) {
+        let rank = self.shape.len();
+        // From this dimension on all items of the chunk are side by side.
+        let whole = |d: &usize| self.lengths[*d] == self.shape[*d];
+        let last = rank - 1 - (1..rank).rev().take_while(whole).count();
+        let inner = self.shape[last + 1..].iter().product::<usize>() * self.item;
+        let starts: Vec<usize> =
+            self.places(number).iter().zip(&self.lengths).map(|(p, l)| p * l).collect();
+        let extents: Vec<usize> =
+            (0..rank).map(|d| self.lengths[d].min(self.shape[d] - starts[d])).collect();
+        let mut at = vec![0; last];
+        loop {
+            let (mut outer, mut own) = (0, 0);
+            for d in 0..last {
+                outer = outer * self.shape[d] + starts[d] + at[d];
+                own = own * self.lengths[d] + at[d];
+            }
+            outer = outer * self.shape[last] + starts[last];
+            own *= self.lengths[last];
+            take(outer * inner, own * inner, extents[last] * inner);
+            // The next row.
+            let Some(d) = (0..last).rev().find(|&d| at[d] + 1 < extents[d]) else { break };
+            at[d] += 1;
+            at[d + 1..].fill(0);
+        }
+    }
+
+    /// Finds the chunks of an index, in the order of their numbers. All have to be there.
+    pub(super) fn chunks(
+        &self,
+        raw: &Raw<'_>,
+        (index, address): (&Index, usize),
+        filters: &[Filter],
+        sum: Option<&Sum>,
+        at: usize,
+    ) -> Result<Vec<Chunk>, Fault> {
+        let damaged = || Fault::damaged(at, "a dataset of the HDF5 file");
+        let whole = self.chunk_bytes();
+        let mut chunks = Vec::new();
+        match index {
+            Index::Tree => {
+                Tree::of_chunks(raw, self.shape.len()).each(
+                    address,
+                    &mut |mut key, address, place| {
+                        let size = key.at()..key.at() + 4;
+                        let length = key.count(4)?;
+                        let mask = key.number(4)? as u32;
+                        let mut first = Vec::with_capacity(self.shape.len());
+                        for _ in &self.shape {
+                            first.push(key.count(8)?);
+                        }
+                        // Chunks may be left of when the dataset was larger.
+                        if let Some(number) = self.number_of(first.into_iter()) {
+                            let entry = Some(Entry { address: place, size: Some(size), sum: None });
+                            let range = address..address.saturating_add(length);
+                            chunks.push(Chunk { number, range, mask, entry });
+                        }
+                        Ok(())
+                    },
+                )?;
+            }
+            Index::Single { stored, place } => {
+                let (length, mask, size) = match stored.clone() {
+                    Some((length, mask, size)) => (length, mask, Some(size)),
+                    None => (whole, 0, None),
+                };
+                let range = address..address.saturating_add(length);
+                let entry = Some(Entry { address: *place, size, sum: sum.cloned() });
+                chunks.push(Chunk { number: 0, range, mask, entry });
+            }
+            Index::Implicit => {
+                for number in 0..self.count().min(raw.bytes.len()) {
+                    let before = self.room(number).and_then(|room| room.checked_mul(whole));
+                    let start = address.saturating_add(before.ok_or_else(damaged)?);
+                    let range = start..start.saturating_add(whole);
+                    chunks.push(Chunk { number, range, mask: 0, entry: None });
+                }
+            }
+            Index::FixedArray => {
+                let rooms = self.rooms();
+                let slots = fixed_array::read(raw, address, rooms, !filters.is_empty())?;
+                for number in 0..self.count().min(slots.count()) {
+                    let room = self.room(number).ok_or_else(damaged)?;
+                    if let Some(Slot { address, length, mask, entry }) = slots.slot(raw, room)? {
+                        let range = address..address.saturating_add(length.unwrap_or(whole));
+                        chunks.push(Chunk { number, range, mask, entry: Some(entry) });
+                    }
+                }
+            }
+        }
+        chunks.sort_by_key(|chunk| chunk.number);
+        let numbers = chunks.iter().map(|chunk| chunk.number);
+        if !numbers.eq(0..self.count()) {
+            let problem = "a dataset of which parts were never written, or twice";
+            return Err(Fault::unread(at, problem));
+        }
+        self.check(raw, &chunks, filters).ok_or_else(damaged)?;
+        Ok(chunks)
+    }
+
+    /// Chunks lie in the file, and no two of them are the same bytes.
+    fn check(&self, raw: &Raw<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
+        let mut left = raw.bytes.len();
+        for chunk in chunks {
+            let is_inside = chunk.range.end <= raw.bytes.len();
+            let fits = !filters.is_empty() || chunk.range.len() == self.chunk_bytes();
+            left = left.checked_sub(chunk.range.len()).filter(|_| is_inside && fits)?;
+        }
+        Some(())
+    }
+}

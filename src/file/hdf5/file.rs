@@ -1,0 +1,156 @@
+//! A file as the tree of its groups and datasets.
+
+use super::bytes::{DAMAGED, Fault};
+use super::groups::{self, Link, Target};
+use super::header::Header;
+use super::raw::{Raw, SIGNATURE};
+use crate::error::{Location, ReadError};
+use crate::file::source::Source;
+use std::collections::HashMap;
+
+/// A file with all its objects.
+pub(in crate::file) struct Hdf5<'a> {
+    pub(super) source: &'a Source,
+    pub(super) raw: Raw<'a>,
+    /// The root group is the first.
+    objects: Vec<Object>,
+}
+
+/// A group, a dataset or a named type.
+pub(in crate::file) struct Object {
+    /// Where its header stands.
+    pub(in crate::file) at: usize,
+    pub(super) header: Result<Header, Fault>,
+    links: Vec<Link>,
+}
+
+impl<'a> Hdf5<'a> {
+    /// Reads the tree of a file. What is wrong with an object is told once it is asked for.
+    pub(in crate::file) fn open(source: &'a Source) -> Result<Hdf5<'a>, ReadError> {
+        let told = |fault| error_of(source, fault);
+        let (raw, root) = Raw::new(&source.bytes).map_err(told)?;
+        let mut objects: Vec<Object> = Vec::new();
+        let mut known: HashMap<usize, usize> = HashMap::from([(root, 0)]);
+        let mut found = vec![root];
+        let mut letters = 0_usize;
+        while let Some(&at) = found.get(objects.len()) {
+            let header = Header::read(&raw, at);
+            let mut links = Vec::new();
+            if let Ok(header) = &header {
+                groups::links(&raw, header, &mut |name, place| {
+                    letters = letters.saturating_add(name.len());
+                    let target = place.map(|at| {
+                        *known.entry(at).or_insert_with(|| {
+                            found.push(at);
+                            found.len() - 1
+                        })
+                    });
+                    links.push(Link { name, target });
+                    // Names that many links share are no program's work.
+                    match letters > source.bytes.len() {
+                        true => Err(Fault::damaged(at, "a group with its names")),
+                        false => Ok(()),
+                    }
+                })
+                .map_err(told)?;
+            }
+            objects.push(Object { at, header, links });
+        }
+        raw.read_again();
+        Ok(Hdf5 { source, raw, objects })
+    }
+
+    /// The same of a file that may be of another format; none if it is.
+    pub(in crate::file) fn open_any(source: &'a Source) -> Result<Option<Hdf5<'a>>, ReadError> {
+        match source.bytes.starts_with(SIGNATURE) {
+            true => Hdf5::open(source).map(Some),
+            false => Ok(None),
+        }
+    }
+
+    /// The root group.
+    pub(in crate::file) fn root(&self) -> &Object {
+        &self.objects[0]
+    }
+
+    /// The object of a path, with a slash between names. None if there is none.
+    pub(in crate::file) fn find(&self, path: &[u8]) -> Option<&Object> {
+        self.follow(self.root(), path, &mut 32)
+    }
+
+    /// What a group has by a name or a path; none if it has nothing so called.
+    pub(in crate::file) fn child<'h>(
+        &'h self,
+        group: &'h Object,
+        path: &[u8],
+    ) -> Option<&'h Object> {
+        self.follow(group, path, &mut 32)
+    }
+
+    /// What a group holds, by name, in the order of the file.
+    pub(in crate::file) fn children<'h>(
+        &'h self,
+        group: &'h Object,
+    ) -> impl Iterator<Item = (&'h [u8], &'h Object)> {
+        group
+            .links
+            .iter()
+            .filter_map(|link| Some((&link.name[..], self.of_link(group, link, &mut 32)?)))
+    }
+
+    fn of_link(&self, group: &Object, link: &Link, left: &mut u32) -> Option<&Object> {
+        match &link.target {
+            Target::Object(number) => self.objects.get(*number),
+            Target::Soft(path) => {
+                *left = left.checked_sub(1)?;
+                let from = if path.starts_with(b"/") { self.root() } else { self.at(group.at)? };
+                self.follow(from, path, left)
+            }
+            Target::Elsewhere => None,
+        }
+    }
+
+    fn at(&self, at: usize) -> Option<&Object> {
+        self.objects.iter().find(|object| object.at == at)
+    }
+
+    /// Follows a path over so many links to other paths.
+    fn follow<'h>(&'h self, from: &'h Object, path: &[u8], left: &mut u32) -> Option<&'h Object> {
+        // Longer paths are no program's work.
+        const NAMES: usize = 64;
+        let mut object = from;
+        for (number, name) in path.split(|&byte| byte == b'/').enumerate() {
+            if number == NAMES {
+                return None;
+            }
+            if !name.is_empty() && name != b"." {
+                let link = object.links.iter().find(|link| link.name == name)?;
+                object = self.of_link(object, link, left)?;
+            }
+        }
+        Some(object)
+    }
+
+    /// The error of a fault in this file.
+    #[cold]
+    pub(in crate::file) fn error(&self, fault: Fault) -> ReadError {
+        error_of(self.source, fault)
+    }
+
+    /// Checks that no two of the things that were read share bytes, so that what is written to one changes no other.
+    pub(in crate::file) fn check_apart(&self) -> Result<(), ReadError> {
+        match self.raw.shared() {
+            None => Ok(()),
+            Some(at) => Err(self.error(Fault {
+                at,
+                problem: "two parts of the HDF5 file overlap".into(),
+                remedy: DAMAGED,
+            })),
+        }
+    }
+}
+
+#[cold]
+fn error_of(source: &Source, Fault { at, problem, remedy }: Fault) -> ReadError {
+    source.error_at(Location::Byte(at.min(source.bytes.len())), problem, remedy)
+}

@@ -1,0 +1,204 @@
+//! What is done to a chunk before it is stored, and the way back.
+
+use super::bytes::{Bytes, Fault};
+use flate2::Compression;
+use flate2::read::{ZlibDecoder, ZlibEncoder};
+use std::borrow::Cow;
+use std::io::Read;
+
+/// A filter that chunks go through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Filter {
+    /// Compression at this level.
+    Deflate(u32),
+    /// The first bytes of all items of this size, then the second ones, and so on.
+    Shuffle(usize),
+    /// A checksum at the end.
+    Fletcher,
+}
+
+/// The most bytes that a compressed one may stand for. More is no compressor's work; counts that say so are wrong.
+const MOST: usize = 1100;
+
+/// Reads a filter message.
+pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Vec<Filter>, Fault> {
+    let version = bytes.byte()?;
+    let count = bytes.byte()?;
+    bytes.skip(if version == 1 { 6 } else { 0 })?;
+    let mut filters = Vec::new();
+    for _ in 0..count {
+        let number = bytes.number(2)?;
+        let name = if version == 1 || number >= 256 { bytes.count(2)? } else { 0 };
+        bytes.skip(2)?;
+        let values = bytes.count(2)?;
+        bytes.skip(if version == 1 { name.next_multiple_of(8) } else { name })?;
+        let first = bytes.clone().number(4);
+        bytes.skip(4 * values)?;
+        bytes.skip(if version == 1 && values % 2 == 1 { 4 } else { 0 })?;
+        let value = if values > 0 { first? } else { 0 };
+        filters.push(match number {
+            1 => Filter::Deflate(value.min(9) as u32),
+            2 => Filter::Shuffle(value as usize),
+            3 => Filter::Fletcher,
+            other => {
+                return Err(bytes.unread(format!("a dataset compressed by {}", name_of(other))));
+            }
+        });
+    }
+    Ok(filters)
+}
+
+fn name_of(filter: u64) -> String {
+    let name = match filter {
+        4 => "szip",
+        5 => "n-bit",
+        6 => "scale and offset",
+        32000 => "LZF",
+        32001 => "Blosc",
+        32004 => "LZ4",
+        32015 => "Zstandard",
+        other => return format!("filter {other}"),
+    };
+    name.to_owned()
+}
+
+/// What a stored chunk of so many bytes was. Filters whose bits are set in `mask` were left out. None if it is damaged.
+pub(super) fn unfiltered<'a>(
+    filters: &[Filter],
+    mask: u32,
+    stored: &'a [u8],
+    length: usize,
+) -> Option<Cow<'a, [u8]>> {
+    let mut bytes = Cow::Borrowed(stored);
+    for filter in used(filters, mask).rev() {
+        bytes = match filter {
+            Filter::Deflate(_) => {
+                // Checksums may stand beside the items.
+                let most = length.checked_add(4 * filters.len())?;
+                if length > bytes.len().saturating_mul(MOST) {
+                    return None;
+                }
+                let mut whole = Vec::new();
+                let limit = most as u64 + 1;
+                ZlibDecoder::new(&bytes[..]).take(limit).read_to_end(&mut whole).ok()?;
+                whole.into()
+            }
+            Filter::Shuffle(size) => shuffled(&bytes, *size, false).into(),
+            Filter::Fletcher => {
+                let (own, sum) = bytes.split_last_chunk::<4>()?;
+                let stored = u32::from_le_bytes(*sum);
+                let found = fletcher(own);
+                // Versions before 1.6.3 have the bytes of both halves in the other order.
+                let old = (found & 0x00FF_00FF) << 8 | (found >> 8) & 0x00FF_00FF;
+                if stored != found && stored != old {
+                    return None;
+                }
+                own.to_vec().into()
+            }
+        };
+    }
+    (bytes.len() == length).then_some(bytes)
+}
+
+/// What is stored of a chunk.
+pub(super) fn filtered(filters: &[Filter], mask: u32, chunk: Vec<u8>) -> Vec<u8> {
+    used(filters, mask).fold(chunk, |mut bytes, filter| match filter {
+        Filter::Deflate(level) => {
+            let mut out = Vec::new();
+            let mut encoder = ZlibEncoder::new(&bytes[..], Compression::new(*level));
+            encoder.read_to_end(&mut out).expect("memory can be read");
+            out
+        }
+        Filter::Shuffle(size) => shuffled(&bytes, *size, true),
+        Filter::Fletcher => {
+            bytes.extend(fletcher(&bytes).to_le_bytes());
+            bytes
+        }
+    })
+}
+
+fn used(filters: &[Filter], mask: u32) -> impl DoubleEndedIterator<Item = &Filter> {
+    let numbered = filters.iter().enumerate();
+    numbered.filter(move |(number, _)| mask >> (number % 32) & 1 == 0).map(|(_, filter)| filter)
+}
+
+/// The bytes of items of this size, sorted by their places in the items, or the other way round. What is left at the end
+/// stays there.
+fn shuffled(bytes: &[u8], size: usize, forth: bool) -> Vec<u8> {
+    let mut out = bytes.to_vec();
+    let count = if size > 1 { bytes.len() / size } else { 0 };
+    for item in 0..count {
+        for place in 0..size {
+            let (mixed, plain) = (place * count + item, item * size + place);
+            match forth {
+                true => out[mixed] = bytes[plain],
+                false => out[plain] = bytes[mixed],
+            }
+        }
+    }
+    out
+}
+
+/// Fletcher's checksum of words of two bytes, the highest first.
+fn fletcher(bytes: &[u8]) -> u32 {
+    let fold = |sum: u32| (sum & 0xFFFF) + (sum >> 16);
+    let (words, last) = bytes.as_chunks::<2>();
+    let (mut a, mut b) = (0_u32, 0_u32);
+    // As many words as cannot overflow.
+    for part in words.chunks(360) {
+        for word in part {
+            a += u32::from(u16::from_be_bytes(*word));
+            b += a;
+        }
+        (a, b) = (fold(a), fold(b));
+    }
+    if let [last] = last {
+        a += u32::from(*last) << 8;
+        b += a;
+        (a, b) = (fold(a), fold(b));
+    }
+    (a, b) = (fold(a), fold(b));
+    b << 16 | a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_filtered_comes_back() {
+        let bytes: Vec<u8> = (0..10_003_u32).map(|n| (n * n / 7 % 251) as u8).collect();
+        let all = [Filter::Shuffle(8), Filter::Deflate(6), Filter::Fletcher];
+        for filters in [&all[..], &all[..1], &all[1..2], &all[2..], &[all[2], all[0], all[1]]] {
+            for mask in 0..8 {
+                for length in [0, 1, 7, 8, 10_003] {
+                    let stored = filtered(filters, mask, bytes[..length].to_vec());
+                    let back = unfiltered(filters, mask, &stored, length);
+                    assert!(
+                        back.as_deref() == Some(&bytes[..length]),
+                        "{filters:?} {mask} {length}"
+                    );
+                    assert!(unfiltered(filters, mask, &stored, length + 1).is_none());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_changed_byte_shows_in_the_checksum() {
+        let bytes: Vec<u8> = (0..2000_u32).map(|n| (n % 253) as u8).collect();
+        let stored = filtered(&[Filter::Fletcher], 0, bytes.clone());
+        for at in (0..stored.len()).step_by(7) {
+            let mut stored = stored.clone();
+            stored[at] ^= 4;
+            assert!(unfiltered(&[Filter::Fletcher], 0, &stored, bytes.len()).is_none());
+        }
+    }
+
+    #[test]
+    fn wrong_lengths_take_no_memory() {
+        let stored = filtered(&[Filter::Deflate(9)], 0, vec![0; 1 << 20]);
+        assert!(unfiltered(&[Filter::Deflate(9)], 0, &stored, 1 << 40).is_none());
+        assert!(unfiltered(&[Filter::Deflate(9)], 0, &stored, 1 << 10).is_none());
+    }
+}

@@ -1,0 +1,162 @@
+//! How the items of a dataset are laid out in the file.
+
+use super::bytes::{Bytes, Fault};
+use std::ops::Range;
+
+/// Where the items of a dataset stand.
+#[derive(Clone, Debug)]
+pub(super) enum Layout {
+    /// In the header, in these bytes.
+    Compact(Range<usize>),
+    /// In one piece, from this address on; none if they were never written.
+    Contiguous(Option<usize>),
+    /// In chunks of these lengths.
+    Chunked { lengths: Vec<u64>, index: Index, address: Option<usize> },
+}
+
+/// How the places of chunks are told.
+#[derive(Clone, Debug)]
+pub(super) enum Index {
+    /// A tree of version 1.
+    Tree,
+    /// There is one chunk alone. Its size and which filters were left out, if there are filters, and where the size stands; and where
+    /// its address stands.
+    Single {
+        stored: Option<(usize, u32, Range<usize>)>,
+        place: usize,
+    },
+    /// One chunk after another.
+    Implicit,
+    FixedArray,
+}
+
+impl Layout {
+    /// Reads a layout message of a dataset of so many dimensions.
+    pub(super) fn read(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+        match bytes.byte()? {
+            1 | 2 => Self::first(bytes, rank),
+            3 => Self::third(bytes, rank),
+            4 | 5 => Self::fourth(bytes, rank),
+            version => Err(bytes.unread(format!("a dataset with a layout of version {version}"))),
+        }
+    }
+
+    fn first(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+        let dimensions = usize::from(bytes.byte()?);
+        let class = bytes.byte()?;
+        bytes.skip(5)?;
+        let address = if class == 0 { None } else { bytes.address()? };
+        let mut lengths = Self::lengths(&mut bytes, dimensions, 4)?;
+        match class {
+            0 => {
+                let size = bytes.count(4)?;
+                Self::compact(bytes, size)
+            }
+            1 => Ok(Layout::Contiguous(address)),
+            2 => {
+                // The last one is the size of an item.
+                lengths.pop();
+                Self::chunked(&bytes, lengths, rank, Index::Tree, address)
+            }
+            _ => Err(Self::other(&bytes, class)),
+        }
+    }
+
+    fn third(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+        match bytes.byte()? {
+            0 => {
+                let size = bytes.count(2)?;
+                Self::compact(bytes, size)
+            }
+            1 => Ok(Layout::Contiguous(bytes.address()?)),
+            2 => {
+                let dimensions = usize::from(bytes.byte()?);
+                let address = bytes.address()?;
+                let mut lengths = Self::lengths(&mut bytes, dimensions, 4)?;
+                lengths.pop();
+                Self::chunked(&bytes, lengths, rank, Index::Tree, address)
+            }
+            class => Err(Self::other(&bytes, class)),
+        }
+    }
+
+    fn fourth(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+        let mut own = bytes.clone();
+        match own.byte()? {
+            2 => {}
+            _ => return Self::third(bytes, rank),
+        }
+        bytes.byte()?;
+        let flags = bytes.byte()?;
+        let dimensions = usize::from(bytes.byte()?);
+        let width = bytes.count(1)?;
+        if !(1..=8).contains(&width) {
+            return Err(bytes.damaged());
+        }
+        let mut lengths = Self::lengths(&mut bytes, dimensions, width)?;
+        lengths.pop();
+        if flags & 1 != 0 {
+            return Err(bytes.unread("a dataset whose chunks at the edge are not compressed"));
+        }
+        let kind = bytes.byte()?;
+        let mut stored = None;
+        match kind {
+            1 if flags & 2 != 0 => {
+                let start = bytes.at();
+                let size = bytes.length()?;
+                let place = start..bytes.at();
+                stored = Some((size, bytes.number(4)? as u32, place));
+            }
+            1 | 2 => {}
+            3 => bytes.skip(1)?,
+            _ => {
+                let name = match kind {
+                    4 => "an extensible array",
+                    5 => "a tree of version 2",
+                    _ => "an unknown index",
+                };
+                let problem = format!("a dataset that may grow, with {name} of its chunks");
+                return Err(bytes.unread(problem));
+            }
+        }
+        let place = bytes.at();
+        let address = bytes.address()?;
+        let index = match kind {
+            1 => Index::Single { stored, place },
+            2 => Index::Implicit,
+            _ => Index::FixedArray,
+        };
+        Self::chunked(&bytes, lengths, rank, index, address)
+    }
+
+    fn lengths(bytes: &mut Bytes<'_>, count: usize, width: usize) -> Result<Vec<u64>, Fault> {
+        (0..count).map(|_| bytes.number(width)).collect()
+    }
+
+    fn compact(mut bytes: Bytes<'_>, size: usize) -> Result<Layout, Fault> {
+        let start = bytes.at();
+        bytes.skip(size)?;
+        Ok(Layout::Compact(start..bytes.at()))
+    }
+
+    fn chunked(
+        bytes: &Bytes<'_>,
+        lengths: Vec<u64>,
+        rank: usize,
+        index: Index,
+        address: Option<usize>,
+    ) -> Result<Layout, Fault> {
+        match lengths.len() == rank && rank > 0 && !lengths.contains(&0) {
+            true => Ok(Layout::Chunked { lengths, index, address }),
+            false => Err(bytes.damaged()),
+        }
+    }
+
+    #[cold]
+    fn other(bytes: &Bytes<'_>, class: u8) -> Fault {
+        match class {
+            3 => bytes.unread("a virtual dataset, made of those of other files"),
+            _ => bytes.damaged(),
+        }
+    }
+}
