@@ -33,7 +33,7 @@ pub struct Outcome {
     /// Objectives before the first sweep and after each.
     pub history: Vec<Objectives>,
     /// The share of f that further sweeps are estimated to gain, extrapolated from the decay of the last sweeps; `None`
-    /// if they do not decay or are too few.
+    /// if they do not decay or are too few. After a run by EDGE with corrections what its p-norm leaves of f is part of it.
     pub remaining: Option<f64>,
     /// Number of vertices that the guard keeps from moving on at the end of a run that converged otherwise: by
     /// [`Guard::Worst`](crate::Guard::Worst), or if that is why the run ended ([`Stop::HeldBack`]).
