@@ -13,7 +13,9 @@ struct Part {
     ring_base: u32,
     // How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's
     // objective; 1 for never.
-    @size(8) longest: f32,
+    longest: f32,
+    // One over the shape guard that a penalty keeps EDGE off, 0 for none.
+    over_guard: f32,
 }
 
 @group(0) @binding(1) var<uniform> part: Part;

@@ -93,6 +93,7 @@ fn sweep(
         return;
     }
     sharpness = part.sharpness;
+    over_guard = part.over_guard;
     var p = patch_of(vertex);
     var moved = false;
     for (var i = 0u; i < params.inner; i++) {

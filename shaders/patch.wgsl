@@ -17,6 +17,8 @@ struct Derivatives {
 
 // log2 of the exponent of EDGE's p-norm in this sweep.
 var<private> sharpness: u32;
+// One over the inverse mean ratio of the shape guard that a penalty keeps EDGE off, 0 for none.
+var<private> over_guard: f32;
 
 // The edge from one position to another. The differences of the high and of the low parts are opaque: in another order,
 // as in head.xy - (tail.xy + tail.zw) + head.zw, they would lose the low parts.

@@ -33,7 +33,8 @@ pub struct Outcome {
     /// Objectives before the first sweep and after each.
     pub history: Vec<Objectives>,
     /// The share of f, or of 1e-6 where f is less, that further sweeps are estimated to gain, extrapolated from the decay of the
-    /// last sweeps, and at most what f is above its ideal; `None` if they do not decay or are too few.
+    /// last sweeps, and at most what f is above its ideal; `None` if they do not decay or are too few. After a run by EDGE with
+    /// corrections, it includes what EDGE's p-norm leaves of f.
     pub remaining: Option<f64>,
     /// Number of vertices that the guard keeps from moving on at the end of a run that converged otherwise: by
     /// [`Guard::Worst`](crate::Guard::Worst), or if that is why the run ended ([`Stop::HeldBack`]).

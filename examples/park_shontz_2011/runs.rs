@@ -213,6 +213,8 @@ fn plain(scheme: Scheme) -> Plan {
         track_all: false,
         shape_guard: f64::INFINITY,
         worst_guard: f64::INFINITY,
+        longest: 1.0,
+        is_guard_penalized: false,
     }
 }
 

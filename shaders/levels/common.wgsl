@@ -28,6 +28,7 @@ struct LevelOp {
     // Place in `vectors` of the result.
     out: u32,
     a: f32,
+    // A factor too; of kernels that see a metric, one over the shape guard that a penalty keeps EDGE off, 0 for none.
     b: f32,
     // The inverse mean ratio up to which a correction may flatten a triangle, NO_GUARD for any.
     shape_guard: f32,

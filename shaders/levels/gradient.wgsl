@@ -19,6 +19,7 @@ fn find_gradient(
         return;
     }
     sharpness = op.sharpness;
+    over_guard = op.b;
     let p = patch_of(vertex);
     var sum = derivatives_around(p);
     if MAPPED {

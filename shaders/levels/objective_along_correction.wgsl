@@ -12,6 +12,7 @@ fn objective_along_correction(
     }
     let stride = groups.x * WORKGROUP;
     sharpness = op.sharpness;
+    over_guard = op.b;
     var sums: array<vec2<f32>, 4>;
     if op.first != 0u {
         for (var i = 0u; i < 4u; i++) {

@@ -4,7 +4,7 @@ use fearless_simd::prelude::*;
 
 use crate::cpu::lanes::{Lanes, Points};
 use crate::cpu::patch::Patches;
-use crate::metric::{Corner, Dual, Formulas, Real};
+use crate::metric::{Corner, Dual, Formulas, Real, Smoothing};
 use crate::run::line_search;
 
 /// The objectives of four patches with their derivatives, by forward differences.
@@ -13,14 +13,14 @@ pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
     patches: &Patches<'_, S, MAPPED>,
     formulas: impl Formulas,
     at: Points<S>,
-    sharpness: u32,
+    smoothing: Smoothing,
 ) -> Dual<Lanes<S>> {
     let width = least_height(patches, at) * line_search::DIFFERENCE;
     let zero = at[0].constant(0.0);
     let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
     for i in 0..patches.degree() {
         let corner = patches.corner(i, at);
-        sum = sum + differences(formulas, &corner, sharpness, width);
+        sum = sum + differences(formulas, &corner, smoothing, width);
     }
     sum
 }
@@ -45,7 +45,7 @@ fn least_height<S: Simd, const MAPPED: bool>(
 fn differences<S: Simd>(
     formulas: impl Formulas,
     corner: &Corner<Lanes<S>>,
-    sharpness: u32,
+    smoothing: Smoothing,
     h: Lanes<S>,
 ) -> Dual<Lanes<S>> {
     let mut values = [h; 16];
@@ -55,7 +55,7 @@ fn differences<S: Simd>(
         let (x, y) = (h * f64::from(x), h * f64::from(y));
         let a = [corner.a[0] - x, corner.a[1] - y];
         let b = [corner.b[0] - x, corner.b[1] - y];
-        values[k] = formulas.model(&Corner { a, b, ..*corner }, sharpness);
+        values[k] = formulas.model(&Corner { a, b, ..*corner }, smoothing);
     }
     // Gradients at the vertex and one step along x and y, each by forward differences.
     let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];

@@ -11,7 +11,7 @@ use crate::cpu::secants::{Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
-use crate::metric::{Metric, TargetMap};
+use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
 use crate::run::{CPU, Engine, EngineState, History, LEFT_OUT, Objectives, Plan, Proposal, Step};
@@ -83,7 +83,7 @@ impl<'a> CpuEngine<'a> {
     fn proposal(&self, length: f64) -> Proposal {
         let Self { base, step, problem, positions, gradient, direction, .. } = self;
         let slope = dot(gradient, direction) / problem.triangles().len() as f64;
-        let here = mean_model(*base, step.sharpness, problem, positions);
+        let here = mean_model(*base, step.smoothing(), problem, positions);
         let there = if slope < 0.0 { self.try_length(length) } else { None };
         Proposal { here, slope, there }
     }
@@ -173,8 +173,8 @@ impl Engine for CpuEngine<'_> {
         Ok(())
     }
 
-    async fn stiffness_roots(&mut self, sharpness: u32) -> Result<Vec<f32>, GpuError> {
-        Ok(sweep::stiffness_roots(self.base, self.problem, &self.positions, sharpness))
+    async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
+        Ok(sweep::stiffness_roots(self.base, self.problem, &self.positions, smoothing))
     }
 
     async fn propose(
@@ -184,9 +184,9 @@ impl Engine for CpuEngine<'_> {
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
         self.sweep_now(step);
-        self.step.sharpness = step.sharpness;
+        (self.step.sharpness, self.step.penalized) = (step.sharpness, step.penalized);
         let Self { base, problem, positions, gradient, secants, .. } = self;
-        sweep::gradient(*base, problem, positions, step.sharpness, gradient);
+        sweep::gradient(*base, problem, positions, step.smoothing(), gradient);
         // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
         let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, vector);
@@ -197,6 +197,10 @@ impl Engine for CpuEngine<'_> {
             levels(gradient)
         };
         Ok(self.proposal(length))
+    }
+
+    fn forget(&mut self) {
+        self.secants = None;
     }
 
     async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {

@@ -55,9 +55,9 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     let (metric, properties) = (formulas.metric(), formulas.metric().properties());
     let sum = match step.derivatives {
         Derivatives::FiniteDifference => {
-            differences::derivatives(patches, formulas, at, step.sharpness)
+            differences::derivatives(patches, formulas, at, step.smoothing())
         }
-        Derivatives::Analytic => patches.derivatives(formulas, at, step.sharpness),
+        Derivatives::Analytic => patches.derivatives(formulas, at, step.smoothing()),
     };
     let floor = properties.eigenvalue_floor;
     let ([dx, dy], slope, descends) = match patches.inverse_map() {
@@ -95,7 +95,7 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     let mut trial = 0;
     while trial < line_search::TRIALS {
         let to = [at[0] + dx * length, at[1] + dy * length];
-        let (value, feasible) = patches.objective(formulas, to, step.sharpness, limit, guarded);
+        let (value, feasible) = patches.objective(formulas, to, step.smoothing(), limit, guarded);
         if !worst_is_known && !(!searching | feasible).all_true() {
             worst_is_known = true;
             limit = Real::max(limit, patches.worst_shape(formulas, at));

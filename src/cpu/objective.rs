@@ -6,7 +6,7 @@ use glam::{DVec2, Vec2};
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
 use crate::cpu::patch::{of_corners, points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas, Metric, TargetMap};
+use crate::metric::{Corner, Formulas, Metric, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
 use crate::run::Step;
 
@@ -19,21 +19,26 @@ pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]
     mean(metric, None, problem, positions)
 }
 
-/// The mean over all triangles of what a step of this sharpness minimizes: q² - ideal², or its smooth model.
+/// The mean over all triangles of what a step minimizes: q² - ideal², or its smooth model.
 pub(crate) fn mean_model(
     metric: Metric,
-    sharpness: u32,
+    smoothing: Smoothing,
     problem: &Problem,
     positions: &[DVec2],
 ) -> f64 {
-    mean(metric, Some(sharpness).filter(|_| !metric.is_smooth()), problem, positions)
+    mean(metric, Some(smoothing).filter(|_| !metric.is_smooth()), problem, positions)
 }
 
-/// The mean of q² - ideal², or of the smooth model of this sharpness.
-fn mean(metric: Metric, sharpness: Option<u32>, problem: &Problem, positions: &[DVec2]) -> f64 {
+/// The mean of q² - ideal², or of the model that this smoothing makes of it.
+fn mean(
+    metric: Metric,
+    smoothing: Option<Smoothing>,
+    problem: &Problem,
+    positions: &[DVec2],
+) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem, metric, simd, formulas, MAPPED => {
-            excess::<_, MAPPED>(simd, formulas, sharpness, problem, positions, chunk)
+            excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
     let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
@@ -107,14 +112,14 @@ fn excess_along<S: Simd, const MAPPED: bool>(
             }
             borne &= kept;
         }
-        sum += formulas.model(&now, step.sharpness);
+        sum += formulas.model(&now, step.smoothing());
     }
     let mut last = 0.0;
     for t in rest {
         let position = |v: u32| along.positions[v as usize];
         borne &= Mask::splat(simd, !along.breaks(problem, t, guard));
         let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
-        last += formulas.model(&now, step.sharpness);
+        last += formulas.model(&now, step.smoothing());
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
@@ -177,18 +182,18 @@ impl Along<'_> {
     }
 }
 
-/// The sum over some triangles of q² - ideal², or of the smooth model of this sharpness.
+/// The sum over some triangles of q² - ideal², or of the model that this smoothing makes of it.
 #[inline(always)]
 fn excess<S: Simd, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
-    sharpness: Option<u32>,
+    smoothing: Option<Smoothing>,
     problem: &Problem,
     positions: &[DVec2],
     triangles: &[[u32; 3]],
 ) -> f64 {
     // Known as this is compiled for a smooth metric, which is its own model.
-    let sharpness = sharpness.filter(|_| !formulas.metric().is_smooth());
+    let smoothing = smoothing.filter(|_| !formulas.metric().is_smooth());
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     for four in fours {
@@ -198,16 +203,16 @@ fn excess<S: Simd, const MAPPED: bool>(
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
         let corner = corner([p, q, r], problem, &map);
-        sum += match sharpness {
-            Some(sharpness) => formulas.model(&corner, sharpness),
+        sum += match smoothing {
+            Some(smoothing) => formulas.model(&corner, smoothing),
             None => formulas.excess(&corner),
         };
     }
     let mut last = 0.0;
     for t in rest {
         let corner = problem.corner(t, |v| positions[v as usize]);
-        last += match sharpness {
-            Some(sharpness) => formulas.model(&corner, sharpness),
+        last += match smoothing {
+            Some(smoothing) => formulas.model(&corner, smoothing),
             None => formulas.excess(&corner),
         };
     }
@@ -239,7 +244,7 @@ mod tests {
             };
             let mut moved = positions.to_vec();
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
-            let there = mean_model(metric, 6, &problem, &moved);
+            let there = mean_model(metric, step.smoothing(), &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
             // Out of the hexagon through each of its sides, then along a direction that is NaN.
             for k in 0..6 {

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Dual, Formulas, Real, TargetMap};
+use crate::metric::{Corner, Dual, Formulas, Real, Smoothing, TargetMap};
 
 /// The one-rings of four free vertices with the same number of neighbors, seen through target maps if it is `MAPPED`.
 #[derive(Clone, Copy)]
@@ -105,13 +105,13 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
         &self,
         formulas: impl Formulas,
         at: Points<S>,
-        sharpness: u32,
+        smoothing: Smoothing,
     ) -> Dual<Lanes<S>> {
         let zero = at[0].constant(0.0);
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            let shown = formulas.expansion(&corner, sharpness);
+            let shown = formulas.expansion(&corner, smoothing);
             sum = sum + if MAPPED { self.maps[i].pull_back(shown) } else { shown };
         }
         sum
@@ -138,7 +138,7 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
         &self,
         formulas: impl Formulas,
         at: Points<S>,
-        sharpness: u32,
+        smoothing: Smoothing,
         limit: Lanes<S>,
         guarded: bool,
     ) -> (Lanes<S>, Mask<S>) {
@@ -152,7 +152,7 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
                 let (numerator, area) = formulas.inverse_mean_ratio(&corner);
                 feasible &= numerator.simd_le(limit * area);
             }
-            sum += formulas.model(&corner, sharpness);
+            sum += formulas.model(&corner, smoothing);
         }
         (sum, feasible)
     }

@@ -7,7 +7,7 @@ use crate::cpu::lanes::{LANES, Lanes, with_lanes};
 use crate::cpu::newton;
 use crate::cpu::patch::{self, Patches, Room};
 use crate::layout::Problem;
-use crate::metric::{Dual, Formulas, Metric, Real};
+use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::parallel::for_each_chunk;
 use crate::run::{Derivatives, Step};
 
@@ -71,10 +71,10 @@ pub(crate) fn gradient(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
-    sharpness: u32,
+    smoothing: Smoothing,
     found: &mut Vec<Vec2>,
 ) {
-    find(Sought::Gradient, metric, problem, positions, sharpness, found);
+    find(Sought::Gradient, metric, problem, positions, smoothing, found);
 }
 
 /// The square root of the stiffness at each free vertex: the mean of the absolute eigenvalues of the Hessian of Σ q² with
@@ -83,10 +83,10 @@ pub(crate) fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
-    sharpness: u32,
+    smoothing: Smoothing,
 ) -> Vec<f32> {
     let mut found = Vec::new();
-    find(Sought::StiffnessRoot, metric, problem, positions, sharpness, &mut found);
+    find(Sought::StiffnessRoot, metric, problem, positions, smoothing, &mut found);
     found.into_iter().map(|root| root.x).collect()
 }
 
@@ -95,7 +95,7 @@ fn find(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
-    sharpness: u32,
+    smoothing: Smoothing,
     found: &mut Vec<Vec2>,
 ) {
     found.resize(problem.free_count(), Vec2::ZERO);
@@ -103,7 +103,8 @@ fn find(
         metric,
         omega: 1.0,
         inner: 1,
-        sharpness,
+        sharpness: smoothing.sharpness,
+        penalized: smoothing.penalized,
         derivatives: Derivatives::Analytic,
         shape_guard: f64::INFINITY,
         longest: 1.0,
@@ -186,7 +187,7 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
         let [x, y] = match T::STEPS {
             true => newton::visit(formulas, &patches, at, step),
             false => {
-                let sum = patches.derivatives(formulas, at, step.sharpness);
+                let sum = patches.derivatives(formulas, at, step.smoothing());
                 match sought {
                     Sought::Gradient => sum.gradient,
                     Sought::StiffnessRoot => {

@@ -126,7 +126,7 @@ mod tests {
     use crate::cpu::sweep::stiffness_roots;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
-    use crate::metric::Metric;
+    use crate::metric::{Metric, Smoothing};
     use glam::DVec2;
 
     /// A square of right triangles, of two sizes, large enough for three coarse levels.
@@ -141,7 +141,10 @@ mod tests {
     }
 
     fn hierarchy(problem: &Problem) -> Hierarchy {
-        Hierarchy::new(problem, stiffness_roots(Metric::Imr, problem, problem.positions(), 0))
+        Hierarchy::new(
+            problem,
+            stiffness_roots(Metric::Imr, problem, problem.positions(), Smoothing::of(0)),
+        )
     }
 
     /// A hierarchy built for the mesh with stretched positions, then fitted to its own.
@@ -150,7 +153,7 @@ mod tests {
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let stretched = |p: &DVec2| *p * (1.0 + 1.5 * *p * *p / (extent * extent));
         let stretched: Vec<DVec2> = positions.iter().map(stretched).collect();
-        let roots = |positions| stiffness_roots(Metric::Imr, problem, positions, 0);
+        let roots = |positions| stiffness_roots(Metric::Imr, problem, positions, Smoothing::of(0));
         Hierarchy::new(problem, roots(&stretched)).fitted_to(problem, roots(positions))
     }
 

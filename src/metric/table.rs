@@ -6,6 +6,7 @@
 use crate::metric::corner::{Corner, Invariants, Slopes};
 use crate::metric::dual::{Dual, Real};
 use crate::metric::properties::Properties;
+use crate::metric::smoothing::Smoothing;
 use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
 
 /// Generates the enum, the table and the formulas from one row per metric. The rare metrics in braces take less time to
@@ -170,11 +171,11 @@ pub(crate) trait Formulas: Copy + Sync {
     fn excess<T: Real>(self, corner: &Corner<T>) -> T;
 
     /// The function that Newton's method minimizes: [`Self::excess`] if that is smooth, else a smooth model of it.
-    fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T;
+    fn model<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> T;
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start
     /// from, by the hand-written derivatives.
-    fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T>;
+    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T>;
 }
 
 impl Formulas for OfEdges {
@@ -194,13 +195,15 @@ impl Formulas for OfEdges {
     }
 
     #[inline(always)]
-    fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
-        edge::model(corner, sharpness)
+    fn model<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> T {
+        let norm = edge::model(corner, smoothing.sharpness);
+        if smoothing.is_penalized() { norm + smoothing.penalty(corner) } else { norm }
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
-        edge::expansion(corner, sharpness)
+    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T> {
+        let norm = edge::expansion(corner, smoothing.sharpness);
+        if smoothing.is_penalized() { norm + smoothing.penalty_expansion(corner) } else { norm }
     }
 }
 
@@ -222,12 +225,12 @@ impl Formulas for OfInvariants {
     }
 
     #[inline(always)]
-    fn model<T: Real>(self, corner: &Corner<T>, _: u32) -> T {
+    fn model<T: Real>(self, corner: &Corner<T>, _: Smoothing) -> T {
         self.excess(corner)
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, _: u32) -> Dual<T> {
+    fn expansion<T: Real>(self, corner: &Corner<T>, _: Smoothing) -> Dual<T> {
         corner.expansion(&self.slopes(&corner.invariants()))
     }
 }
@@ -259,23 +262,23 @@ impl Formulas for AnyFormulas {
     }
 
     #[inline(always)]
-    fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
+    fn model<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> T {
         corner.a[0].apart(
             #[inline(always)]
             || match self {
-                AnyFormulas::Edges(f) => f.model(corner, sharpness),
-                AnyFormulas::Invariants(f) => f.model(corner, sharpness),
+                AnyFormulas::Edges(f) => f.model(corner, smoothing),
+                AnyFormulas::Invariants(f) => f.model(corner, smoothing),
             },
         )
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
+    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T> {
         corner.a[0].apart(
             #[inline(always)]
             || match self {
-                AnyFormulas::Edges(f) => f.expansion(corner, sharpness),
-                AnyFormulas::Invariants(f) => f.expansion(corner, sharpness),
+                AnyFormulas::Edges(f) => f.expansion(corner, smoothing),
+                AnyFormulas::Invariants(f) => f.expansion(corner, smoothing),
             },
         )
     }
@@ -306,13 +309,13 @@ impl Metric {
     /// The function that Newton's method minimizes: [`Self::excess`], except for EDGE, which is
     /// not smooth. For EDGE it is a p-norm with exponent k = 2^`sharpness`, minus 1.
     pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
-        self.formulas().model(corner, sharpness)
+        self.formulas().model(corner, Smoothing::of(sharpness))
     }
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start from,
     /// by the hand-written derivatives that the CPU engine uses.
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
-        self.formulas().expansion(corner, sharpness)
+        self.formulas().expansion(corner, Smoothing::of(sharpness))
     }
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::future::Future;
 
 use crate::error::GpuError;
+use crate::metric::Smoothing;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
@@ -46,11 +47,10 @@ pub(crate) trait Engine: Send {
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
     /// The square root of the base metric's stiffness at each free vertex: of the mean absolute eigenvalue of the Hessian
-    /// of Σ q² with respect to the vertex, over the number of its neighbors. EDGE is replaced by its p-norm with this
-    /// `sharpness`.
+    /// of Σ q² with respect to the vertex, over the number of its neighbors. EDGE is replaced by what `smoothing` makes of it.
     fn stiffness_roots(
         &mut self,
-        sharpness: u32,
+        smoothing: Smoothing,
     ) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
 
     /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`. If `accelerated`,
@@ -62,6 +62,9 @@ pub(crate) trait Engine: Send {
         length: f64,
         accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
+
+    /// Forgets what is remembered of the last corrections, for the next to be accelerated from anew.
+    fn forget(&mut self);
 
     /// Leaves vertices out of the last correction, and tries what remains of it at `length`: those of triangles that the correction
     /// would invert or bring to break the shape guard at this length, [`LEFT_OUT`] times, as triangles between them and others
@@ -95,7 +98,7 @@ pub(crate) trait Engine: Send {
 pub(crate) const LEFT_OUT: usize = 2;
 
 /// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric, of which EDGE is
-/// replaced by its p-norm with the sharpness of the step.
+/// replaced by what the step's smoothing makes of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// The objective without the correction.

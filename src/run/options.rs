@@ -55,7 +55,8 @@ pub struct Options {
     pub max_sweeps: u32,
     /// The run ends when the estimated distance of f to its limit, relative to f, is below this. The
     /// estimate extrapolates the decay over the last 16 or more sweeps (over the last two where each is corrected
-    /// from coarser levels), so it bounds what remains, not the change in one sweep. 0 turns this test off.
+    /// from coarser levels), so it bounds what remains, not the change in one sweep. By EDGE it is that of a p-norm: with the largest exponent f ends
+    /// some 2e-5 above a minimum of its own, however small the tolerance. 0 turns this test off.
     pub tolerance: f64,
     /// The precision in which the result will be stored. It is rounded to that before it is judged: what is returned has no
     /// inverted triangle, and a lower f, as stored. Fixed vertices are rounded as well, if the mesh is not in that
@@ -88,8 +89,8 @@ pub struct Options {
     pub improve_worst: Option<WorstBy>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
-    /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`Sharpness::CONTINUED`] in runs with
-    /// corrections and [`Sharpness::FIXED`] in runs of sweeps alone.
+    /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`Sharpness::CORRECTED`], as far as the tolerance
+    /// asks, in runs with corrections and [`Sharpness::FIXED`] in runs of sweeps alone.
     pub sharpness: Option<Sharpness>,
     /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
@@ -197,7 +198,7 @@ impl Options {
         if let Some(Sharpness { first, last, .. }) = self.sharpness {
             let (first, most) = (f64::from(first), f64::from(first.max(last)));
             if most > f64::from(Sharpness::MOST) {
-                return refuse("sharpness", most, "log2 k can be 10 at most");
+                return refuse("sharpness", most, "log2 k can be 13 at most");
             }
             if first > f64::from(last) {
                 let remedy = "the exponent grows: the first may not be above the last";
@@ -232,11 +233,14 @@ impl Options {
     /// The plan of a run by these options, which ends when the base objective is below `target`, if there is one.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
         // Sweeps by EDGE that another metric judges are few, and by no p-norm that grows.
-        let usual = match self.is_multilevel() && !self.scheme.base().is_smooth() {
-            true => Sharpness::CONTINUED,
-            false => Sharpness::FIXED,
+        let is_corrected_edge = self.is_multilevel() && !self.scheme.base().is_smooth();
+        let usual = match (is_corrected_edge, target) {
+            (true, Some(_)) => Sharpness::CORRECTED,
+            (true, None) => Sharpness::corrected_to(self.tolerance),
+            (false, _) => Sharpness::FIXED,
         };
-        self.plan_with(target, self.sharpness.unwrap_or(usual))
+        let plan = self.plan_with(target, self.sharpness.unwrap_or(usual));
+        Plan { is_guard_penalized: is_corrected_edge, ..plan }
     }
 
     fn plan_with(&self, target: Option<f64>, sharpness: Sharpness) -> Plan {
@@ -262,6 +266,7 @@ impl Options {
             shape_guard: f64::INFINITY,
             worst_guard: f64::INFINITY,
             longest: if self.is_multilevel() { LONGEST } else { 1.0 },
+            is_guard_penalized: false,
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct Plan {
     /// How many times as long as Newton's a step by a metric with a barrier may be tried where nearly flat triangles make up most of
     /// a patch's objective; 1 for never.
     pub longest: f64,
+    /// Whether a penalty keeps sweeps by EDGE off the shape guard, as in runs with corrections.
+    pub is_guard_penalized: bool,
 }
 
 impl Plan {
@@ -72,13 +74,16 @@ impl Plan {
             own if own.is_finite() => self.shape_guard.min(own),
             own => own,
         };
+        let guard = of_metric.min(self.worst_guard);
+        let is_penalized = self.is_guard_penalized && metric == Metric::Edge;
         Step {
             metric,
             omega,
             inner: self.inner,
             sharpness,
+            penalized: if is_penalized { guard } else { f64::INFINITY },
             derivatives: self.derivatives[metric as usize],
-            shape_guard: of_metric.min(self.worst_guard) * (1.0 - line_search::GUARD_RESERVE),
+            shape_guard: guard * (1.0 - line_search::GUARD_RESERVE),
             longest: if metric.properties().barrier { self.longest } else { 1.0 },
         }
     }

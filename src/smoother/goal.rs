@@ -4,7 +4,7 @@ use crate::error::SmoothError;
 use crate::gpu::{Gpu, Waiting};
 use crate::metric::{Metric, Scheme};
 use crate::outcome::GoalOutcome;
-use crate::run::{Desired, Goal, Keeper, Keeping, Observer, Options, Phase, Sharpness, Stop};
+use crate::run::{Desired, Goal, Keeper, Keeping, Observer, Options, Phase, Stop};
 use crate::whole::Attempt;
 
 use super::Smoother;
@@ -30,7 +30,6 @@ impl Smoother<'_> {
             scheme: Scheme::from(metric),
             tolerance: 1e-8,
             max_sweeps: 5000,
-            sharpness: Some(Sharpness::CONTINUED),
             guard: options.guard,
             ..Options::default()
         };

@@ -31,6 +31,7 @@ fn a_sweep_by_differences_is_a_little_off() {
                 shape_guard: f64::INFINITY,
                 worst_guard: f64::INFINITY,
                 longest: 1.0,
+                is_guard_penalized: false,
             };
             let mut engine = run_on_cpu(&problem, problem.positions(), plan);
             engine.advance(1).unwrap();

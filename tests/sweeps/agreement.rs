@@ -2,7 +2,7 @@
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
 use gpu_smooth::internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu};
-use gpu_smooth::{Backend, Derivatives, Metric, Sharpness, Stop};
+use gpu_smooth::{Backend, Derivatives, Metric, Sharpness, Smoother, Stop};
 
 /// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU in units of how
 /// far it went.
@@ -44,6 +44,28 @@ fn one_sweep_is_the_same_on_both_engines() {
             assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
             assert!(moved_apart < 1e-3, "{metric}: {moved_apart:e}");
         }
+    }
+}
+
+#[test]
+fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
+    let problem = mild();
+    let mesh = support::perturb_random(&plate(2000), 0.5, 3);
+    let before = Smoother::new(&mesh).unwrap().quality(&mesh.points).unwrap().worst_imr;
+    for (share, k) in [(0.5, 1), (0.3, 4), (0.7, 4), (0.3, 7)] {
+        let sharpness = Sharpness { first: k, every: 0, last: k };
+        let shape_guard = 1.0 + share * (before - 1.0);
+        let both = |is_guard_penalized| {
+            let plan = plan(Metric::Edge.into(), 1);
+            let plan = Plan { sharpness, shape_guard, is_guard_penalized, ..plan };
+            one_sweep(&problem, [plan.clone(), plan])
+        };
+        let OneSweep { f: [cpu, gpu], moved_apart } = both(true);
+        // As without it, and it does something.
+        assert!((gpu / cpu - 1.0).abs() < 1e-6, "{k}: {gpu} for {cpu}");
+        assert!(moved_apart < 2e-2, "{k}: {moved_apart:e}");
+        let without = both(false).f[0];
+        assert!((without / cpu - 1.0).abs() > 5e-4, "{k}: {without} for {cpu}");
     }
 }
 

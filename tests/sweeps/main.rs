@@ -129,6 +129,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         worst_guard: f64::INFINITY,
         longest: 1.0,
         shape_guard: f64::INFINITY,
+        is_guard_penalized: false,
     }
 }
 

@@ -81,8 +81,8 @@ fn options_out_of_range_are_named() {
         ("inner", Options { inner: 0, ..default() }),
         // No observer can end so long a sweep.
         ("inner", Options { inner: Options::MOST_INNER + 1, ..default() }),
-        ("sharpness", Options { sharpness: sharpness(11, 4), ..default() }),
-        ("sharpness", Options { sharpness: sharpness(1, 11), ..default() }),
+        ("sharpness", Options { sharpness: sharpness(14, 4), ..default() }),
+        ("sharpness", Options { sharpness: sharpness(1, 14), ..default() }),
         // On a device no sweep of such a run was encoded, and it was "converged".
         (
             "sharpness",

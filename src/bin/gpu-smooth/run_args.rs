@@ -106,7 +106,7 @@ pub(crate) struct SmoothArgs {
     /// How metrics are differentiated; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
     pub(crate) derivatives: DerivativesChoice,
-    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 to 512, which
+    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 on, up to 8192 (512 in sweeps alone), which
     /// ends lower [default: continued with corrections from coarser levels, fixed without]
     #[arg(long, value_enum, help_heading = "Method")]
     pub(crate) edge_norm: Option<EdgeNorm>,
@@ -305,7 +305,7 @@ impl SmoothArgs {
     /// The options of a run on a mesh that is stored with so many digits.
     pub(crate) fn options(&self, stored: Precision) -> Options {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
-        Options {
+        let options = Options {
             scheme: self.scheme(),
             max_sweeps: self.max_sweeps,
             tolerance: self.tolerance,
@@ -335,18 +335,27 @@ impl SmoothArgs {
                 DerivativesChoice::Analytic => Derivatives::Analytic,
                 DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
             },
-            sharpness: self.edge_norm.map(|norm| match norm {
-                EdgeNorm::Fixed => Sharpness::FIXED,
-                EdgeNorm::Continued => Sharpness::CONTINUED,
-            }),
             track_all: self.history == History::All,
             ..Options::default()
-        }
+        };
+        let sharpness = match self.edge_norm {
+            None => None,
+            Some(EdgeNorm::Fixed) => Some(Sharpness::FIXED),
+            // What such runs do anyway, as far as the tolerance asks.
+            Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
+            Some(EdgeNorm::Continued) => Some(Sharpness::CONTINUED),
+        };
+        Options { sharpness, ..options }
     }
 }
 
 fn sees_sizes(metric: &Metric) -> bool {
     !metric.properties().scale_invariant
+}
+
+/// Whether the exponent of edge's p-norm doubles anyway.
+fn doubles_anyway(options: &Options) -> bool {
+    options.is_multilevel() && options.scheme.base() == Metric::Edge
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -7,7 +7,7 @@ use crate::gpu::kernels::uniforms::{
     FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS, SLOTS,
     WORKGROUP, WORST,
 };
-use crate::metric::Metric;
+use crate::metric::{Metric, PENALTY};
 use crate::run::multilevel::{CLOSE, LEAST_FIRST, MOST_FIRST, NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
@@ -24,6 +24,7 @@ const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
 const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
 const DESCENT: &str = include_str!("../../../shaders/descent.wgsl");
 const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
+const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
 const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
 const TARGETS: &str = include_str!("../../../shaders/targets.wgsl");
@@ -246,6 +247,7 @@ fn constants() -> String {
         ("LEAST_FLAT", line_search::LEAST_FLAT),
         ("DIFFERENCE", line_search::DIFFERENCE),
         ("SLACK", line_search::SLACK),
+        ("PENALTY", PENALTY),
         ("LEAST_SQUARE", regularization::LEAST_SQUARE),
         ("SQUARE_SHARE", regularization::SQUARE_SHARE),
         ("NOISE", NOISE),
@@ -273,7 +275,10 @@ fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
             format!("{name}_value(invariants(t))"),
             format!("expansion(t, {name}_slopes(invariants(t)))"),
         ),
-        false => (format!("{name}_model(t)"), format!("{name}_derivatives(t)")),
+        false => {
+            text.push_str(PENALTY_SOURCE);
+            ("smoothed_model(t)".to_owned(), "smoothed_derivatives(t)".to_owned())
+        }
     };
     let _ = write!(
         text,

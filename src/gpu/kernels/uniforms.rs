@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
-use crate::metric::Metric;
+use crate::metric::{Metric, Smoothing};
 
 /// Evaluations the device remembers; the host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
@@ -64,7 +64,7 @@ pub(crate) struct Part {
     pub(crate) shape_guard: f32,
     pub(crate) ring_base: u32,
     pub(crate) longest: f32,
-    pub(crate) padding: u32,
+    pub(crate) over_guard: f32,
 }
 
 /// `LevelOp` in shaders/levels/common.wgsl.
@@ -87,6 +87,14 @@ pub(crate) struct LevelOp {
     pub(crate) b: f32,
     pub(crate) shape_guard: f32,
     pub(crate) sharpness: u32,
+}
+
+impl LevelOp {
+    /// The same by a metric that is made smooth so.
+    pub(crate) fn smoothed(self, smoothing: Smoothing) -> Self {
+        let Smoothing { sharpness, penalized } = smoothing;
+        Self { sharpness, b: penalized.recip() as f32, ..self }
+    }
 }
 
 /// `SecantOp` in shaders/secants/common.wgsl.
@@ -296,7 +304,10 @@ mod tests {
                 targets,
             }
         );
-        mirrors!(run, Part { first, count, omega, sharpness, shape_guard, ring_base, longest });
+        mirrors!(
+            run,
+            Part { first, count, omega, sharpness, shape_guard, ring_base, longest, over_guard }
+        );
         mirrors!(
             &Kernel::MatrixVector,
             LevelOp {

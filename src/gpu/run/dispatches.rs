@@ -89,6 +89,7 @@ impl Uniforms {
                 shape_guard: step.shape_guard.min(NO_GUARD) as f32,
                 ring_base: d.ring_base,
                 longest: step.longest as f32,
+                over_guard: step.penalized.recip() as f32,
                 ..part(&d.vertices)
             };
             parts.extend(self.sweep.iter().map(of_color));

@@ -18,6 +18,7 @@ use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
+use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
 
@@ -232,9 +233,9 @@ impl Engine for GpuEngine<'_> {
         Ok(())
     }
 
-    async fn stiffness_roots(&mut self, sharpness: u32) -> Result<Vec<f32>, GpuError> {
-        let op =
-            LevelOp { free: self.problem.free_count() as u32, sharpness, ..LevelOp::default() };
+    async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
+        let free = self.problem.free_count() as u32;
+        let op = LevelOp { free, ..LevelOp::default() }.smoothed(smoothing);
         stiffness::roots(self.gpu, &self.mesh, &self.dispatches, op, self.waiting).await
     }
 
@@ -245,7 +246,7 @@ impl Engine for GpuEngine<'_> {
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
         if let Some(levels) = &mut self.levels {
-            levels.set_step(self.gpu, length as f32, step.sharpness)?;
+            levels.set_step(self.gpu, length as f32, step.smoothing())?;
         }
         let Some(levels) = &self.levels else {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
@@ -270,6 +271,10 @@ impl Engine for GpuEngine<'_> {
         let proposal = self.proposal(totals).await;
         self.secants = secants;
         proposal
+    }
+
+    fn forget(&mut self) {
+        self.secants = None;
     }
 
     async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {

@@ -17,6 +17,7 @@ use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
+use crate::metric::Smoothing;
 use crate::run::LEFT_OUT;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
@@ -26,8 +27,8 @@ pub(crate) struct Levels {
     ops: wgpu::Buffer,
     /// Bytes from one uniform to the next.
     stride: u32,
-    /// log2 of the exponent of EDGE's p-norm in the uniforms.
-    sharpness: u32,
+    /// How the uniforms have EDGE made smooth.
+    smoothing: Smoothing,
     /// What computes the gradient from the positions.
     find_gradient: Vec<Dispatch>,
     /// What computes the correction from the gradient.
@@ -357,7 +358,7 @@ impl Levels {
             bind_groups,
             ops,
             stride,
-            sharpness: 0,
+            smoothing: Smoothing::of(0),
             find_gradient,
             correction,
             left_out,
@@ -404,15 +405,15 @@ impl Levels {
         self.encode(passes, &self.movement);
     }
 
-    /// Sets the exponent of EDGE's p-norm in what is submitted next, and how far that goes along the correction, as a multiple of it.
+    /// Sets how EDGE is made smooth in what is submitted next, and how far that goes along the correction, as a multiple of it.
     pub(crate) fn set_step(
         &mut self,
         gpu: &Gpu,
         length: f32,
-        sharpness: u32,
+        smoothing: Smoothing,
     ) -> Result<(), GpuError> {
-        if self.sharpness != sharpness {
-            self.sharpness = sharpness;
+        if self.smoothing != smoothing {
+            self.smoothing = smoothing;
             scoped(&gpu.device, || {
                 self.find_gradient.iter().for_each(|step| self.write(gpu, step, length));
             })?;
@@ -429,7 +430,7 @@ impl Levels {
     }
 
     fn write(&self, gpu: &Gpu, step: &Dispatch, length: f32) {
-        let op = LevelOp { a: length, sharpness: self.sharpness, ..step.op };
+        let op = LevelOp { a: length, ..step.op }.smoothed(self.smoothing);
         let at = u64::from(step.number * self.stride);
         gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
     }

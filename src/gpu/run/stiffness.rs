@@ -14,7 +14,7 @@ use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::scope::scoped;
 
-/// The root of the stiffness at each free vertex, of which `op` has the number and the sharpness; see
+/// The root of the stiffness at each free vertex, of which `op` has the number and how EDGE is made smooth; see
 /// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots).
 pub(crate) async fn roots(
     gpu: &Gpu,

@@ -1,6 +1,6 @@
 //! When the coarser levels are built, and fitted to a mesh that has changed.
 
-use super::Corrections;
+use super::{Corrections, OMEGA_BETWEEN};
 use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;
@@ -16,8 +16,12 @@ const REFIT_AFTER: u32 = 2;
 const REFIT_IF: f64 = 0.15;
 /// Once corrections are accelerated, the levels are built anew when the excess of f has dropped by more than this share since they
 /// were built: the factors by which they are fitted are only close to the Galerkin operators. So there are at most four fits
-/// between, whose roots are kept for checkpoints.
+/// between, and as many for the exponents of EDGE, whose roots are kept for checkpoints.
 const REBUILD_IF: f64 = 0.5;
+/// By EDGE, levels are fitted each time that the exponent has doubled as often. Never, the last exponents took ten times the sweeps; each
+/// time, a few less.
+const REFIT_EVERY: u32 = 3;
+
 /// How levels come to stand for the present stiffness of the mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Change {
@@ -40,6 +44,9 @@ impl Corrections<'_> {
             before - excess > share * before
         };
         match proposed {
+            0 if self.has_levels && !self.metric().is_smooth() => {
+                self.sharpness.is_multiple_of(REFIT_EVERY).then_some(Change::Fit)
+            }
             0 => Some(Change::Build),
             _ if self.accelerated && dropped(self.built, REBUILD_IF) => Some(Change::Build),
             _ if !self.accelerated && proposed != REFIT_AFTER => None,
@@ -62,7 +69,7 @@ impl Corrections<'_> {
         if before.is_none() {
             self.built = now;
         }
-        let roots = engine.stiffness_roots(self.sharpness).await?;
+        let roots = engine.stiffness_roots(self.step(OMEGA_BETWEEN).smoothing()).await?;
         let hierarchy = match before {
             Some(before) => before.fitted_to(self.problem, roots),
             None => Hierarchy::new(self.problem, roots),
@@ -73,7 +80,10 @@ impl Corrections<'_> {
                 self.left_out = Some(error);
                 Ok(false)
             }
-            set => set.map(|()| true),
+            set => {
+                self.has_levels = true;
+                set.map(|()| true)
+            }
         }
     }
 }

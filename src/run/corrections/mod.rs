@@ -1,9 +1,8 @@
 //! Runs with corrections from coarser levels: when corrections begin, pause and end.
 
+mod exponent;
 mod levels;
 mod words;
-
-use std::ops::RangeInclusive;
 
 use crate::error::GpuError;
 use crate::layout::Problem;
@@ -13,8 +12,9 @@ use crate::run::history::History;
 use crate::run::multilevel::{LEAST_FIRST, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
-use crate::run::step::{Sharpness, Step};
+use crate::run::step::Step;
 use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
+use exponent::exponents;
 
 /// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
 /// a few bad triangles would force every correction to be short.
@@ -53,13 +53,12 @@ const NO_ESTIMATE: usize = 1 << 30;
 /// Corrections are accelerated once the slope along one is more than this share of that along the one before: on most
 /// meshes it falls to a sixth or less each time, and there is nothing to gain.
 const ACCELERATED_FROM: f64 = 0.3;
-/// The exponent of EDGE's p-norm doubles once a sweep with its correction lowers the objective by less than this share. A tenth of it ends
-/// as low, after a few sweeps more; ten times as much ends up to 2e-4 higher.
-const RAISED_BELOW: f64 = 1e-3;
 
 /// A run with accelerated corrections is over when as many estimates in a row say so, as its gains are irregular. One is
 /// enough if the last gains were each less than [`STEADY`] of the one before.
 const ESTIMATES: usize = 4;
+/// As many for EDGE, where they are of a p-norm that is near f by itself.
+const ESTIMATES_FOR_EDGE: usize = 2;
 const STEADY: f64 = 0.3;
 /// Factor on these estimates: after gains that halved each time, some runs were left with modes that the last ones had not touched.
 /// With three estimates and without the factor, 5 of 21 runs from hard starts said less than was left, by up to a third.
@@ -87,6 +86,10 @@ pub(crate) struct Corrections<'a> {
     lowered: Vec<f64>,
     /// Whether corrections are accelerated by secant pairs.
     accelerated: bool,
+    /// Whether the engine is to forget the pairs that it has. Never so between two sweeps.
+    anew: bool,
+    /// Whether the engine has levels.
+    has_levels: bool,
     /// The indices in the history at which the levels were built, and at which they were last built or fitted.
     built: usize,
     fitted: usize,
@@ -126,6 +129,8 @@ impl<'a> Corrections<'a> {
             sharpness: *exponents(plan).start(),
             lowered: Vec::new(),
             accelerated: false,
+            anew: false,
+            has_levels: false,
             built: 0,
             fitted: 0,
             estimates: [f64::INFINITY; ESTIMATES],
@@ -173,6 +178,9 @@ impl<'a> Corrections<'a> {
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             self.record(objectives, history);
+            if std::mem::take(&mut self.anew) {
+                engine.forget();
+            }
         }
         Ok(())
     }
@@ -223,14 +231,11 @@ impl<'a> Corrections<'a> {
         self.plan.step_with(turns[done % turns.len()], omega, self.sharpness)
     }
 
-    /// Whether the exponent is not going to double any more.
-    fn is_sharpest(&self) -> bool {
-        self.sharpness == *exponents(self.plan).end()
-    }
-
     /// Begins a stage of corrections after `done` evaluations, with this length. What came before says nothing about it.
     fn begin_correcting(&mut self, done: usize, length: f64) {
-        (self.slope, self.accelerated) = (None, false);
+        // EDGE's p-norm is always much stiffer across its kinks than along them, which the levels do not know.
+        (self.slope, self.accelerated) = (None, !self.metric().is_smooth());
+        self.anew = self.accelerated;
         self.estimates = [f64::INFINITY; ESTIMATES];
         self.lowered.clear();
         self.stage = Stage::Correcting { since: done, length, proposed: 0, refused: 0 };
@@ -328,7 +333,10 @@ impl<'a> Corrections<'a> {
         self.accelerated = (self.accelerated || slow) && refused == 0;
         self.slope = Some(slope);
         self.stage = match refused {
-            MOST_REFUSED if self.attempts == ATTEMPTS => Stage::Without { since: done },
+            // With the last exponent, what is left is near the errors of single precision.
+            MOST_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
+                Stage::Without { since: done }
+            }
             MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
             _ => Stage::Correcting { since, length, proposed: proposed + 1, refused },
         };
@@ -366,13 +374,18 @@ impl<'a> Corrections<'a> {
         let rule = history.rule();
         let of_f = StopRule { tolerance: 0.0, ..rule }.judge(history.f(), 0, NO_ESTIMATE);
         let target = rule.target.map(|_| f64::NEG_INFINITY);
-        let rule = StopRule { target, max_sweeps: u32::MAX, ..rule };
+        let tolerance = self.tolerance_of_norm(rule.tolerance);
+        let rule = StopRule { target, tolerance, max_sweeps: u32::MAX };
         let mut remaining = rule.remaining(of_stage, window);
         let mut judged = window;
         if self.accelerated {
             self.estimates.rotate_left(1);
             self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
-            let asked = if decays_steadily(of_stage) { 1 } else { ESTIMATES };
+            let asked = match self.metric().is_smooth() {
+                _ if decays_steadily(of_stage) => 1,
+                true => ESTIMATES,
+                false => ESTIMATES_FOR_EDGE,
+            };
             let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
             remaining = Some(most).filter(|most| most.is_finite());
             judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
@@ -386,6 +399,7 @@ impl<'a> Corrections<'a> {
                 (None, false) => None,
             });
         }
+        let remaining = remaining.map(|left| left + self.above());
         let stop = match of_f {
             Some(Stop::Reached) => of_f,
             _ => of_decay.or(of_f),
@@ -395,38 +409,6 @@ impl<'a> Corrections<'a> {
         }
         history.end(stop, remaining);
     }
-
-    /// Whether the last sweep, with its correction if it has one, has lowered the objective by little.
-    fn gains_little(&self, history: &History) -> bool {
-        let of_stage = match self.stage {
-            Stage::Before { .. } => return false,
-            Stage::Correcting { .. } => &self.lowered[..],
-            Stage::Without { since } => &history.f()[since..],
-        };
-        let gained_little = match of_stage {
-            [.., before, f] => before - f < RAISED_BELOW * f,
-            _ => false,
-        };
-        gained_little || self.settled
-    }
-
-    /// Doubles the exponent of EDGE's p-norm after the evaluation `last`.
-    fn raise_exponent(&mut self, last: usize) {
-        self.sharpness += 1;
-        self.settled = false;
-        match self.stage {
-            Stage::Before { .. } => {}
-            Stage::Correcting { length, .. } => self.begin_correcting(last, length),
-            Stage::Without { .. } => self.stage = Stage::Without { since: last },
-        }
-    }
-}
-
-/// The values of log2 k that a run by `plan` takes one after the other, k the exponent of EDGE's p-norm.
-fn exponents(plan: &Plan) -> RangeInclusive<u32> {
-    let Sharpness { first, .. } = plan.sharpness;
-    let last = plan.sharpness.largest();
-    if plan.scheme.base().is_smooth() { last..=last } else { first.min(last)..=last }
 }
 
 /// The index of the least value, the first of several.

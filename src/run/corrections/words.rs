@@ -1,6 +1,7 @@
 //! What decides how a corrected run goes on, as words of a checkpoint.
 
-use super::{Corrections, ESTIMATES, Stage, exponents};
+use super::exponent::exponents;
+use super::{Corrections, ESTIMATES, Stage};
 
 impl Corrections<'_> {
     /// All that decides how the run goes on, as numbers that [`restore`](Self::restore) understands.
@@ -98,7 +99,7 @@ impl Corrections<'_> {
         (self.attempts, self.alternated, self.taken) = (attempts, alternated, taken);
         (self.built, self.fitted) = (built as usize, fitted as usize);
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
-        self.was_left_out = left_out != 0;
+        (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
         self.estimates = estimates.map(f64::from_bits);
         true

@@ -1,0 +1,129 @@
+//! How EDGE is made smooth: by a p-norm, and with a penalty in front of the shape guard.
+
+use crate::metric::corner::{Corner, Slopes};
+use crate::metric::dual::{Dual, Real};
+
+/// How EDGE is made smooth for Newton's method. Smooth metrics make no use of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Smoothing {
+    /// log2 k of the exponent k of the p-norm.
+    pub(crate) sharpness: u32,
+    /// The shape guard that is kept off by a penalty; infinite for none.
+    pub(crate) penalized: f64,
+}
+
+/// What the penalty amounts to at the shape guard. With a tenth of it runs are stopped by the guard again; with ten times as much they end
+/// as low, after more sweeps.
+pub(crate) const PENALTY: f64 = 0.1;
+
+impl Smoothing {
+    /// By the p-norm alone, with the exponent 2^`sharpness`.
+    pub(crate) fn of(sharpness: u32) -> Self {
+        Self { sharpness, penalized: f64::INFINITY }
+    }
+
+    /// Whether there is a penalty.
+    #[inline(always)]
+    pub(crate) fn is_penalized(&self) -> bool {
+        self.penalized < f64::INFINITY
+    }
+
+    /// The penalty: [`PENALTY`] times the k-th power of a triangle's inverse mean ratio over that of the guard. It is negligible
+    /// unless these are as near to each other as the p-norm is to the maximum. Beyond the guard it is constant: triangles that
+    /// were worse are left to the metric.
+    #[inline(always)]
+    pub(super) fn penalty<T: Real>(&self, t: &Corner<T>) -> T {
+        let [_, ratio] = self.ratio(t);
+        let one = ratio.constant(1.0);
+        self.power(ratio.min(one)) * PENALTY
+    }
+
+    /// Value, gradient and Hessian of [`Self::penalty`].
+    #[inline(always)]
+    pub(super) fn penalty_expansion<T: Real>(&self, t: &Corner<T>) -> Dual<T> {
+        let [shape, ratio] = self.ratio(t);
+        let one = ratio.constant(1.0);
+        let value = self.power(ratio.min(one)) * PENALTY;
+        // 1 below the guard, by the least difference that there can be, and 0 beyond it.
+        let below = ((one - ratio) * 2f64.powi(53)).min(one).max(ratio.constant(0.0));
+        let k = f64::from(1u32 << self.sharpness);
+        let per_shape = one / (shape + 1.0);
+        let first = value * below * per_shape * k;
+        let inverse_area = one / t.doubled_area();
+        let second = first * per_shape * (k - 1.0);
+        t.expansion(&Slopes::ByShape { inverse_area, shape, value, first, second })
+    }
+
+    /// A triangle's inverse mean ratio less 1, and over that of the guard.
+    #[inline(always)]
+    fn ratio<T: Real>(&self, t: &Corner<T>) -> [T; 2] {
+        let invariants = t.invariants();
+        let shape = invariants.excess / invariants.area;
+        [shape, (shape + 1.0) * (1.0 / self.penalized)]
+    }
+
+    #[inline(always)]
+    fn power<T: Real>(&self, ratio: T) -> T {
+        let mut power = ratio;
+        for _ in 0..self.sharpness {
+            power = power * power;
+        }
+        power
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(height: f64) -> Corner<f64> {
+        Corner { a: [1.0, 0.1], b: [0.4, height], mean_area: 0.3 }
+    }
+
+    #[test]
+    fn the_derivatives_of_the_penalty_are_those_of_its_value() {
+        for sharpness in [0, 1, 4, 7, 13] {
+            for guard in [1.0004, 1.01, 1.7, 30.0] {
+                let smoothing = Smoothing { sharpness, penalized: guard };
+                for height in [0.05, 0.3, 0.8660, 0.87, 0.95] {
+                    let t = corner(height);
+                    let ([ax, ay], [bx, by]) = (t.a, t.b);
+                    let [ax, bx] = [ax, bx].map(|x| Dual::variable(x, 0, -1.0));
+                    let [ay, by] = [ay, by].map(|y| Dual::variable(y, 1, -1.0));
+                    let dual = Corner { a: [ax, ay], b: [bx, by], mean_area: t.mean_area };
+                    // Dual numbers have no derivatives of a minimum.
+                    let [_, ratio] = smoothing.ratio(&dual);
+                    let expected = match ratio.value < 1.0 {
+                        true => smoothing.power(ratio) * PENALTY,
+                        false => ratio.constant(PENALTY),
+                    };
+                    let found = smoothing.penalty_expansion(&t);
+                    let numbers = |d: &Dual| {
+                        let ([x, y], [xx, xy, yy]) = (d.gradient, d.hessian);
+                        [d.value, x, y, xx, xy, yy]
+                    };
+                    let k = f64::from(1u32 << sharpness);
+                    for (found, expected) in numbers(&found).iter().zip(numbers(&expected)) {
+                        let scale = 1e-12 * k * (expected.abs() + 1e-9);
+                        assert!((found - expected).abs() <= scale, "{found:e} for {expected:e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_the_guard_the_penalty_is_constant() {
+        let smoothing = Smoothing { sharpness: 13, penalized: 2.0 };
+        for height in [1e-9, 0.01, 0.1] {
+            let t = corner(0.04 + height);
+            assert!(t.inverse_mean_ratio() > 2.0);
+            assert_eq!(smoothing.penalty(&t), PENALTY);
+            let Dual { value, gradient, hessian } = smoothing.penalty_expansion(&t);
+            assert_eq!((value, gradient, hessian), (PENALTY, [0.0; 2], [0.0; 3]));
+        }
+        let near = corner(0.8);
+        assert!(near.inverse_mean_ratio() < 1.2);
+        assert_eq!(smoothing.penalty(&near), 0.0);
+    }
+}
