@@ -1,6 +1,7 @@
 //! How many tangled meshes are untangled, and how long that takes.
 //!
-//! `cargo bench --bench untangle -- [VERTICES...]`, 2,000 and 57,000 by default. Ten seeds of each kind.
+//! `cargo bench --bench untangle -- [VERTICES...]`, 2,000 and 57,000 by default. Ten seeds of each kind. Seconds are of the
+//! clock; those of the processor are of all threads, a mean over the seeds, and depend less on what else the machine does (Linux only).
 
 #![allow(clippy::print_stdout)]
 
@@ -11,7 +12,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use gpu_smooth::{Mesh, Precision, untangle};
-use support::tangle;
+use support::{boundaries, tangle};
 
 const SEEDS: u64 = 10;
 
@@ -20,9 +21,9 @@ fn main() {
     let sizes = if sizes.is_empty() { vec![2_000, 57_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     println!(
-        "| mesh | vertices | inverted or flat | untangled | sweeps: median, most | seconds: median, most |"
+        "| mesh | vertices | inverted or flat | untangled | sweeps: median, most | seconds: median, most | of the processor |"
     );
-    println!("|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|");
     for vertices in sizes {
         let plate = support::triangulate(&outline, vertices).unwrap();
         let columns = (vertices as f64).sqrt() as usize;
@@ -40,6 +41,7 @@ fn main() {
                 tangle::turned(mesh, seed as f64 / 20.0)
             });
         }
+        moved_boundaries(vertices);
         // As many rings as make elements equilateral.
         let around = (vertices as f64 * 5.2).sqrt() as usize;
         for degrees in [30.0, 90.0, 180.0] {
@@ -49,15 +51,43 @@ fn main() {
     }
 }
 
+/// Meshes of which the boundary or lines inside were moved, and layers of thin triangles.
+fn moved_boundaries(vertices: usize) {
+    let of = |kind: &str, make: &dyn Fn(u64) -> Mesh| row(kind, (1..=SEEDS).map(make));
+    let columns = (vertices as f64).sqrt() as usize;
+    let square = support::lattice(columns, columns);
+    of("square, a bump pushed through", &|seed| boundaries::bumped(&square, columns, seed));
+    of("square, sides bent by 130 to 324 degrees", &|seed| {
+        boundaries::bent(&square, 0.3 + 0.06 * seed as f64)
+    });
+    let two = boundaries::two_holes(vertices);
+    of("two holes, one dragged past the other", &|seed| boundaries::past(&two, seed));
+    of("two holes swapped", &|seed| boundaries::swapped(&two, seed));
+    let regions = boundaries::regions(vertices);
+    of("regions, vertices at random places", &|seed| tangle::scattered(&regions, seed));
+    of("regions, the round one turned by 18 to 180 degrees", &|seed| {
+        boundaries::turned_inside(&regions, 1.1, seed as f64 / 20.0)
+    });
+    let layers = boundaries::layers((vertices as f64 * 2.4).sqrt() as usize);
+    of("layers 1:100, vertices at random places", &|seed| tangle::scattered(&layers, seed));
+    of("layers 1:100, a folded strip", &|seed| tangle::folded(&layers, seed));
+    of("layers 1:100, hole turned by 18 to 180 degrees", &|seed| {
+        boundaries::turned_inside(&layers, 0.5001, seed as f64 / 20.0)
+    });
+}
+
 /// Untangles meshes of one kind and prints a row on all of them.
 fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
     let (mut bad, mut sweeps, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut done, mut vertices) = (0, 0);
+    let (mut done, mut vertices, mut processor) = (0, 0, Some(0.0));
     for mesh in meshes {
+        let before = processor_seconds();
         let start = Instant::now();
         let result =
             untangle(&mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap();
         seconds.push(start.elapsed().as_secs_f64());
+        let spent = processor_seconds().zip(before).map(|(now, before)| now - before);
+        processor = processor.zip(spent).map(|(sum, spent)| sum + spent);
         bad.push(result.bad_before);
         sweeps.push(result.sweeps);
         done += usize::from(result.left.is_empty() && result.overlapping.is_none());
@@ -67,8 +97,9 @@ fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
     sweeps.sort_unstable();
     seconds.sort_unstable_by(f64::total_cmp);
     let (count, middle) = (bad.len(), bad.len() / 2);
+    let mean = processor.map_or("-".to_owned(), |sum: f64| format!("{:.3}", sum / count as f64));
     println!(
-        "| {kind} | {vertices} | {} to {} | {done} of {count} | {}, {} | {:.3}, {:.3} |",
+        "| {kind} | {vertices} | {} to {} | {done} of {count} | {}, {} | {:.3}, {:.3} | {mean} |",
         bad[0],
         bad[count - 1],
         sweeps[middle],
@@ -76,4 +107,13 @@ fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
         seconds[middle],
         seconds[count - 1]
     );
+}
+
+/// The seconds that this process has spent on all processors, in hundredths.
+fn processor_seconds() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // Fields 14 and 15; the second one is a name in parentheses.
+    let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
+    let ticks: f64 = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
+    Some(ticks / 100.0)
 }

@@ -1,10 +1,12 @@
 //! Untangling: moving free vertices until no triangle is inverted or flat.
 //!
 //! Sweeps of Newton steps lower an [`energy`] that is finite for inverted triangles too. At first only vertices near bad
-//! triangles move, then more, then all, and then each sweep is followed by a step from coarser levels. If that
-//! does not do it, the free vertices are put at the means of their neighbors once.
+//! triangles move, then more. If that does not do it, the free vertices are put at the means of their neighbors, and each
+//! sweep is followed by a step from coarser levels. Then the mesh is [cut](cuts) into pieces in which means are a good start.
 
+mod cuts;
 pub(crate) mod energy;
+mod pieces;
 mod state;
 
 use std::ops::ControlFlow;
@@ -16,29 +18,37 @@ use crate::run::regularization::epsilon;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
 use crate::topology::predicates::{bad_triangles, not_positive};
+use cuts::Short;
 use state::{Assessment, Region, State};
 
-/// What is done in turn until the mesh is untangled.
-const STAGES: [Stage; 5] = [
-    Stage { rings: Some(2), harmonic: false, sweeps: 10 },
-    Stage { rings: Some(6), harmonic: false, sweeps: 20 },
-    Stage { rings: None, harmonic: false, sweeps: 30 },
-    Stage { rings: None, harmonic: true, sweeps: 100 },
-    Stage { rings: None, harmonic: false, sweeps: 300 },
+/// What is done in turn until the mesh is untangled. Cuts by each rule untangle some meshes that the other rules do not.
+const STAGES: [Stage; 7] = [
+    Stage { start: Start::Near(2), sweeps: 10 },
+    Stage { start: Start::Near(6), sweeps: 20 },
+    Stage { start: Start::Means, sweeps: 10 },
+    Stage { start: Start::Cut(Short::Line), sweeps: 60 },
+    Stage { start: Start::Cut(Short::Both), sweeps: 100 },
+    Stage { start: Start::Cut(Short::Path), sweeps: 150 },
+    Stage { start: Start::Means, sweeps: 100 },
 ];
 
 /// If more than this share of the triangles are bad, all vertices move from the start.
 const MANY: f64 = 0.05;
-/// If more than this share of the triangles are bad, positions say little, and means of neighbors are the better start.
-const MOST: f64 = 0.3;
 
 struct Stage {
-    /// How far from bad triangles vertices move, in edges; all vertices if `None`.
-    rings: Option<u32>,
-    /// Whether the stage begins with free vertices at the means of their neighbors.
-    harmonic: bool,
+    start: Start,
     /// The most sweeps.
     sweeps: u32,
+}
+
+/// Where vertices are when a stage begins, and which of them move.
+enum Start {
+    /// Those move that are within so many edges of bad triangles, from where they are.
+    Near(u32),
+    /// All move, from the means of their neighbors.
+    Means,
+    /// The same, from their means within the pieces into which the mesh is [cut](cuts).
+    Cut(Short),
 }
 
 /// The progress of [`untangle`], for a display.
@@ -130,26 +140,29 @@ impl Work<'_> {
         let mut state = State::new(self.problem, targets);
         let mut hierarchy = None;
         for stage in &STAGES {
-            let share = result.left.len() as f64 / self.topology.triangles().len() as f64;
-            if share > MANY && stage.rings.is_some()
-                || share > MOST && result.sweeps == 0 && !stage.harmonic
-            {
-                continue;
-            }
-            let region = match stage.rings {
-                Some(rings) => Region::around(self.problem, &self.bad(&state), rings),
-                None => Region::whole(self.problem),
-            };
-            let levels = match stage.rings {
-                Some(_) => None,
-                None => Some(&*hierarchy.get_or_insert_with(|| state.hierarchy())),
-            };
-            if let (true, Some(levels)) = (stage.harmonic, levels) {
-                state.make_harmonic(levels);
-                if self.judge(&state, result) {
-                    return;
+            let (region, levels) = match stage.start {
+                Start::Near(rings) => {
+                    let share = result.left.len() as f64 / self.topology.triangles().len() as f64;
+                    // Sweeps that have left no fewer bad triangles are not worth going on with.
+                    let in_vain = result.sweeps > 0 && result.left.len() == result.bad_before;
+                    if share > MANY || in_vain {
+                        continue;
+                    }
+                    (Region::around(self.problem, &self.bad(&state), rings), None)
                 }
-            }
+                Start::Means | Start::Cut(_) => {
+                    let levels = &*hierarchy.get_or_insert_with(|| state.hierarchy());
+                    let held = match stage.start {
+                        Start::Cut(short) => state.cut(short),
+                        _ => vec![false; self.problem.positions().len()],
+                    };
+                    state.make_harmonic(levels, &held);
+                    if self.judge(&state, result) {
+                        return;
+                    }
+                    (Region::whole(self.problem), Some(levels))
+                }
+            };
             let mut least = state.assess(&region).least;
             for _ in 0..stage.sweeps {
                 let epsilon = epsilon(least);

@@ -6,6 +6,7 @@ use crate::cpu::correction;
 use crate::layout::Problem;
 use crate::parallel::{collect, map_parts, map_ranges};
 use crate::run::multilevel::{Hierarchy, Search};
+use crate::untangle::cuts::{Short, cut};
 use crate::untangle::energy::{Corner, Expansion};
 
 /// The most lengths that are tried along a Newton step.
@@ -170,7 +171,14 @@ impl<'p> State<'p> {
         at
     }
 
-    /// The coarser levels for [`global_step`](Self::global_step) and [`harmonic`](Self::make_harmonic).
+    /// Cuts the mesh and puts vertices on the cuts. Returns which vertices are to be held: those, and all that are not free.
+    pub(crate) fn cut(&mut self, short: Short) -> Vec<bool> {
+        let cuts = cut(self.problem, &self.targets, &self.positions, short);
+        self.positions = cuts.positions;
+        cuts.held
+    }
+
+    /// The coarser levels for [`global_step`](Self::global_step) and [`make_harmonic`](Self::make_harmonic).
     pub(crate) fn hierarchy(&self) -> Hierarchy {
         Hierarchy::of_sizes(self.problem, &self.targets)
     }
@@ -213,14 +221,17 @@ impl<'p> State<'p> {
         }
     }
 
-    /// Puts every free vertex at the weighted mean of its neighbors. On a convex boundary no triangle is then inverted
-    /// (Tutte 1963); elsewhere it is a start. By conjugate gradients, preconditioned by the levels.
-    pub(crate) fn make_harmonic(&mut self, hierarchy: &Hierarchy) {
+    /// Puts every vertex that is not held at the weighted mean of its neighbors. Within convex boundaries of held vertices no
+    /// triangle is then inverted (Tutte 1963); elsewhere it is a start. By conjugate gradients, preconditioned by the levels.
+    pub(crate) fn make_harmonic(&mut self, hierarchy: &Hierarchy, held: &[bool]) {
         const ITERATIONS: usize = 200;
         let free = self.problem.free_count();
         let problem = self.problem;
-        // The weighted sum of the differences to the neighbors.
+        // The weighted sum of the differences to the neighbors; nothing where a vertex is held.
         let differences = |v: usize, at: &(dyn Fn(usize) -> DVec2 + Sync)| -> DVec2 {
+            if held[v] {
+                return DVec2::ZERO;
+            }
             let here = at(v);
             let ring = problem.ring_of(v as u32).iter().map(|&k| k as usize);
             ring.map(|k| (here - at(k)) * f64::from(hierarchy.weight(v, k))).sum()
@@ -233,7 +244,10 @@ impl<'p> State<'p> {
             let scaled: Vec<Vec2> = residual.iter().map(|r| (r / most).as_vec2()).collect();
             let coarse = correction(hierarchy, problem, &scaled);
             let diagonal = hierarchy.inverse_diagonal();
-            collect(free, |v| residual[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most)
+            collect(free, |v| match held[v] {
+                true => DVec2::ZERO,
+                false => residual[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most,
+            })
         };
         // Both coordinates at once, each with step lengths of its own.
         let dot = |a: &[DVec2], b: &[DVec2]| -> DVec2 { a.iter().zip(b).map(|(a, b)| a * b).sum() };

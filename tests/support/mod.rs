@@ -4,6 +4,7 @@
 #![allow(dead_code, unreachable_pub, unused_imports)]
 
 pub mod binary;
+pub mod boundaries;
 pub mod check;
 pub mod disturb;
 pub mod generate;

@@ -3,7 +3,7 @@
 use crate::{plate, support, with_points};
 use gpu_smooth::{Mesh, MeshError, Precision, Topology, Untangled, Untangling, untangle};
 use std::ops::ControlFlow;
-use support::{SplitMix64, tangle};
+use support::{SplitMix64, boundaries, tangle};
 
 fn mend(mesh: &Mesh) -> Untangled {
     untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
@@ -43,6 +43,43 @@ fn meshes_of_every_kind_of_tangle_are_untangled() {
     for turn in [30.0, 90.0, 180.0] {
         check(&format!("a hole turned by {turn} degrees"), &tangle::turned_hole(60, turn / 360.0));
     }
+}
+
+#[test]
+fn a_hole_turned_by_half_a_turn_is_untangled_at_once() {
+    // It is as far either way round, so that no sweep finds out which way triangles are to go.
+    let result = check("half a turn", &tangle::turned_hole(112, 0.5));
+    assert!(result.sweeps < 60, "{} sweeps", result.sweeps);
+    let layers = boundaries::layers(69);
+    let result = check("layers", &boundaries::turned_inside(&layers, 0.5001, 0.5));
+    assert!(result.sweeps < 60, "{} sweeps", result.sweeps);
+}
+
+#[test]
+fn meshes_whose_boundary_was_taken_elsewhere_are_untangled() {
+    let square = support::lattice(30, 30);
+    let (two, regions) = (boundaries::two_holes(1000), boundaries::regions(1000));
+    for seed in 1..=3 {
+        let label = |kind: &str| format!("{kind}, seed {seed}");
+        check(&label("a bump"), &boundaries::bumped(&square, 30, seed));
+        check(&label("bent sides"), &boundaries::bent(&square, 0.3 * seed as f64));
+        check(&label("holes swapped"), &boundaries::swapped(&two, seed));
+        let turned = boundaries::turned_inside(&regions, 1.1, seed as f64 / 8.0);
+        check(&label("a round region turned"), &turned);
+    }
+}
+
+#[test]
+fn random_places_do_not_pass_for_sizes() {
+    // Among vertices at random places some triangles are sound by chance, and far larger than those of the mesh.
+    let layers = boundaries::layers(69);
+    for seed in 1..=3 {
+        let result = check("layers at random places", &tangle::scattered(&layers, seed));
+        assert!(result.sweeps < 10, "{} sweeps", result.sweeps);
+    }
+    let graded = support::graded(48, 1e-3);
+    let result = check("graded", &tangle::scattered(&graded, 1));
+    assert!(result.sweeps < 20, "{} sweeps", result.sweeps);
 }
 
 #[test]
@@ -125,9 +162,12 @@ fn the_values_as_stored_are_untangled() {
 
 #[test]
 fn untangling_gives_the_same_bits_again_and_ends_when_told() {
+    let swapped = boundaries::swapped(&boundaries::two_holes(600), 1);
     let mesh = tangle::turned_hole(60, 0.25);
-    let [one, two] = [mend(&mesh), mend(&mesh)];
-    assert!(one.points == two.points && one.sweeps == two.sweeps);
+    for mesh in [&mesh, &swapped] {
+        let [one, two] = [mend(mesh), mend(mesh)];
+        assert!(one.points == two.points && one.sweeps == two.sweeps);
+    }
     let mut seen = Vec::new();
     let ended = untangle(&mesh, Precision::Double, &mut |progress: &Untangling| {
         seen.push(progress.sweep);

@@ -1,0 +1,140 @@
+//! Meshes of which the boundary or lines inside were taken elsewhere, and the vertices inside were not. All of them have a
+//! valid mesh.
+
+use super::check::held;
+use super::generate::triangulate;
+use super::outline::Outline;
+use super::rng::SplitMix64;
+use super::trig::on_circle;
+use gpu_smooth::Mesh;
+
+/// A mesh with the vertices that stay, those of the boundary and the fixed ones, moved.
+pub fn dragged(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
+    let mut dragged = mesh.clone();
+    for (point, held) in dragged.points.iter_mut().zip(held(mesh)) {
+        if held {
+            *point = to(*point);
+        }
+    }
+    dragged
+}
+
+fn is_near([x, y]: [f64; 2], [cx, cy]: [f64; 2], radius: f64) -> bool {
+    (x - cx).hypot(y - cy) < radius
+}
+
+/// All that stays within a radius of the origin turned by a share of a full turn.
+pub fn turned_inside(mesh: &Mesh, radius: f64, turn: f64) -> Mesh {
+    let [cos, sin] = on_circle(turn);
+    dragged(mesh, |[x, y]| match is_near([x, y], [0.0, 0.0], radius) {
+        true => [cos * x - sin * y, sin * x + cos * y],
+        false => [x, y],
+    })
+}
+
+/// Where the holes of [`two_holes`] are, and how large.
+const HOLES: [[f64; 2]; 2] = [[1.5, 1.5], [4.0, 1.5]];
+const RADIUS: f64 = 0.4;
+
+/// A plate with two round holes of the same size.
+pub fn two_holes(vertices: usize) -> Mesh {
+    let holes = HOLES.map(|[x, y]| format!("circle {x} {y} {RADIUS} 36\n")).concat();
+    let outline = Outline::parse(&format!("loop\n0 0\n6 0\n6 3\n0 3\n{holes}")).unwrap();
+    triangulate(&outline, vertices).unwrap()
+}
+
+/// The first of [`two_holes`] dragged past the second to somewhere behind it.
+pub fn past(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let [cos, sin] = on_circle(rng.range(-0.15, 0.15));
+    let apart = rng.range(1.0, 1.4);
+    let by = [HOLES[1][0] - HOLES[0][0] + apart * cos, apart * sin];
+    dragged(mesh, |[x, y]| match is_near([x, y], HOLES[0], 1.2 * RADIUS) {
+        true => [x + by[0], y + by[1]],
+        false => [x, y],
+    })
+}
+
+/// The [`two_holes`] in each other's place, nearly, and one of them turned.
+pub fn swapped(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let up = rng.range(-0.5, 0.5);
+    let [cos, sin] = on_circle(rng.range(0.0, 1.0));
+    let [[ax, ay], [bx, by]] = HOLES;
+    dragged(mesh, |[x, y]| {
+        if is_near([x, y], HOLES[0], 1.2 * RADIUS) {
+            let (x, y) = (x - ax, y - ay);
+            [bx + cos * x - sin * y, by + up + sin * x + cos * y]
+        } else if is_near([x, y], HOLES[1], 1.2 * RADIUS) {
+            [x - bx + ax, y - up]
+        } else {
+            [x, y]
+        }
+    })
+}
+
+/// The side y = 0 of a lattice pushed through it by half to nine tenths of its height, in a bump.
+pub fn bumped(mesh: &Mesh, columns: usize, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let columns = columns as f64;
+    let height = rng.range(0.5, 0.9) * columns * 3f64.sqrt() / 2.0;
+    let (reach, middle) = (rng.range(0.12, 0.34) * columns, rng.range(0.35, 0.65) * columns);
+    let share = |x: f64| (1.0 - ((x - middle) / reach).powi(2)).max(0.0).powi(2);
+    dragged(mesh, |[x, y]| if y == 0.0 { [x, height * share(x)] } else { [x, y] })
+}
+
+/// The boundary of a mesh in the first quadrant bent along an arc of so much of a turn.
+pub fn bent(mesh: &Mesh, turn: f64) -> Mesh {
+    let most = |i: usize| mesh.points.iter().map(|p| p[i]).fold(0.0, f64::max);
+    let (width, height) = (most(0), most(1));
+    // The arc of the middle is as long as the mesh was, and its inner side is left some length.
+    let radius = width / (turn * std::f64::consts::TAU);
+    let thickness = radius.min(height);
+    dragged(mesh, |[x, y]| {
+        let [cos, sin] = on_circle((x / width - 0.5) * turn);
+        let radius = radius + 0.6 * thickness - thickness * y / height;
+        [radius * sin, radius * cos]
+    })
+}
+
+/// Rings of triangles around a hole of radius one half, in layers that are a hundredth as thick as edges are long at the hole.
+pub fn layers(around: usize) -> Mesh {
+    let mut mesh = Mesh::default();
+    let edge = std::f64::consts::PI / around as f64;
+    let (mut radius, mut thickness) = (0.5, edge / 100.0);
+    let mut rings = 0;
+    while radius < 3.0 {
+        let shift = if rings % 2 == 0 { 0.0 } else { 0.5 };
+        for i in 0..around {
+            let [cos, sin] = on_circle((i as f64 + shift) / around as f64);
+            mesh.points.push([radius * cos, radius * sin]);
+        }
+        rings += 1;
+        radius += thickness;
+        thickness = (1.2 * thickness).min(edge * radius / 0.5);
+    }
+    for ring in 1..rings {
+        let at = |ring: usize, i: usize| (ring * around + i % around) as u32;
+        for i in 0..around {
+            let (a, b) = (at(ring - 1, i), at(ring - 1, i + 1));
+            let (c, d) = (at(ring, i), at(ring, i + 1));
+            mesh.triangles.extend(match ring % 2 {
+                1 => [[a, c, b], [b, c, d]],
+                _ => [[a, d, b], [a, c, d]],
+            });
+        }
+    }
+    mesh
+}
+
+/// A rectangle of three regions: a disk about the origin, and what is on either side of a line. Vertices between regions are
+/// fixed.
+pub fn regions(vertices: usize) -> Mesh {
+    let mut text = String::from("loop\n-3 -2\n3 -2\n3 2\n-3 2\nline\n");
+    for i in 0..=40 {
+        let [cos, sin] = on_circle(f64::from(i % 40) / 40.0);
+        text += &format!("{cos} {sin}\n");
+    }
+    text += "line\n1.6 -2\n1.7 -1\n1.9 0\n1.6 1\n1.8 2\n";
+    triangulate(&Outline::parse(&text).unwrap(), vertices).unwrap()
+}
