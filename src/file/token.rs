@@ -28,7 +28,7 @@ pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
     format!("it is no XML: {}", on_one_line(error.to_string().as_bytes(), 120))
 }
 
-/// The text that the value of an attribute in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.
+/// The text that an attribute or the content of an element in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.
 pub(crate) fn xml_text(value: &[u8]) -> String {
     let text = String::from_utf8_lossy(value).into_owned();
     quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)

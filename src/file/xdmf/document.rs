@@ -212,13 +212,7 @@ fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
     let own = &source.bytes[text.clone()];
     let start = text.start + (own.len() - own.trim_ascii_start().len());
     let name = own.trim_ascii();
-    (plain(name), start..start + name.len())
-}
-
-/// The content of an element as the text that it stands for.
-fn plain(text: &[u8]) -> String {
-    let text = String::from_utf8_lossy(text);
-    unescape(&text).map(|text| text.into_owned()).unwrap_or_else(|_| text.into_owned())
+    (xml_text(name), start..start + name.len())
 }
 
 /// A file and the path of a dataset in it, with a colon between.
@@ -232,7 +226,7 @@ fn in_hdf5(source: &Source, text: Range<usize>) -> Result<Content, ReadError> {
         return Err(error_at(source, all.start, &problem, SAVE));
     };
     let named_at = all.start..all.start + colon;
-    let (file, path) = (plain(&own[..colon]), plain(&own[colon + 1..]));
+    let (file, path) = (xml_text(&own[..colon]), xml_text(&own[colon + 1..]));
     Ok(Content::Hdf5 { file, path, named_at })
 }
 
