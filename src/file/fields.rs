@@ -42,7 +42,7 @@ impl MeshFile {
                 }
                 Some((_, false)) => {
                     let problem = format!("the numbers of '{shown}' are whole");
-                    let remedy = "Only real numbers are taken between vertices";
+                    let remedy = "Only real numbers can be interpolated";
                     return Err(source.error(problem, remedy));
                 }
                 Some((_, true)) => {}

@@ -186,7 +186,8 @@ fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64
             0.. => Some(vertex.unsigned_abs()),
             _ => (before + 1).checked_sub(vertex.unsigned_abs()),
         };
-        let problem = || format!("vertex {vertex} stands before the first one");
+        let problem =
+            || format!("vertex {vertex}, counted back from this row, is before the first one");
         number.ok_or_else(|| cursor.error(problem(), CORRECT))
     };
     vertices.iter().map(number).collect()

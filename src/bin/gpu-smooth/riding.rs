@@ -166,7 +166,7 @@ impl Riding {
     pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
-            problems.push("it has not the same data".to_owned());
+            problems.push("it does not have the same data".to_owned());
         }
         for (old, new) in self.data().iter().zip(other.data()) {
             let (name, each) = (old.name(), old.components().max(1));

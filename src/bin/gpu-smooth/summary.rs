@@ -177,7 +177,7 @@ impl Report {
     /// Writes how far the run is from the limit of f, if that is known.
     fn left(&self) -> String {
         match self.remaining {
-            Some(left) => format!("; f is estimated to be {left:.1e} of itself above its limit"),
+            Some(left) => format!("; f is estimated to be {left:.1e} (relative) above its limit"),
             None => "; more sweeps may gain more".into(),
         }
     }

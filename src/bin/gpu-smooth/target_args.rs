@@ -62,7 +62,7 @@ fn target(text: &str) -> Result<Target, String> {
         ("keep-shape", _) => Ok(Target::KeepShape),
         (_, Some(("size", name))) => Ok(Target::Size { source: source(name)? }),
         (_, Some(("metric", name))) => Ok(Target::Metric { source: source(name)? }),
-        _ => Err("there are equilateral, keep-size, keep-shape, size=SOURCE, metric=SOURCE".into()),
+        _ => Err("give equilateral, keep-size, keep-shape, size=SOURCE or metric=SOURCE".into()),
     }
 }
 
