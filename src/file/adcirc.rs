@@ -74,12 +74,12 @@ impl Walk for Adcirc {
     }
 }
 
-/// Hands on the boundaries as lines: open ones, and those of land, of which islands are called so. What is damaged ends the
-/// search without an error: the mesh does not depend on it.
+/// Hands on the boundaries as lines: open ones, then those of land, whose islands are called `island`. Damaged lists
+/// end the search without an error, as the mesh does not depend on them.
 fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
     for is_open in [true, false] {
         let Some(count) = number(cursor) else { return };
-        // How many nodes all of them have together.
+        // The number of nodes of all boundaries together.
         if !cursor.next_row() {
             return;
         }
@@ -88,7 +88,7 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
             let kind = if is_open { 0 } else { cursor.integer("a type").unwrap_or(0) };
             let word = match (is_open, kind) {
                 (true, _) => "open",
-                // Islands, by whatever condition holds there.
+                // The boundary types of islands, whatever condition holds there.
                 (false, 1 | 11 | 21) => "island",
                 _ => "land",
             };
@@ -104,7 +104,7 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
             }
             let label = Label::Name(format!("{word}{index}"));
             sink.within(&[Within { what: "boundary", label, dimension: Some(1) }]);
-            // A node that there is not is no reason to refuse a mesh.
+            // A node that does not exist is no reason to refuse the mesh.
             if sink.polyline(cursor, (0, [0; 2]), &nodes).is_err() {
                 return;
             }
@@ -113,7 +113,7 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
     }
 }
 
-/// The number that the next row starts with.
+/// Reads the number at the start of the next row.
 fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
     cursor.next_row().then_some(())?;
     cursor.integer("a number").ok()

@@ -1,4 +1,4 @@
-//! Files with long lists, read on all threads and one item after another: the same meshes, the same errors.
+//! Reads files with long lists both on all threads and item by item. The meshes and the errors must be the same.
 
 use crate::file::assemble::parse_by;
 use crate::file::detect::{self, Content};
@@ -9,7 +9,7 @@ use crate::file::source::Source;
 /// Vertices along a side, so that all lists are long enough to be read on all threads.
 const SIDE: usize = 135;
 
-/// Numbers in binary, the highest byte first or last.
+/// Numbers in binary; true for little-endian byte order.
 struct Binary(Vec<u8>, bool);
 
 impl Binary {
@@ -37,7 +37,7 @@ impl Binary {
         self.0.extend_from_slice(text.as_bytes());
     }
 
-    /// The bytes of a record of Fortran.
+    /// Appends a Fortran record, with its length before and after the content.
     fn record(&mut self, put: impl Fn(&mut Binary)) {
         let mut record = Binary(Vec::new(), self.1);
         put(&mut record);
@@ -47,7 +47,8 @@ impl Binary {
     }
 }
 
-/// Meshes in formats that have records, each with where its lists start and end. Here and there an element is none of most.
+/// Returns meshes in the formats that have records, each with the offsets where its lists start and end. Some elements
+/// are of another kind than most.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
     let points: Vec<[f64; 2]> = (0..SIDE * SIDE)
         .map(|v| [(v % SIDE) as f64 + 1.0 / (v + 2) as f64, (v / SIDE) as f64])
@@ -80,7 +81,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
         file.text("# vtk DataFile Version 5.1\nm\nBINARY\nDATASET UNSTRUCTURED_GRID\n");
         file.text(&format!("POINTS {n} double\n"));
         file.reals(in_space());
-        // A few lines stand among the triangles.
+        // Two lines stand among the triangles.
         let is_line = |t: usize| t == 30_000 || t == 0;
         let lines = (0..m).filter(|&t| is_line(t)).count();
         let kept = |t: usize| if is_line(t) { 2 } else { 3 };
@@ -210,7 +211,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-/// What is read of a file: the mesh and where its coordinates stand, or an error.
+/// Reads a file. Returns the mesh with the offsets of its coordinates, or the error.
 fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String> {
     let source = Source::new(name.as_ref(), bytes.to_vec()).map_err(|e| e.to_string())?;
     let content = detect::content(&source).map_err(|e| e.to_string())?;

@@ -1,4 +1,4 @@
-//! Makes a mesh of a file's nodes and elements, or finds where one of them stands.
+//! Makes a mesh from a file's nodes and elements, or finds where they stand in the file.
 
 use crate::error::{Location, ReadError};
 use crate::file::curves::Curves;
@@ -13,12 +13,12 @@ use crate::file::text::{CORRECT, Cursor};
 use crate::mesh::Mesh;
 use crate::periodic::Periodic;
 
-/// Reads a mesh.
+/// Reads a mesh, long lists on all threads.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
     parse_by(reader, source, true)
 }
 
-/// Reads a mesh, and what is long on all threads, or all of it item by item.
+/// Reads a mesh: long lists on all threads if `takes_ahead`, else all of it item by item.
 pub(crate) fn parse_by(
     reader: &Reader,
     source: &Source,
@@ -89,11 +89,11 @@ pub(crate) fn triangle_places(
 
 #[derive(Default)]
 struct Assembler {
-    /// Whether it takes what was read on all threads.
+    /// Whether items that were read on all threads are taken.
     takes_ahead: bool,
     mesh: Mesh,
     x_at: FoundPlaces,
-    /// The tag of each node, until the map is made.
+    /// The tag of each node, until `map` is made from them.
     tags: FoundTags,
     map: Option<TagMap>,
     region_names: Numbering<[i64; 2]>,
@@ -101,18 +101,18 @@ struct Assembler {
     curves: Curves,
     quadrilaterals: u64,
     notes: Vec<String>,
-    /// The names of real numbers that the file gives vertices besides coordinates.
+    /// The names of the real numbers that the file gives vertices besides x and y.
     data: Vec<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
-    /// Where the file lists its vertices, for messages.
+    /// Names the file's list of vertices in messages.
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
     on_lower: usize,
 }
 
 impl Assembler {
-    /// The index of a node that an element has.
+    /// Returns the index of a node of an element, or an error that names the element.
     #[inline]
     fn index(
         &self,
@@ -144,8 +144,8 @@ impl Sink for Assembler {
     #[inline]
     fn node(&mut self, _: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
         if dimension < 2 {
-            // On a point or curve of the model, which may lie inside the domain without being
-            // saved as line elements: the interface of two surfaces, say.
+            // On a point or curve of the model. It may lie inside the domain without being saved as line elements, such
+            // as the interface of two surfaces.
             self.on_lower += 1;
             self.mesh.fixed.push(self.mesh.points.len() as u32);
         }
@@ -193,7 +193,7 @@ impl Sink for Assembler {
                 match (index(a), index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
-                        // What is known of such a pair does not slide.
+                        // The node of the pair that is known does not slide.
                         unlisted += 1;
                         held.extend(a.into_iter().chain(b));
                     }
@@ -296,7 +296,8 @@ impl Sink for Assembler {
     }
 }
 
-/// Finds nodes and triangles again. Places are for errors only, so none is kept for each.
+/// Finds the locations of nodes and triangles, in another walk through the file. They are needed for messages only, so
+/// they are not kept.
 struct Locator<'a> {
     nodes: Wanted<'a>,
     triangles: Wanted<'a>,
@@ -304,11 +305,11 @@ struct Locator<'a> {
     source: &'a Source,
 }
 
-/// What is looked for in a list.
+/// The items to be found in a list.
 struct Wanted<'a> {
     /// The indices not found yet, ascending.
     left: &'a [usize],
-    /// The index of what comes next in the file.
+    /// The index of the next item in the file.
     next: usize,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::mesh::Precision;
 
-/// The order of the bytes of a number.
+/// The byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
     /// The lowest byte comes first.
@@ -41,7 +41,7 @@ impl Order {
         }
     }
 
-    /// A coordinate of so many bytes as its precision takes.
+    /// Reads a real number of 4 or 8 bytes, as the precision has.
     #[inline]
     pub(crate) fn real(self, precision: Precision, bytes: &[u8]) -> f64 {
         match precision {
@@ -50,10 +50,10 @@ impl Order {
         }
     }
 
-    /// A whole number of up to eight bytes, without a sign.
+    /// Reads an unsigned whole number of up to 8 bytes.
     #[inline]
     pub(crate) fn whole(self, bytes: &[u8]) -> u64 {
-        // The usual lengths by themselves, which is several times as fast.
+        // The usual widths have branches of their own, which are several times as fast.
         if let Ok(bytes) = <[u8; 4]>::try_from(bytes) {
             return u64::from(self.i32(bytes).cast_unsigned());
         }
@@ -67,7 +67,7 @@ impl Order {
         }
     }
 
-    /// The same with a sign.
+    /// Reads a signed whole number of up to 8 bytes.
     #[inline]
     pub(crate) fn signed(self, bytes: &[u8]) -> i64 {
         let unused = 64 - 8 * bytes.len();

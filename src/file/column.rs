@@ -1,4 +1,4 @@
-//! Numbers of a file that may be replaced, and by what.
+//! Numbers of a file that may be replaced, with their new values.
 
 use crate::file::numbers::{Form, Numbers, Places};
 use crate::file::token::{number_end, skip_to_number};
@@ -6,24 +6,24 @@ use crate::mesh::Precision;
 use std::io::Write;
 use std::ops::Range;
 
-/// A list of numbers of a file, in the order in which they stand there.
+/// A list of numbers in the order in which they stand in the file, with their old and new values.
 pub(crate) struct Column<'a> {
     at: At<'a>,
     form: Form,
     old: &'a [f64],
     new: &'a [f64],
-    /// The number of item `i` is `first + step * i` of those lists.
+    /// Item `i` is number `first + step * i` of `old` and `new`.
     first: usize,
     step: usize,
-    /// What counts as `i` for each item, if several items are one number.
+    /// The `i` of each item, if several items have the same number.
     owners: Option<&'a [u32]>,
 }
 
 /// Where the items of a column start.
 enum At<'a> {
-    /// So many bytes after each of these places.
+    /// Each item starts this many bytes after one of these places.
     After(&'a Places, usize),
-    /// Each of these places, with a second number the token after the first.
+    /// Each item is two numbers: one at one of these places, and the next token after it.
     Pairs(&'a Places),
 }
 
@@ -35,8 +35,8 @@ pub(crate) struct Change {
 }
 
 impl<'a> Column<'a> {
-    /// The coordinates of vertices, whose x start at these places. A vertex may have several: then its index is given for each
-    /// place.
+    /// Makes columns for the coordinates of vertices, from the places of x. If a vertex has several places, `owners`
+    /// gives the vertex of each place.
     pub(crate) fn of_points(
         (x_at, owners): (&'a Places, Option<&'a [u32]>),
         numbers: Numbers,
@@ -55,7 +55,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// The numbers of an array.
+    /// Makes a column for the numbers of an array.
     pub(crate) fn of_array(
         places: &'a Places,
         form: Form,
@@ -86,7 +86,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Where an item ends.
+    /// Returns the byte after an item.
     pub(crate) fn end(&self, bytes: &[u8], item: usize) -> usize {
         let start = self.start(item);
         match (&self.at, self.form) {
@@ -96,7 +96,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// The first item that starts at this byte or later.
+    /// Returns the first item that starts at this byte or later.
     pub(crate) fn first_from(&self, at: usize) -> usize {
         let (mut low, mut high) = (0, self.count());
         while low < high {
@@ -109,7 +109,7 @@ impl<'a> Column<'a> {
         low
     }
 
-    /// Adds the numbers of some items that are not as they were, in the digits of the file.
+    /// Adds the numbers of some items that have changed, rounded to the precision of the file.
     pub(crate) fn changes(&self, bytes: &[u8], items: Range<usize>, changes: &mut Vec<Change>) {
         let form = self.form;
         let mut add = |number: usize, start: usize, end: Option<usize>| {
@@ -138,7 +138,7 @@ impl<'a> Column<'a> {
 }
 
 impl Form {
-    /// Writes a number; as text, with the fewest digits that parse back to the same bits.
+    /// Writes a number. Text has the fewest digits that parse back to the same bits.
     pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
             Form::Text(Precision::Double) => {

@@ -1,4 +1,4 @@
-//! Whether two files of a mesh differ in nothing but coordinates. Nothing here is used to write files.
+//! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
 
 use crate::error::Location;
 use crate::file::field::PointField;
@@ -12,17 +12,17 @@ use std::ops::Range;
 /// The first place at which two files of a mesh differ in more than coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Where, in the first of the two.
+    /// Where the first file differs. The label is 0.
     pub place: Place,
-    /// Where, in the second.
+    /// Where the second file differs. The label is 0.
     pub other_place: Place,
-    /// What is different there.
+    /// A description of the difference.
     pub what: String,
 }
 
 impl MeshFile {
-    /// The first difference to another file of the mesh, coordinates apart: `None` if both are of one format, list the same
-    /// triangles, and every byte of them is the same but those of coordinates.
+    /// Finds the first difference to another file of the mesh, apart from coordinates. `None` if both have the same
+    /// format, list the same triangles, and have the same bytes except for coordinates.
     ///
     /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
     /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
@@ -31,7 +31,8 @@ impl MeshFile {
         self.difference_besides(other, [&[], &[]])
     }
 
-    /// The same, with the numbers of data left out too: those of fields of this file, and of the same fields of the other.
+    /// Finds the first difference as [`difference`](Self::difference) does, but also leaves out the numbers of some
+    /// data: fields of this file, and the same fields of the other.
     pub fn difference_besides(
         &self,
         other: &MeshFile,
@@ -98,10 +99,10 @@ impl MeshFile {
         None
     }
 
-    /// The ranges of coordinates in the bytes that hold them, ascending.
+    /// Returns the ranges of coordinates in the bytes that hold them, ascending.
     fn coordinates(&self) -> Vec<Range<usize>> {
         let x_at = self.x_at();
-        // As many as vertices, or as the places that these are repeated in.
+        // There are as many coordinates as vertices, or as places where they are repeated.
         let count = self.owners().map_or(self.original().points.len(), <[u32]>::len);
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
@@ -200,7 +201,7 @@ fn is_beside_points(stored: &Stored) -> bool {
     matches!(stored.home, Home::Points)
 }
 
-/// The ranges of the numbers of fields in the bytes that hold them.
+/// Returns the ranges of the numbers of fields in the bytes that hold them.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
@@ -227,14 +228,14 @@ fn number_ranges(
     ranges
 }
 
-/// All of these ranges, ascending.
+/// Joins two lists of ranges, ascending.
 fn merged(mut ranges: Vec<Range<usize>>, more: Vec<Range<usize>>) -> Vec<Range<usize>> {
     ranges.extend(more);
     ranges.sort_unstable_by_key(|range| range.start);
     ranges
 }
 
-/// Where two texts first differ outside of these ranges, of which both have as many if they are equal.
+/// Returns where two files first differ outside of these ranges. Files that are equal have the same number of ranges.
 fn unequal(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> Option<[usize; 2]> {
     let [a, b] = bytes;
     let mut at = [0, 0];

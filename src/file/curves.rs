@@ -1,29 +1,29 @@
-//! The lines of a mesh file along which vertices may slide, and the vertices that do not.
+//! The lines along which vertices of a mesh file may slide, and the vertices that do not slide.
 
 use crate::periodic::{Motion, Periodic};
 
-/// Lines of a file, and the vertices that it holds for other reasons than lying on one.
+/// Lines of a file, and vertices that are fixed for other reasons than lying on a line.
 #[derive(Default)]
 pub(crate) struct Curves {
     /// Line elements, segments and parts of polylines.
     pub(crate) lines: Vec<[u32; 2]>,
-    /// Points, corners, vertices of quadrilaterals and the like, and what a user has fixed.
+    /// Points, corners, vertices of quadrilaterals and polygons, and those that the user fixed. They do not slide.
     pub(crate) held: Vec<u32>,
     /// Vertices that belong together in pairs.
     pub(crate) periodic: Vec<Periodic>,
-    /// Motions that take vertices of the boundary to others, which are not listed.
+    /// Motions that take vertices of the boundary to others, without a list of the pairs.
     pub(crate) motions: Vec<Motion>,
-    /// Whether vertices belong together in pairs that could not be read.
+    /// Whether there are pairs of vertices that could not be read.
     pub(crate) has_unknown_pairs: bool,
 }
 
-/// The edges between triangles of different regions, ascending.
+/// Returns the edges between triangles of different regions, ascending.
 pub(crate) fn between_regions(
     regions: &[u32],
     triangles: &[[u32; 3]],
     vertices: usize,
 ) -> Vec<[u32; 2]> {
-    // Most vertices are of one region, and have none of these edges.
+    // Most vertices lie in one region, and on none of these edges.
     let mut region = vec![None; vertices];
     let mut is_between = vec![false; vertices];
     for (corners, &own) in triangles.iter().zip(regions) {

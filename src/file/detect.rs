@@ -1,4 +1,4 @@
-//! Which format a file is in, by its content first and its ending second.
+//! Tells which format a file is in, first by its content, then by its ending.
 
 use crate::error::ReadError;
 use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
@@ -10,24 +10,25 @@ use crate::file::token::integer;
 use crate::file::triangle_names::{Names, appended};
 use std::path::{Path, PathBuf};
 
-/// What a file holds, of the formats with a reader.
+/// How a file is read.
 pub(crate) enum Content {
-    /// A mesh in one file.
+    /// A mesh in one file, with its reader.
     Of(&'static Reader),
     Triangle(Names),
 }
 
-/// Finds the format of a file. The error names what else it holds, if that is known.
+/// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
 pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
-    // Its title may start with anything.
+    // The title of such a grid may start with anything.
     if ADCIRC.has_ending_of(&source.path) {
         return of(source, &ADCIRC);
     }
-    // Comments that `#` starts are looked behind too, but one of VTK's is its name.
+    // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
+    // of VTK.
     let heads = [head, &source.bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     let promised = |family: &&&Family| family.has_ending_of(&source.path);
@@ -38,8 +39,8 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     if TRIANGLE.has_ending_of(&source.path) {
         return Ok(Content::Triangle(Names::of(&source.path)));
     }
-    // Of the others that are told by their rows, those whose ending is theirs alone.
-    // Text is STL only by its first word.
+    // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
+    // first word.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
     let by_ending = |family: &&&Family| {
         let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
@@ -51,7 +52,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     }
 }
 
-/// Tells formats apart that consist only of rows of numbers, by how many numbers the first rows have.
+/// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
 fn by_rows(source: &Source) -> Result<Content, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
@@ -95,7 +96,7 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
         return of(source, &ADCIRC);
     }
-    // Formats that are not read may begin in any way.
+    // Formats that are not read may start with anything.
     match FAMILIES.iter().find(|family| !family.is_read() && family.has_ending_of(&source.path)) {
         Some(family) => of(source, family),
         None => {
@@ -105,7 +106,7 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
     }
 }
 
-/// The name of the format, with a reader or without, whose files end as this path does.
+/// Returns the name of the format whose files end as this path does, whether it is read or not.
 pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
     let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
     family.map(|family| family.name)
@@ -130,8 +131,8 @@ fn formats_read() -> String {
     format!("Formats read: {}", names.join(", "))
 }
 
-/// The content without what may stand before its first words: a byte order mark, blanks and lines that start with one of
-/// the bytes of `comments`.
+/// Returns the content without a byte order mark, blanks, and comment lines, which start with one of the bytes of
+/// `comments`.
 fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     let mut head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     while head.first().is_some_and(|first| comments.contains(first)) {
@@ -141,7 +142,7 @@ fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     head
 }
 
-/// The content from the first element of XML on: without its declaration, the type of the document and comments.
+/// Returns the content from the first XML element on, without declarations and comments before it.
 fn after_prolog(bytes: &[u8]) -> &[u8] {
     let mut head = bytes;
     while head.starts_with(b"<?") || head.starts_with(b"<!") {
@@ -153,7 +154,7 @@ fn after_prolog(bytes: &[u8]) -> &[u8] {
 }
 
 fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
-    // Longer rows belong to none of the formats told apart here.
+    // No format that is told apart here has longer rows.
     const TOKENS: usize = 8;
     let mut cursor = Cursor::new(source).of(syntax);
     std::array::from_fn(|_| {
@@ -162,8 +163,8 @@ fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
     })
 }
 
-/// For a `.node` or `.ele` under another ending: the other file of the mesh if it exists, and where its `.poly` would
-/// be.
+/// Finds the other file of a Triangle mesh if a `.node` or `.ele` has another ending. Returns its path and that of the
+/// `.poly`, which need not exist.
 fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
     [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
         let other = appended(stem, &format!(".{ending}"));

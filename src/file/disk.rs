@@ -1,21 +1,21 @@
-//! What the writing of files asks of the system, so that tests can let each request fail.
+//! What the writing of files needs of the system, so that tests can make each request fail.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A disk, or what plays one.
+/// The file system, or a test's stand-in for it.
 pub(crate) trait Disk {
-    /// Makes a file that is not there yet, to write to.
+    /// Creates a file to write to, which must not exist yet.
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>>;
-    /// Gives a file a second name.
+    /// Gives a file a second name, by a hard link.
     fn hard_link(&self, path: &Path, second: &Path) -> io::Result<()>;
-    /// Copies the content of a file, forced to the disk.
+    /// Copies the content of a file, and forces the copy to the disk.
     fn copy(&self, from: &Path, to: &Path) -> io::Result<()>;
-    /// Gives a file another name, in the place of any file that has it.
+    /// Renames a file, and replaces any file that has the new name.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     fn remove(&self, path: &Path) -> io::Result<()>;
-    /// Forces the names in a directory to the disk.
+    /// Forces the entries of a directory to the disk.
     fn sync_directory(&self, path: &Path) -> io::Result<()>;
 }
 
@@ -26,7 +26,7 @@ pub(crate) trait NewFile: Write + Send {
     fn sync(&self) -> io::Result<()>;
 }
 
-/// The disks of this system.
+/// The file system of the operating system.
 pub(crate) struct System;
 
 impl Disk for System {

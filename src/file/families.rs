@@ -1,4 +1,4 @@
-//! What each format is known by, and its reader.
+//! The table of formats: how each is recognized, and its reader.
 
 use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
@@ -13,23 +13,23 @@ const fn reader<W: Walk>() -> Option<Reader> {
     Some(Reader::of::<W>())
 }
 
-/// Formats that one reader reads, or that messages name though there is none. A new format is a row of this kind, a variant of
-/// [`Format`] and a file with its [`Walk`].
+/// A row of the table: formats that one reader reads, or a format that only messages name. To add a format, add a row,
+/// a variant of [`Format`], and a file with its [`Walk`].
 pub(crate) struct Family {
     pub(crate) name: &'static str,
-    /// Endings of file names that promise this format, the usual one first.
+    /// Endings of file names that belong to this format, the usual one first.
     pub(crate) endings: &'static [&'static str],
-    /// What a file of the format may start with, after blanks and comment lines. Empty for formats that are told by
-    /// the numbers of their first rows.
+    /// The first bytes of a file of this format, after blanks and comment lines. Empty for formats that are told by
+    /// their first rows of numbers.
     pub(crate) opens: &'static [&'static [u8]],
-    /// None for Triangle, which has two files, and for formats that are not read.
+    /// The reader. `None` for Triangle, which has two files, and for formats that are not read.
     pub(crate) reader: Option<Reader>,
-    /// What to do about a file of a format that is not read; empty where the formats that are read say enough.
+    /// What to do with a file of a format that is not read. If empty, the message lists the formats that are read.
     pub(crate) instead: &'static str,
 }
 
 impl Family {
-    /// The family of a format.
+    /// Returns the row of a format.
     pub(crate) fn of(format: Format) -> &'static Family {
         match format {
             Format::Triangle => &TRIANGLE,
@@ -60,12 +60,12 @@ impl Family {
         }
     }
 
-    /// Whether meshes of it are read.
+    /// Whether meshes of this format are read.
     pub(crate) fn is_read(&self) -> bool {
         self.reader.is_some() || std::ptr::eq(self, &TRIANGLE)
     }
 
-    /// Whether the path ends as files of this family do, be they compressed. The case does not matter.
+    /// Whether the path ends as files of this format do, compressed or not, in capital or small letters.
     pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
         let name = packed::inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
         self.endings.iter().any(|ending| name.ends_with(ending))
@@ -81,7 +81,7 @@ const fn family(
     Family { name, endings, opens, reader, instead: "" }
 }
 
-/// A format that is not read, and what to do about its files.
+/// Makes a row for a format that is not read.
 const fn unread(
     name: &'static str,
     endings: &'static [&'static str],
@@ -187,9 +187,9 @@ static GEOMETRY: Family = unread(
     "Mesh it first, with gmsh for example",
 );
 
-/// What to do with a file of a format that meshio reads.
+/// The remedy for a format that meshio reads.
 const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for example";
-/// What to do with a file that no converter at hand reads.
+/// The remedy for a format that no common converter reads.
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.

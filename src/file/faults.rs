@@ -1,4 +1,4 @@
-//! Writing on disks that fail: every request in turn, and every two of them.
+//! Tests of writing on disks that fail: each request fails once, and each pair of requests.
 
 use crate::file::disk::{Disk, NewFile, System};
 use crate::file::replace::{Job, replace_all_on};
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 struct Faults {
     asked: Arc<AtomicUsize>,
     failing: Vec<usize>,
-    /// From here on, everything that takes room fails.
+    /// The request from which on the disk is full.
     full_from: Option<usize>,
     has_links: bool,
 }
@@ -47,7 +47,7 @@ impl Disk for Faults {
 
     fn copy(&self, from: &Path, to: &Path) -> io::Result<()> {
         let done = self.ask(true);
-        // What fails may have begun.
+        // A copy that fails may have been made in part.
         System.copy(from, to)?;
         done
     }
@@ -58,7 +58,7 @@ impl Disk for Faults {
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
-        // Nobody can clear up where this fails.
+        // If this fails, nothing can be cleared up.
         System.remove(path)
     }
 
@@ -75,7 +75,7 @@ struct Faulty {
 impl Write for Faulty {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let done = self.faults.ask(true);
-        // Half of it arrives, whether it fails or not.
+        // Half of the bytes arrive, whether the request fails or not.
         let written = self.file.write(&bytes[..bytes.len().div_ceil(2)])?;
         done.map(|()| written)
     }
@@ -93,20 +93,20 @@ impl NewFile for Faulty {
     }
 
     fn sync(&self) -> io::Result<()> {
-        // Nothing here outlasts the test.
+        // Nothing has to outlast the test here.
         self.faults.ask(true)
     }
 }
 
 const NAMES: [&str; 3] = ["out.node", "out.ele", "out.poly"];
 
-/// Writes three files on this disk, of which those were there before whose place in `old` says so. Checks that they are all new,
-/// or as they were, and that nothing else is there. Returns whether they are new.
+/// Writes three files on this disk. `old` says which of them existed before. Checks that all files are new or all are
+/// as they were, and that there are no other files. Returns whether they are new.
 fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     let directory = tempfile::tempdir().unwrap();
     let paths = NAMES.map(|name| directory.path().join(name));
     let content = |path: &Path| format!("new {}", path.display()).repeat(3);
-    // Of the same mesh, only the file with the vertices changes.
+    // If the mesh is the same, only the file with the vertices changes.
     let old_content = |path: &Path| match is_same_mesh && !path.ends_with(NAMES[0]) {
         true => content(path),
         false => format!("old {}", path.display()),
@@ -123,7 +123,7 @@ fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     drop(jobs);
     let told = format!("{done:?} after {:?} of {old:?}", faults.failing);
     let message = done.as_ref().err().map(|error| error.to_string()).unwrap_or_default();
-    // Old contents that could not be brought back.
+    // Counts the old contents that could not be restored.
     let mut expected = message.matches(" its old content is in ").count();
     for (path, was_there) in paths.iter().zip(old) {
         let found = fs::read_to_string(path).ok();
@@ -131,7 +131,7 @@ fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
         let name = path.display().to_string();
         match done {
             Ok(()) => assert_eq!(found, Some(content(path)), "{told}"),
-            // Where bringing it back fails as well, the message says where the old content is.
+            // If the old content could not be restored, the message says where it is.
             Err(_) if found != kept => match message
                 .split(&format!("{name} is not as it was: its old content is in "))
                 .nth(1)
@@ -166,7 +166,7 @@ fn every_request_fails_in_turn() {
                 *(if write_three(&alone, old, same) { &mut survived } else { &mut failed }) += 1;
                 let full = Faults { full_from: Some(first), has_links, ..Faults::default() };
                 write_three(&full, old, same);
-                // Whatever was there, the same may follow: one case has all that can.
+                // The second fault does not depend on which files existed, so one case covers it.
                 let seconds =
                     if old == [true; 3] && !same { first + 1..requests + 4 } else { 0..0 };
                 for second in seconds {
@@ -177,6 +177,6 @@ fn every_request_fails_in_turn() {
             }
         }
     }
-    // What is not needed may fail: forcing names to the disk, and second names where copies do.
+    // Requests that are not essential may fail: forcing names to the disk, and hard links where a copy works.
     assert!(failed > 100 && survived > 20, "{failed} failed, {survived} survived");
 }

@@ -1,27 +1,28 @@
-//! Data that a file gives its vertices, and where they stand in it.
+//! Data of a file's vertices, and where the numbers stand in the file.
 
 use crate::error::MeshError;
 use crate::file::column::Column;
 use crate::file::sink::{PointNumbers, Stored};
 
-/// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data. It comes from
-/// [`MeshFile::point_fields`](crate::MeshFile::point_fields); with other values it goes into
-/// [`MeshFile::write_with`](crate::MeshFile::write_with).
+/// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data.
+/// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads them. With new values,
+/// [`MeshFile::write_with`](crate::MeshFile::write_with) writes them.
 pub struct PointField {
     name: String,
     components: usize,
-    /// As many as there are components for each vertex.
+    /// `components` values for each vertex.
     values: Vec<f64>,
-    /// The numbers as they were read, in the order of the file, and as they are to be.
+    /// The numbers as they were read, in the order of the file; `new` are those to be written.
     old: Vec<f64>,
     new: Vec<f64>,
-    /// The vertex of each tuple, if they are not those of all vertices in their order.
+    /// The vertex of each tuple of numbers; `None` if there is one for each vertex in order.
     vertices: Option<Vec<u32>>,
     stored: Option<Stored>,
 }
 
 impl PointField {
-    /// A field of the numbers of an array, in a file of so many vertices. Tuples of no vertex have a number that no vertex has.
+    /// Makes a field from the numbers of an array, in a file of `count` vertices. In `vertices`, a tuple that belongs
+    /// to no vertex has an index of no vertex.
     pub(crate) fn new(
         name: String,
         components: usize,
@@ -45,28 +46,29 @@ impl PointField {
         PointField { name, components, values, new: old.clone(), old, vertices, stored }
     }
 
-    /// What the file calls it: the name of an array, `depth` in grids of ADCIRC and SCHISM, `z` for third coordinates. Several
-    /// may have one name, such as the time steps of a result.
+    /// Returns the name in the file: that of an array, `depth` in grids of ADCIRC and SCHISM, or `z` for third
+    /// coordinates. Several fields may have the same name, such as the time steps of a result.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How many numbers a vertex has.
+    /// Returns how many numbers each vertex has.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// The numbers of one vertex after those of another, in the order of [`Mesh::points`](crate::Mesh::points). NaN for
-    /// vertices that the file gives none.
+    /// Returns the numbers, vertex by vertex in the order of [`Mesh::points`](crate::Mesh::points):
+    /// [`components`](Self::components) for each vertex, NaN if the file gives none.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Takes other values, as many as [`values`](Self::values) has. What is not finite leaves the number as it is, and vertices
-    /// to which the file gives no number get none. Returns how many numbers were left because a value is not finite.
+    /// Sets new values, in the order of [`values`](Self::values). If a value is not finite, the file keeps its old
+    /// number. A vertex without a number in the file gets none. Returns how many finite numbers were kept because the
+    /// new value is not finite.
     ///
     /// # Errors
-    /// [`MeshError::ValueCount`] if there are not so many; then nothing is changed.
+    /// [`MeshError::ValueCount`] if there are not as many as [`values`](Self::values) has; then nothing is changed.
     pub fn set(&mut self, values: Vec<f64>) -> Result<usize, MeshError> {
         let (expected, given) = (self.values.len(), values.len());
         if expected != given {
@@ -97,24 +99,24 @@ impl PointField {
         Ok(left)
     }
 
-    /// How many numbers the file has of it.
+    /// Returns how many numbers the file has.
     pub(crate) fn numbers(&self) -> usize {
         self.old.len()
     }
 
-    /// Where the numbers stand.
+    /// Returns where the numbers stand in the file.
     pub(crate) fn stored(&self) -> Option<&Stored> {
         self.stored.as_ref()
     }
 
-    /// Whether a number is to be another in the digits of the file.
+    /// Whether a number changes, after rounding to the precision of the file.
     pub(crate) fn is_changed(&self) -> bool {
         let Some(stored) = &self.stored else { return false };
         let bits = |x: f64| stored.form.precision().rounded(x).to_bits();
         self.new.iter().zip(&self.old).any(|(&new, &old)| bits(new) != old.to_bits())
     }
 
-    /// Its numbers as what may be replaced, if they stand in the file.
+    /// Returns the numbers as a column for rewriting, if they stand in the file.
     pub(crate) fn column(&self) -> Option<Column<'_>> {
         let Stored { places, form, .. } = self.stored.as_ref()?;
         Some(Column::of_array(places, *form, &self.old, &self.new))

@@ -10,8 +10,8 @@ use crate::file::token::quoted;
 use crate::file::triangle_data;
 
 impl MeshFile {
-    /// The real numbers that the file gives its vertices under these names, or all there are for `None`. The file's
-    /// content is searched again for them.
+    /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The
+    /// file's content is searched again for them.
     ///
     /// | format | what can be named |
     /// |---|---|
@@ -26,10 +26,10 @@ impl MeshFile {
     /// | XDMF | `z`, and attributes of nodes of the type Float |
     /// | Triangle | `attribute` of vertices, `attribute1` and so on if there are several |
     ///
-    /// A field for each array: of one name there may be several, such as the time steps of a result.
+    /// Each array is one field. Several fields may have the same name, such as the time steps of a result.
     ///
     /// # Errors
-    /// [`ReadError`] if there is none of a name, if its numbers are whole, or if the data are damaged.
+    /// [`ReadError`] if no data have one of the names, if their numbers are whole, or if they are damaged.
     pub fn point_fields(&self, names: Option<&[String]>) -> Result<Vec<PointField>, ReadError> {
         let PointData { fields, known } =
             self.data_of(names.map_or(Wanted::Real, Wanted::Named))?;
@@ -43,7 +43,7 @@ impl MeshFile {
                 }
                 Some((_, false)) => {
                     let problem = format!("the numbers of '{shown}' are whole");
-                    let remedy = "Only real numbers are taken between vertices";
+                    let remedy = "Only real numbers can be interpolated";
                     return Err(source.error(problem, remedy));
                 }
                 Some((_, true)) => {}
@@ -68,11 +68,12 @@ impl MeshFile {
         Ok(fields)
     }
 
-    /// The numbers of an array of point data, one for each vertex: scalars of VTK's formats, properties of the vertices of PLY,
-    /// and whatever else [`point_fields`](Self::point_fields) finds, be its numbers real or whole.
+    /// Reads an array of point data with one number for each vertex, real or whole: scalars of VTK's formats,
+    /// properties of PLY's vertices, and all data that [`point_fields`](Self::point_fields) finds.
     ///
     /// # Errors
-    /// [`ReadError`] if there is no such array, its data are damaged, or it has not one number a vertex.
+    /// [`ReadError`] if there is no such array, if its data are damaged, or if it does not have one number for each
+    /// vertex.
     pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
         let source = &self.sources()[0];
         let PointData { fields, known } = self.data_of(Wanted::Named(&[name.to_owned()]))?;

@@ -98,7 +98,7 @@ impl Format {
         Format::Xdmf,
     ];
 
-    /// The name for messages.
+    /// Returns the name for messages.
     const fn name(self) -> &'static str {
         match self {
             Format::Triangle => "Triangle .node/.ele",

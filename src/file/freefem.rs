@@ -1,4 +1,4 @@
-//! FreeFem's `.msh` of the plane.
+//! FreeFem's `.msh`, a mesh of the plane.
 //!
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
 //! for a Mesh". All numbers start at one.
@@ -47,7 +47,7 @@ impl Walk for FreeFem {
                     cursor.signed("the label of a vertex")
                 };
                 let label = before.item(label, &mut None)?;
-                // Zero is what vertices have that were given no label.
+                // A vertex without a label has the label 0.
                 if label != 0 {
                     sink.node_within(vertex as u32, "label", label);
                 }

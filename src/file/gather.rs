@@ -1,4 +1,4 @@
-//! Walks through a file that was read before for what a reading leaves out: groups, and the labels of vertices.
+//! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
 
 use crate::error::ReadError;
 use crate::file::group_table::GroupTable;
@@ -9,14 +9,14 @@ use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 
-/// The groups of a file.
+/// Gathers the groups of a file.
 pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {
     let mut gatherer = Gatherer::default();
     (reader.walk)(source, &mut gatherer)?;
     Ok(gatherer.table)
 }
 
-/// The file's own number of each vertex.
+/// Returns the file's number or tag of each vertex.
 pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = Labels::default();
     (reader.walk)(source, &mut labels)?;
@@ -30,20 +30,20 @@ struct Gatherer {
     map: Option<TagMap>,
     triangles: u32,
     columns: Vec<Column>,
-    /// For each column the numbers of its regions, by dimension.
+    /// For each column, the numbers that were met, by dimension.
     met: Vec<Numbering<(u8, i64)>>,
-    /// For each column the group of each number of a region, if it has one.
+    /// For each column, the group of each number that was met, if it has one.
     groups: Vec<Vec<Option<usize>>>,
-    /// What each group is that elements stand within, its label, and its dimension where it is not theirs.
+    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
-    /// The groups of `within` for elements of each dimension, once one was met.
+    /// The groups of `within` for elements of each dimension, once such an element was met.
     within_groups: [Option<Vec<usize>>; 3],
-    /// The groups of the element at hand.
+    /// The groups of the current element.
     of_element: Vec<usize>,
 }
 
 impl Gatherer {
-    /// Finds the groups of an element.
+    /// Finds the groups of an element and puts them into `of_element`.
     fn find(&mut self, dimension: u8, region: [i64; 2]) {
         let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
         of_element.clear();
@@ -67,7 +67,7 @@ impl Gatherer {
             within.iter().map(number).collect()
         });
         of_element.extend_from_slice(within);
-        // An element that is named twice, as by two arrays of one name, is not to be counted twice.
+        // An element may be in the same group twice, as by two arrays of one name. It must be counted once.
         of_element.sort_unstable();
         of_element.dedup();
     }
@@ -83,7 +83,7 @@ impl Sink for Gatherer {
     }
 
     fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
-        // There is no error to tell: the file was read before without one.
+        // There is no error to report, as the file was read before without one.
         self.map = TagMap::new(&self.tags).ok();
         Ok(())
     }

@@ -1,27 +1,27 @@
-//! Gathers the groups of a file while it is walked through.
+//! Gathers the groups of a file during a walk through it.
 
 use crate::file::group::{Group, Groups};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 use std::collections::HashMap;
 
-/// The groups found so far, by number.
+/// The groups found so far. Their indices are their numbers.
 #[derive(Default)]
 pub(crate) struct GroupTable {
     groups: Vec<Gathered>,
     numbers: HashMap<(String, u8, Label), usize>,
-    /// The names of the groups of a tag, of one dimension or of all.
+    /// The names of groups, by kind, dimension (`None` for all) and tag.
     names: HashMap<(String, Option<u8>, i64), String>,
 }
 
 struct Gathered {
     group: Group,
-    /// Vertices of elements that are no triangles, in any order, with repeats.
+    /// Vertices of elements other than triangles, unordered and with repeats.
     others: Vec<u32>,
 }
 
 impl GroupTable {
-    /// The number of the group of this label.
+    /// Returns the number of a group, after adding it if it is new.
     pub(crate) fn number(&mut self, what: &str, dimension: u8, label: &Label) -> usize {
         let next = self.groups.len();
         let key = (what.to_owned(), dimension, label.clone());
@@ -47,12 +47,12 @@ impl GroupTable {
         number
     }
 
-    /// Adds the next triangle of a group, by its index.
+    /// Adds a triangle to a group. Triangles must come in ascending order.
     pub(crate) fn add_triangle(&mut self, group: usize, triangle: u32) {
         self.groups[group].group.triangles.push(triangle);
     }
 
-    /// Adds an element that is no triangle.
+    /// Adds the vertices of an element other than a triangle.
     pub(crate) fn add(&mut self, group: usize, kind: Kind, vertices: &[u32]) {
         let Gathered { group, others } = &mut self.groups[group];
         match kind {
@@ -64,12 +64,12 @@ impl GroupTable {
         others.extend_from_slice(vertices);
     }
 
-    /// Adds a vertex that is marked by itself.
+    /// Adds a vertex that the file itself assigns to a group.
     pub(crate) fn add_vertex(&mut self, group: usize, vertex: u32) {
         self.groups[group].others.push(vertex);
     }
 
-    /// Gives groups a name, be they known or to come. A group of a name that no element has exists too.
+    /// Names groups that are known or are added later. A group with a name exists even if it has no element.
     pub(crate) fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let Label::Name(name) = Label::name(name) else { return };
         if let Some(dimension) = dimension {
@@ -78,9 +78,9 @@ impl GroupTable {
         self.names.insert((what.to_owned(), dimension, tag), name);
     }
 
-    /// The groups of a mesh of these triangles.
+    /// Returns the groups of a mesh with these triangles and this many vertices.
     pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
-        // What is called the same stands together, in the order in which the file first has it.
+        // Groups of one kind stand together, and kinds are in the order in which the file first has them.
         let mut order: HashMap<String, usize> = HashMap::new();
         for Gathered { group, .. } in &self.groups {
             let next = order.len();

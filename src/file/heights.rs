@@ -7,16 +7,17 @@ use crate::file::sink::{Home, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
 
-/// The third coordinates of the points as they are read: whether they differ, and all of them if the sink asks for data.
+/// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
+/// data.
 pub(crate) struct Heights {
     first: Option<f64>,
     differ: bool,
     collected: Option<(Vec<usize>, Vec<f64>)>,
-    /// Whether some points have none.
+    /// Whether some points have no third coordinate.
     is_partial: bool,
 }
 
-/// The third coordinate of a point of which the file has two.
+/// The third coordinate of a point that has only two in the file.
 pub(crate) const NO_HEIGHT: (usize, f64) = (usize::MAX, 0.0);
 
 impl Heights {
@@ -25,7 +26,7 @@ impl Heights {
         Heights { first: None, differ: false, collected, is_partial: false }
     }
 
-    /// Takes the next point's, and where it stands.
+    /// Takes the third coordinate of the next point, with its offset in the file.
     #[inline]
     pub(crate) fn see(&mut self, (at, z): (usize, f64)) {
         self.is_partial |= at == NO_HEIGHT.0;
@@ -39,7 +40,7 @@ impl Heights {
         }
     }
 
-    /// Takes those of all records of a list in binary, the first of which stands at this byte.
+    /// Takes the third coordinates of all records of a binary list. `at` is the offset of the first.
     pub(crate) fn see_all(&mut self, z: Field<'_>, count: usize, at: usize) {
         if self.collected.is_some() || count < LONG {
             z.real(0..count).enumerate().for_each(|(index, z_of)| {
@@ -51,7 +52,7 @@ impl Heights {
         }
     }
 
-    /// Hands them to the sink under this name, if they differ or it asks for data.
+    /// Hands the numbers to the sink under this name, if they differ or if the sink asks for data.
     pub(crate) fn send(self, name: &str, form: Form, sink: &mut dyn Sink) {
         self.send_from(name, form, (Home::File, 0), sink);
     }
@@ -84,7 +85,7 @@ impl Heights {
     }
 }
 
-/// Collects numbers of text with their places.
+/// Collects numbers of a text with their offsets.
 #[derive(Default)]
 pub(crate) struct TextNumbers {
     places: Vec<usize>,
@@ -92,7 +93,7 @@ pub(crate) struct TextNumbers {
 }
 
 impl TextNumbers {
-    /// Reads the next token of the row.
+    /// Reads the next token of the row as a number.
     pub(crate) fn read(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
         let at = cursor.at();
         let number = cursor.real("a number of a point")?;
@@ -101,7 +102,7 @@ impl TextNumbers {
         Ok(())
     }
 
-    /// Reads one number of each of `count` rows, after so many tokens.
+    /// Reads one number of each of `count` rows, after skipping `before` tokens.
     pub(crate) fn column(
         &mut self,
         mut cursor: Cursor<'_>,
@@ -116,7 +117,7 @@ impl TextNumbers {
         Ok(())
     }
 
-    /// All of them, as those of these nodes, or of all.
+    /// Returns all numbers. `nodes` are the nodes they belong to; `None` if they belong to all nodes in order.
     pub(crate) fn finish(self, precision: Precision, nodes: Option<Vec<u64>>) -> PointNumbers {
         let Self { places, mut numbers } = self;
         numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));

@@ -1,6 +1,6 @@
-//! What groups of elements are told apart by: a number or a name.
+//! The label of a group: a number or a name.
 
-/// The number or name of a group, among those that the format calls the same.
+/// The number or name of a group, which tells it from others of the same kind.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Label {
     Tag(i64),
@@ -8,14 +8,14 @@ pub(crate) enum Label {
 }
 
 impl Label {
-    /// The label by a name of a file, which may be in any encoding.
+    /// Makes a label from a name in a file, which may be in any encoding.
     pub(crate) fn name(name: &[u8]) -> Label {
         Label::Name(String::from_utf8_lossy(name).into_owned())
     }
 
-    /// The label by a number: a tag if it is whole.
+    /// Makes a label from a number: a tag if it is whole, else a name.
     pub(crate) fn number(number: f64) -> Label {
-        // Whole numbers up to here have a double of their own.
+        // A double represents every whole number up to this one.
         const LIMIT: f64 = 9_007_199_254_740_992.0;
         match number.fract() == 0.0 && number.abs() <= LIMIT {
             true => Label::Tag(number as i64),

@@ -1,10 +1,10 @@
-//! Whether the items of a list stand on rows of their own, or anywhere.
+//! Tells whether the items of a list stand on rows of their own, or anywhere.
 
 use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 
-/// How to read what follows the row of a cursor, up to a byte of the file: by rows, if it has as many as its lists are to have, so
-/// that errors tell of a row that lacks a number; by words if not.
+/// Chooses how to read the text from the cursor to byte `end`. If it has `count` rows, it is read by rows, so that
+/// errors name a row that lacks a number. Otherwise it is read by words.
 pub(crate) fn of_rows_or_words(cursor: &Cursor<'_>, end: usize, count: u64) -> Syntax {
     let bytes = &cursor.source.bytes[..end];
     let lines = memchr::memchr_iter(b'\n', bytes[cursor.at()..].trim_ascii_end()).count() as u64;
@@ -15,10 +15,10 @@ pub(crate) fn of_rows_or_words(cursor: &Cursor<'_>, end: usize, count: u64) -> S
     }
 }
 
-/// How many rows follow.
+/// Counts the rows that follow.
 fn rows(cursor: &Cursor<'_>, end: usize) -> u64 {
     let mut rows = Cursor::within(cursor.source, cursor.at()..end);
-    // The rest of the row at hand.
+    // Skips the rest of the current row.
     rows.rest();
     std::iter::from_fn(|| rows.next_row().then_some(())).count() as u64
 }

@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, as text.
 //!
-//! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and mmg's and libMeshb's
-//! documentation. Edges, corners, required vertices and the vertices of required triangles stay fixed; required edges and
-//! ridges are edges.
+//! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
+//! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
+//! edges and ridges need no reading, as they are among the edges.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -20,13 +20,13 @@ use crate::file::token::{float, quoted};
 
 pub(crate) struct Medit;
 
-/// What lists of elements of a volume start with, of any order.
+/// The first letters of keywords for volume elements, of first or higher order.
 const VOLUMES: [&[u8]; 4] = [b"Tetrahedra", b"Hexahedra", b"Prisms", b"Pyramids"];
 
 /// A list of elements, which may stand before the vertices.
 #[derive(Clone)]
 struct List<'a> {
-    /// Stands before its first element.
+    /// The cursor before the first element.
     cursor: Cursor<'a>,
     count: u64,
     kind: Kind,
@@ -34,10 +34,10 @@ struct List<'a> {
 }
 
 impl<'a> List<'a> {
-    /// Hands on its elements. Returns where it ends.
+    /// Hands on the elements. Returns the cursor after them.
     fn send(self, sink: &mut dyn Sink) -> Result<Cursor<'a>, ReadError> {
         let List { mut cursor, count, kind, keyword } = self;
-        // Points have no reference: the list they stand in is what tells them apart.
+        // Points have no reference. The list they stand in is their group.
         let list = Within { what: "list", label: Label::name(keyword), dimension: None };
         sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
         if kind == Kind::Triangle {
@@ -125,7 +125,7 @@ impl Walk for Medit {
                         Some(list) if vertices_seen && kind.is_some() => {
                             *cursor = list.clone().send(sink)?;
                         }
-                        // What a list holds is numbers: the next keyword starts with a letter.
+                        // The lists hold only numbers, so the next word that starts with a letter is a keyword.
                         _ => skip_numbers(cursor),
                     }
                 }
@@ -144,7 +144,7 @@ impl Walk for Medit {
     }
 }
 
-/// Reads a list of numbers, one a row.
+/// Reads a list of numbers, one in each row.
 fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
     let count = value(cursor, "the number of required triangles")?;
     for done in 0..count {
@@ -154,7 +154,8 @@ fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadEr
     Ok(())
 }
 
-/// Hands on the vertices of triangles with these numbers, which mmg is not to change, as corners.
+/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
+/// from 1.
 fn hold_required(
     triangles: Vec<(Cursor<'_>, u64)>,
     mut required: Vec<u64>,
@@ -189,7 +190,7 @@ fn hold_required(
     Ok(())
 }
 
-/// Whether a list is of elements that have nodes on their sides too, such as `TrianglesP2`.
+/// Whether a list has elements with nodes on their sides, such as `TrianglesP2`.
 fn is_of_higher_order(keyword: &[u8]) -> bool {
     let [elements @ .., b'P' | b'Q', b'2'..=b'9'] = keyword else { return false };
     kind_of(elements).is_some()
@@ -205,7 +206,7 @@ fn kind_of(keyword: &[u8]) -> Option<Kind> {
     }
 }
 
-/// Reads the number after a keyword, on its row or the next.
+/// Reads the number after a keyword, on the same row or the next.
 fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     if !cursor.next_word() {
         return Err(cursor.error(format!("the file ends before {what}"), CUT_OFF));
@@ -250,7 +251,7 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
                 cursor.signed("the reference of a vertex")
             };
             let reference = before.item(reference, &mut None)?;
-            // Zero is what vertices have that were given no reference.
+            // A vertex without a reference has the reference 0.
             if reference != 0 {
                 sink.node_within(vertex as u32, "reference", reference);
             }
@@ -259,7 +260,7 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
     Ok(())
 }
 
-/// Reads the nodes of an element and its reference. Points have none.
+/// Reads the nodes and the reference of an element. Points have no reference.
 #[inline]
 fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadError> {
     let nodes = nodes(cursor, kind)?;
@@ -270,7 +271,7 @@ fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadE
     Ok((nodes, reference))
 }
 
-/// Moves behind the last number before the next keyword.
+/// Moves past the last number before the next keyword.
 fn skip_numbers(cursor: &mut Cursor<'_>) {
     loop {
         while !cursor.is_at_end() {
@@ -284,7 +285,7 @@ fn skip_numbers(cursor: &mut Cursor<'_>) {
         if !next.next_row() {
             return;
         }
-        // Rows of plain numbers, as most are, have no letter.
+        // Most rows are plain numbers, without letters.
         let row = next.clone().rest();
         if row.iter().fold(0, |most, &byte| byte.max(most)) < b'A' {
             next.rest();
@@ -293,7 +294,7 @@ fn skip_numbers(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Whether a word is none of those that are numbers, such as NaN.
+/// Whether a word is a keyword. Some numbers start with a letter too, such as NaN.
 fn is_keyword(word: &[u8]) -> bool {
     word.first().is_some_and(u8::is_ascii_alphabetic) && float(word).is_none()
 }

@@ -1,7 +1,8 @@
 //! Medit's `.meshb`, versions 1 to 4, in either byte order.
 //!
-//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: each keyword is followed by the place of the
-//! next one. Version 1 has coordinates in single precision, version 3 places of 8 bytes, version 4 all whole numbers of 8.
+//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: after each keyword stands the offset of
+//! the next. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes, and in version 4
+//! all whole numbers have.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
@@ -18,7 +19,7 @@ use crate::mesh::Precision;
 
 pub(crate) struct MeditBinary;
 
-/// How wide the numbers of a version are.
+/// The widths of numbers in a version of the format, in bytes.
 #[derive(Clone, Copy)]
 struct Widths {
     order: Order,
@@ -27,7 +28,7 @@ struct Widths {
     integer: usize,
 }
 
-/// A list of elements that was passed over, as they may stand before the vertices.
+/// A list of elements that is read later, as it may stand before the vertices.
 struct List<'a> {
     cursor: Cursor<'a>,
     bytes: &'a [u8],
@@ -159,7 +160,7 @@ impl Walk for MeditBinary {
     }
 }
 
-/// Takes a whole number of 4 or 8 bytes.
+/// Takes a signed whole number of 4 or 8 bytes.
 fn integer(
     cursor: &mut Cursor<'_>,
     widths: Widths,
@@ -172,7 +173,7 @@ fn integer(
     bytes.map(|bytes| widths.order.signed(bytes))
 }
 
-/// Takes the items of a list.
+/// Takes `count` items of `size` bytes.
 fn items<'a>(
     cursor: &mut Cursor<'a>,
     count: i64,
@@ -226,7 +227,7 @@ fn vertices(
     if sink.asks_for_groups() {
         for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {
             let reference = widths.order.signed(&vertex[item - widths.integer..]);
-            // Zero is what vertices have that were given no reference.
+            // A vertex without a reference has the reference 0.
             if reference != 0 {
                 sink.node_within(index, "reference", reference);
             }
@@ -235,7 +236,8 @@ fn vertices(
     Ok(())
 }
 
-/// Hands on the vertices of triangles with these numbers, which mmg is not to change, as corners.
+/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
+/// from 1.
 fn hold_required(
     lists: &[List<'_>],
     mut required: Vec<u64>,
@@ -269,7 +271,7 @@ fn hold_required(
 
 fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
-    // Points have no reference: the list they stand in is what tells them apart.
+    // Points have no reference. The list they stand in is their group.
     let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };
     sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);

@@ -1,4 +1,4 @@
-//! A mesh with its file, which is read once and written again with nothing changed but coordinates.
+//! A mesh with its file, which is read once and written with nothing changed but coordinates.
 
 use crate::chart::Chart;
 use crate::error::{MeshError, ReadError};
@@ -15,18 +15,18 @@ use std::path::Path;
 
 /// A mesh with the file it was read from.
 ///
-/// Its content is kept, so that [`write`](Self::write) replaces the coordinates of moved vertices and
-/// nothing else: numbering, comments, attributes, physical groups, third coordinates, node and
-/// element data, line ends come back byte for byte.
+/// The file's content is kept. [`write`](Self::write) replaces the coordinates of moved vertices and nothing else.
+/// Numbering, comments, attributes, physical groups, third coordinates, node and element data, and line ends come back
+/// byte for byte.
 ///
 /// # Regions
-/// Triangles are of one region if the file says the same of them:
+/// Triangles are of one region if the file has the same entries for them:
 ///
 /// | format | a region has the same |
 /// |---|---|
 /// | Triangle | attributes in the `.ele`, all that its first line announces, compared as numbers |
 /// | gmsh 2.2 | first and second tag: physical group and geometrical entity |
-/// | gmsh 4.1 | entity of the model, and so the physical groups of that entity |
+/// | gmsh 4.0, 4.1 | entity of the model, and so the physical groups of that entity |
 /// | Medit, FreeFem | reference |
 /// | SMS 2dm | material |
 /// | OBJ | material, group and object |
@@ -43,7 +43,7 @@ use std::path::Path;
 /// one physical group. [`free_interfaces`](Self::free_interfaces) takes these vertices out of the list.
 ///
 /// # What may move
-/// What a user names is fixed beside what the file fixes:
+/// What a user names is fixed in addition to what the file fixes:
 ///
 /// ```no_run
 /// # use gpu_smooth::{MeshFile, Topology, select};
@@ -68,7 +68,7 @@ pub struct MeshFile {
     has_parameters: bool,
     /// The bytes at which the x of vertices start in the part that has the coordinates.
     x_at: Places,
-    /// The vertex of each of these, if there are several to a vertex.
+    /// The vertex of each offset in `x_at`, if a vertex may have several.
     owners: Option<Vec<u32>>,
     /// How that part has the coordinates.
     numbers: Numbers,
@@ -78,19 +78,20 @@ pub struct MeshFile {
     encoded: Option<Box<dyn Encoded>>,
     regions: Option<Vec<u32>>,
     curves: Curves,
-    /// Whether vertices between regions were freed.
+    /// Whether [`free_interfaces`](Self::free_interfaces) was called.
     has_free_interfaces: bool,
-    /// Vertices fixed only for lying between regions. The mesh's list of fixed vertices ends with them.
+    /// Vertices that are fixed only because they lie between regions. They are the last ones of the mesh's fixed
+    /// vertices.
     interfaces: Vec<u32>,
-    /// All files of the mesh, the one with the vertices first: of a Triangle mesh its `.node`,
-    /// `.ele` and, if there is one, `.poly`.
+    /// All files of the mesh, the one with the vertices first. For a Triangle mesh, these are the `.node`, the `.ele`
+    /// and, if there is one, the `.poly`.
     sources: Vec<Source>,
-    /// How the mesh was laid out on a sphere, if it had to be.
+    /// How the mesh was laid out on a sphere, if that was needed.
     chart: Option<Chart>,
 }
 
 impl MeshFile {
-    /// Makes it of what a reader returned.
+    /// Makes a mesh file of what a reader returned.
     ///
     /// # Errors
     /// [`ReadError::Format`] if there is no triangle.
@@ -140,7 +141,7 @@ impl MeshFile {
         })
     }
 
-    /// The file that was read; of a Triangle mesh its `.node`.
+    /// Returns the path of the file that was read; for a Triangle mesh, that of its `.node`.
     pub fn path(&self) -> &Path {
         &self.sources[0].path
     }
@@ -151,7 +152,7 @@ impl MeshFile {
         self.parts().into_iter().map(|source| source.path.as_path())
     }
 
-    /// All files that were read, in the order of [`paths`](Self::paths), with their bytes as they were read.
+    /// Lists all files that were read, in the order of [`paths`](Self::paths), with their bytes.
     pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
         self.parts().into_iter().map(|source| {
             let bytes = source.packed.as_ref().map_or(&source.bytes, |packed| &packed.bytes);
@@ -159,17 +160,17 @@ impl MeshFile {
         })
     }
 
-    /// The mesh, vertices and triangles in the order of the file.
+    /// Returns the mesh. Vertices and triangles are in the order of the file.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// How the mesh was laid out by [`lay_out_on_sphere`](Self::lay_out_on_sphere), if there was need for it.
+    /// Returns how [`lay_out_on_sphere`](Self::lay_out_on_sphere) laid the mesh out; `None` if that was not needed.
     pub fn chart(&self) -> Option<&Chart> {
         self.chart.as_ref()
     }
 
-    /// The mesh as the file has it, be it laid out on a sphere or not.
+    /// Returns the mesh as the file has it, even if [`mesh`](Self::mesh) is laid out on a sphere.
     pub fn original(&self) -> &Mesh {
         self.chart.as_ref().map_or(&self.mesh, Chart::original)
     }
@@ -182,23 +183,24 @@ impl MeshFile {
         self.chart = Some(chart);
     }
 
-    /// The [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]. Regions are numbered from 0 in
-    /// the order in which the file first names them. `None` if all triangles are of one region.
+    /// Returns the [region](Self#regions) of each triangle, in the order of [`Mesh::triangles`]. Regions are numbered
+    /// from 0 in the order in which the file first names them. `None` if all triangles are of one region.
     pub fn regions(&self) -> Option<&[u32]> {
         self.regions.as_deref()
     }
 
-    /// The vertices that are fixed only because triangles of different [regions](Self#regions) meet there, ascending.
-    /// Those on the boundary, on line elements and the like are not among them.
+    /// Returns the vertices that are fixed only because triangles of different [regions](Self#regions) meet there,
+    /// ascending. Vertices that are fixed for another reason too, such as being on the boundary or on line elements,
+    /// are left out.
     ///
-    /// Empty after [`free_interfaces`](Self::free_interfaces).
+    /// The list is empty after [`free_interfaces`](Self::free_interfaces).
     pub fn interface_vertices(&self) -> &[u32] {
         &self.interfaces
     }
 
     /// Takes the [`interface_vertices`](Self::interface_vertices) out of [`Mesh::fixed`], so that they move like any
-    /// other vertex and regions change their shapes. Vertices that the file fixes by other means, such as those on curves
-    /// of a gmsh 4.1 model, stay fixed where regions meet too.
+    /// other vertex and regions change their shapes. Vertices that are fixed for another reason, such as those on
+    /// curves of a gmsh 4.1 model, stay fixed.
     pub fn free_interfaces(&mut self) {
         self.has_free_interfaces = true;
         let held = std::mem::take(&mut self.interfaces);
@@ -206,9 +208,9 @@ impl MeshFile {
         fixed.truncate(fixed.len() - held.len());
     }
 
-    /// The edges along which vertices inside the mesh may slide: line elements, segments, and the edges between triangles of different
-    /// [regions](Self#regions), unless [`free_interfaces`](Self::free_interfaces) was called. For
-    /// [`Slide::lines`](crate::Slide::lines).
+    /// Returns the edges along which vertices inside the mesh may slide, for [`Slide::lines`](crate::Slide::lines).
+    /// These are line elements, segments, and the edges between triangles of different [regions](Self#regions), unless
+    /// [`free_interfaces`](Self::free_interfaces) was called.
     pub fn lines(&self) -> Vec<[u32; 2]> {
         let Mesh { points, triangles, .. } = &self.mesh;
         let mut lines = self.curves.lines.clone();
@@ -218,49 +220,50 @@ impl MeshFile {
         lines
     }
 
-    /// The vertices that do not slide: points and corners of the file, vertices of quadrilaterals and polygons, and those of
-    /// [`fix`](Self::fix) and [`fix_all_but`](Self::fix_all_but). For [`Slide::held`](crate::Slide::held).
+    /// Returns the vertices that do not slide, for [`Slide::held`](crate::Slide::held). These are points and corners of
+    /// the file, vertices of quadrilaterals and polygons, and those of [`fix`](Self::fix) and
+    /// [`fix_all_but`](Self::fix_all_but).
     pub fn held_vertices(&self) -> &[u32] {
         &self.curves.held
     }
 
-    /// The vertices that belong together in pairs, as where a model is periodic: those of gmsh's `$Periodic`. For
+    /// Returns the pairs of vertices that belong together in a periodic model, from gmsh's `$Periodic`. For
     /// [`Slide::periodic`](crate::Slide::periodic).
     pub fn periodic(&self) -> &[Periodic] {
         &self.curves.periodic
     }
 
-    /// The motions of a periodic model that take vertices of the boundary to others, which the file does not list: those of SU2's
-    /// `NPERIODIC`. For [`Slide::pair_by`](crate::Slide::pair_by).
+    /// Returns the motions of a periodic model that take vertices of the boundary to others, if the file does not list
+    /// the pairs, from SU2's `NPERIODIC`. For [`Slide::pair_by`](crate::Slide::pair_by).
     pub fn periodic_motions(&self) -> &[Motion] {
         &self.curves.motions
     }
 
-    /// Whether the file says that its model is periodic, but not in a way that could be read: any vertices of the boundary may belong
-    /// together in pairs.
+    /// Whether the file says that its model is periodic, but the pairs could not be read. Any vertices of the boundary
+    /// may then be pairs.
     pub fn has_unknown_pairs(&self) -> bool {
         self.curves.has_unknown_pairs
     }
 
-    /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. In any order,
-    /// repeats allowed.
+    /// Adds vertices to [`Mesh::fixed`], so that they stay where they are, like those that the file fixes. `vertices`
+    /// may be in any order, with repeats.
     ///
-    /// They are no [`interface_vertices`](Self::interface_vertices) from then on, so that
-    /// [`free_interfaces`](Self::free_interfaces) leaves them fixed, be it called before or after.
+    /// They are no longer [`interface_vertices`](Self::interface_vertices): [`free_interfaces`](Self::free_interfaces)
+    /// leaves them fixed, whether it is called before or after.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then none is added.
     pub fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
         let held = self.marked(vertices)?;
         self.hold(held);
         Ok(())
     }
 
-    /// Adds all vertices but these to [`Mesh::fixed`], as [`fix`](Self::fix) does. These are not freed where they are fixed
-    /// already.
+    /// Adds all vertices except these to [`Mesh::fixed`], as [`fix`](Self::fix) does. Of these vertices, those that are
+    /// fixed already stay so.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if there is no such vertex; then none is added.
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then none is added.
     pub fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
         let mut held = self.marked(vertices)?;
         held.iter_mut().for_each(|held| *held = !*held);
@@ -268,7 +271,7 @@ impl MeshFile {
         Ok(())
     }
 
-    /// For each vertex of the mesh, whether it is among these.
+    /// Returns for each vertex of the mesh whether it is in the list.
     fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
         let mut marked = vec![false; self.mesh.points.len()];
         for &vertex in vertices {
@@ -282,20 +285,20 @@ impl MeshFile {
         Ok(marked)
     }
 
-    /// Adds the vertices for which this holds to those fixed for other reasons than lying between regions.
+    /// Fixes the vertices that are marked in `held`, for another reason than lying between regions.
     fn hold(&mut self, mut held: Vec<bool>) {
         let all = (0..).zip(&held).filter(|&(_, &held)| held);
         self.curves.held.extend(all.map(|(vertex, _)| vertex));
         let Mesh { fixed, .. } = &mut self.mesh;
         fixed.truncate(fixed.len() - self.interfaces.len());
         self.interfaces.retain(|&vertex| !held[vertex as usize]);
-        // Those that are fixed already are not listed again.
+        // Vertices that are fixed already must not be listed again.
         fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
         fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
         fixed.extend_from_slice(&self.interfaces);
     }
 
-    /// The format it was read in, and will be written in.
+    /// Returns the format that the file was read in, which is also written.
     pub fn format(&self) -> Format {
         self.format
     }
@@ -326,31 +329,31 @@ impl MeshFile {
         self.numbers
     }
 
-    /// The points, if the file has them encoded.
+    /// Returns the encoded points, if the file has them encoded.
     pub(crate) fn encoded(&self) -> Option<&dyn Encoded> {
         self.encoded.as_deref()
     }
 
-    /// How many digits of coordinates the file holds. [`write`](Self::write) rounds to them; for
-    /// [`Options::stored`](crate::Options::stored), so that a run judges the values as they will be written.
+    /// Returns the precision of coordinates in the file, to which [`write`](Self::write) rounds. As
+    /// [`Options::stored`](crate::Options::stored), it makes a run judge the values that will be written.
     pub fn precision(&self) -> Precision {
         self.numbers.precision()
     }
 
-    /// Remarks for the user on what the file holds besides triangles, one line each.
+    /// Returns remarks for the user on what the file holds besides triangles, one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// The names of the real numbers that the file gives vertices besides x and y: depths, third coordinates that are not
-    /// all the same, point data. [`write`](Self::write) keeps them as they are, so that they no longer fit where vertices
-    /// move; see [`point_fields`](Self::point_fields).
+    /// Returns the names of the real numbers that the file gives vertices besides x and y: depths, third coordinates
+    /// that differ, point data. [`write`](Self::write) keeps these numbers, so they no longer fit where vertices move.
+    /// [`point_fields`](Self::point_fields) reads them.
     pub fn data_names(&self) -> &[String] {
         &self.data
     }
 
-    /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps them;
-    /// see [`plane_parameters`](Self::plane_parameters).
+    /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps
+    /// these parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {
         self.has_parameters
     }

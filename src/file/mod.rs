@@ -1,4 +1,4 @@
-//! Mesh files: read once, written again with moved vertices and nothing else changed.
+//! Mesh files, which are read once and written with nothing changed but moved vertices.
 
 mod adcirc;
 #[cfg(test)]

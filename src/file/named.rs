@@ -1,4 +1,4 @@
-//! What a user can name in a mesh file: groups of elements, and single vertices.
+//! Groups of elements and single vertices that a user can name in a mesh file.
 
 use crate::error::ReadError;
 use crate::file::families::Family;
@@ -13,7 +13,7 @@ use crate::file::triangle_groups;
 use std::path::Path;
 
 impl MeshFile {
-    /// All groups that the file names or numbers. The file's content is searched again for them.
+    /// Returns all groups that the file names or numbers. The file's content is searched again for them.
     ///
     /// | format | groups |
     /// |---|---|
@@ -28,14 +28,17 @@ impl MeshFile {
     /// | CGNS | `section`, `boundary` and its `family`, by name |
     /// | MED | `group` of elements and of nodes, by name; `family` of elements |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
-    /// | VTK | values of the cell data that tell [regions](Self#regions), called as these arrays are |
+    /// | VTK, XDMF | values of the cell data that tell [regions](Self#regions), called as these arrays are |
+    /// | STL | `solid` |
+    /// | Exodus II | `block`, `sideset` and `nodeset`, with their names |
     /// | others | none |
     ///
-    /// Points, lines and surfaces of one tag are groups of their own. Where zero is what a program writes for no tag, as in
-    /// gmsh and for markers and references of vertices, it is no group.
+    /// Points, lines and surfaces with the same tag are separate groups. Zero is no group where programs write it for
+    /// no tag, as in gmsh and for markers and references of vertices.
     ///
     /// # Errors
-    /// [`ReadError`] if what names groups is damaged, such as gmsh's `$Entities`. Reading the mesh does not need that.
+    /// [`ReadError`] if the names of groups, such as gmsh's `$Entities`, are damaged. Reading the mesh does not need
+    /// them.
     pub fn groups(&self) -> Result<Groups, ReadError> {
         let sources = self.sources();
         let table = match &Family::of(self.format()).reader {
@@ -46,16 +49,16 @@ impl MeshFile {
         Ok(table.finish(&mesh.triangles, mesh.points.len()))
     }
 
-    /// Reads a list of vertices: the mesh file's own numbers for them, as in [`Place::label`](crate::Place::label), with
-    /// blanks or line ends between. What follows `#` on a line is a comment. Returns indices in
+    /// Reads a list of vertices by the mesh file's own numbers, those of [`Place::label`](crate::Place::label). Numbers
+    /// are separated by blanks or line ends, and `#` starts a comment. Returns indices in
     /// [`Mesh::points`](crate::Mesh::points), in the order of the list.
     ///
     /// # Errors
-    /// [`ReadError`] if the list cannot be read, holds other than whole numbers, or a number that no vertex has.
+    /// [`ReadError`] if the list cannot be read, holds anything but whole numbers, or has a number that no vertex has.
     pub fn read_vertices(&self, list: &Path) -> Result<Vec<u32>, ReadError> {
         let list = &Source::load(list)?;
         let labels = self.vertex_labels()?;
-        // Every label is of one vertex: files in which that is not so are refused.
+        // Each label belongs to one vertex, as files with repeated labels are refused.
         let map = TagMap::new(&labels).ok();
         let cursor = &mut Cursor::new(list);
         let mut vertices = Vec::new();

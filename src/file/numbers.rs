@@ -1,23 +1,23 @@
-//! How the coordinates stand in a file.
+//! How coordinates and other numbers are stored in a file.
 
 use crate::file::binary::Order;
 use crate::mesh::Precision;
 use std::ops::Range;
 
-/// How the coordinates of a vertex stand in its file, from where its x starts.
+/// How the coordinates of a vertex are stored in its file, from the offset of x on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Numbers {
-    /// As text, y the token after x. What reads the file may know only single precision.
+    /// As text. y is the token after x. Programs that read the format may know only single precision.
     Text { precision: Precision },
-    /// In binary, y so many bytes after x.
+    /// In binary. y is `y_after` bytes after x.
     Binary { order: Order, precision: Precision, y_after: usize },
 }
 
 impl Numbers {
-    /// Text with all digits.
+    /// Text of double precision.
     pub(crate) const TEXT: Numbers = Numbers::Text { precision: Precision::Double };
 
-    /// Numbers in binary, y next to x.
+    /// Numbers in binary, with y right after x.
     pub(crate) fn adjacent(order: Order, precision: Precision) -> Numbers {
         Numbers::Binary { order, precision, y_after: precision.bytes() }
     }
@@ -29,10 +29,10 @@ impl Numbers {
     }
 }
 
-/// How a single number stands in a file.
+/// How a single number is stored in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// As a token of text. What reads the file may know only single precision.
+    /// As a token of text. Programs that read the format may know only single precision.
     Text(Precision),
     /// In binary.
     Binary(Order, Precision),
@@ -55,17 +55,17 @@ impl From<Numbers> for Form {
     }
 }
 
-/// Where the numbers of an array start, ascending.
+/// The offsets of an array's numbers, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Places {
-    /// Each by itself.
+    /// An offset for each number.
     List(Vec<usize>),
-    /// One every so many bytes.
+    /// One number every `stride` bytes.
     Regular { start: usize, stride: usize },
 }
 
 impl Places {
-    /// Where the number of this index starts.
+    /// Returns the offset of the number with this index.
     #[inline]
     pub(crate) fn at(&self, index: usize) -> usize {
         match self {
@@ -75,15 +75,15 @@ impl Places {
     }
 }
 
-/// Places of numbers as they are found. They take memory only once they are not at equal steps.
+/// Collects the offsets of numbers as they are found. It needs memory only if they are not evenly spaced.
 #[derive(Default)]
 pub(crate) struct FoundPlaces {
     start: usize,
     stride: usize,
     count: usize,
-    /// All of them, if they are not at equal steps.
+    /// All offsets, if they are not evenly spaced.
     list: Vec<usize>,
-    /// About how many there will be.
+    /// About how many offsets there will be.
     expected: usize,
 }
 
@@ -103,7 +103,7 @@ impl FoundPlaces {
         }
     }
 
-    /// Adds so many places at equal steps.
+    /// Adds `count` offsets that are `stride` bytes apart.
     pub(crate) fn extend(&mut self, start: usize, stride: usize, count: usize) {
         let follows = match (self.count, count) {
             (_, 0) => return,
@@ -131,7 +131,7 @@ impl FoundPlaces {
         self.count += count;
     }
 
-    /// The place of this index.
+    /// Returns the offset with this index.
     pub(crate) fn at(&self, index: usize) -> usize {
         match self.list.is_empty() {
             true => self.start + index * self.stride,
@@ -154,21 +154,21 @@ pub(crate) struct Splice {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Where a file says how far from their beginning an array stands in the data at its end.
+/// A number in a file that says how far from the start of the appended data an array stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Offset {
     pub(crate) value: usize,
-    /// Where the array starts in the file.
+    /// The offset of the array in the file.
     pub(crate) array_at: usize,
-    /// Where the file has the value.
+    /// Where the number stands in the file.
     pub(crate) place: Range<usize>,
 }
 
-/// Arrays of numbers that a file has in another form than as numbers in place: in base64, or compressed.
+/// Arrays of numbers that are encoded in their file: in base64, or compressed.
 pub(crate) trait Encoded: Send + Sync {
-    /// The numbers in binary, as they were read.
+    /// Returns the decoded numbers in binary, as they were read.
     fn bytes(&self) -> &[u8];
-    /// Where they stand in the file.
+    /// Returns the ranges of the file that hold the encoded arrays.
     fn ranges(&self) -> Vec<Range<usize>>;
     /// What of the file is replaced if these become the numbers. `end` is where the file ends, with what was put behind it so far; what
     /// is put there is a splice at its end as it was read.

@@ -1,8 +1,8 @@
-//! Wavefront's `.obj`, of a mesh in the plane.
+//! Wavefront's `.obj`, for a mesh in the plane.
 //!
-//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from one as they come; faces and lines may
-//! name them by negative numbers too, counted back from the last one before them. Texture coordinates and normals are
-//! not read.
+//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from 1 in their order. Faces and lines
+//! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
+//! are not read.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -18,7 +18,7 @@ use crate::file::token::{integer, quoted};
 
 pub(crate) struct Obj;
 
-/// A row that is used.
+/// A row of the file, as far as it is used.
 enum Row<'a> {
     Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
@@ -27,12 +27,12 @@ enum Row<'a> {
     Line(Corners),
     /// Vertices that are points.
     Points(Corners),
-    /// The start of a group, object or material, all of the row.
+    /// The row that starts a group, object or material.
     Name(&'a [u8]),
     Other,
 }
 
-/// The vertices of an element. A list for each takes long to make where there are millions, so most have none.
+/// The vertices of an element. Up to four need no memory of their own, which would take long with millions of elements.
 enum Corners {
     Few([i64; 4], usize),
     Many(Vec<i64>),
@@ -134,7 +134,7 @@ impl Walk for Obj {
     }
 }
 
-/// Stands before the first row. A row may be of several lines, each but the last of which ends in a backslash.
+/// Returns a cursor before the first row. A line that ends in a backslash is joined to the next one.
 fn rows(source: &Source) -> Cursor<'_> {
     let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
     match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
@@ -143,17 +143,17 @@ fn rows(source: &Source) -> Cursor<'_> {
     }
 }
 
-/// The names that hold where a row stands.
+/// The material, object and groups of the current row.
 #[derive(Default)]
 struct Named<'a> {
     material: Option<&'a [u8]>,
     object: Option<&'a [u8]>,
-    /// A row may name several groups.
+    /// The groups; a row may name several.
     groups: Vec<&'a [u8]>,
 }
 
 impl<'a> Named<'a> {
-    /// Takes a row that names what follows.
+    /// Takes a row that names the material, the object or the groups of the elements after it.
     fn enter(&mut self, row: &'a [u8]) {
         let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());
         let name = row[split..].trim_ascii();
@@ -168,7 +168,7 @@ impl<'a> Named<'a> {
         }
     }
 
-    /// The groups of the elements that follow. They hold elements of any kind.
+    /// Returns the groups of the elements that follow, which may have elements of any kind.
     fn groups(&self) -> Vec<Within<'static>> {
         let of = |what, names: &[&[u8]]| -> Vec<_> {
             let one = |name: &&[u8]| Within { what, label: Label::name(name), dimension: Some(2) };
@@ -179,20 +179,21 @@ impl<'a> Named<'a> {
     }
 }
 
-/// The numbers of vertices, those that are counted back made to count from the first one.
+/// Returns the numbers of vertices counted from the first one. `before` is the number of vertices before the row.
 fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64>, ReadError> {
     let number = |&vertex: &i64| {
         let number = match vertex {
             0.. => Some(vertex.unsigned_abs()),
             _ => (before + 1).checked_sub(vertex.unsigned_abs()),
         };
-        let problem = || format!("vertex {vertex} stands before the first one");
+        let problem =
+            || format!("vertex {vertex}, counted back from this row, is before the first one");
         number.ok_or_else(|| cursor.error(problem(), CORRECT))
     };
     vertices.iter().map(number).collect()
 }
 
-/// Hands on a face. Polygons of more than four corners keep their vertices fixed.
+/// Hands on a face. The vertices of polygons with more than four corners stay fixed.
 fn face(
     cursor: &Cursor<'_>,
     sink: &mut dyn Sink,
@@ -210,7 +211,7 @@ fn face(
     }
 }
 
-/// Tells the sink what rows there are of those that are not read.
+/// Tells the sink which kinds of rows are not read.
 #[cold]
 fn left_out(mut cursor: Cursor<'_>, sink: &mut dyn Sink) {
     while cursor.next_row() {
@@ -224,7 +225,7 @@ fn left_out(mut cursor: Cursor<'_>, sink: &mut dyn Sink) {
     }
 }
 
-/// Reads a row if it is a vertex's.
+/// Reads a row if it is that of a vertex.
 #[inline]
 fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     if cursor.token() != Some(b"v") {
@@ -234,7 +235,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     Ok(Row::Vertex(x_at, at, cursor.height_if_any("a vertex")?))
 }
 
-/// Reads a row if it is not a vertex's.
+/// Reads a row unless it is that of a vertex.
 #[inline]
 fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let named = b"gou".iter().any(|&first| cursor.is_at(first)).then(|| cursor.clone());
@@ -261,7 +262,7 @@ fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
             Ok(match kind {
                 b"l" => Row::Line(corners),
                 b"p" => Row::Points(corners),
-                // Faces were called outlines of faces once.
+                // `fo` is an old keyword for a face.
                 _ => Row::Face(corners),
             })
         }

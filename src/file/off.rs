@@ -21,7 +21,7 @@ impl Walk for Off {
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "header lines")?;
-        // Geomview takes a file without a header for a plain one.
+        // Geomview reads a file without a header as plain OFF.
         let has_header = integer(cursor.clone().token().unwrap_or_default()).is_none();
         let header = if has_header { cursor.token().unwrap_or_default() } else { b"OFF" };
         let more = match header {
@@ -46,7 +46,7 @@ impl Walk for Off {
         cursor.check_vertex_count(vertices)?;
         let is_spread = cursor.is_at_end();
         let faces = count(cursor, "faces")?;
-        // Many leave out the number of edges.
+        // Many files leave out the number of edges.
         match is_spread {
             true => _ = count(cursor, "edges")?,
             false => _ = cursor.token(),
@@ -78,7 +78,7 @@ impl Walk for Off {
         sink.end_nodes(cursor)?;
         heights.send("z", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
-        // What follows the corners of a face on its row is its color.
+        // A color may follow the corners of a face on its row.
         *cursor = cursor.clone().of(Syntax::RECORDS);
         each_row(
             cursor,
@@ -108,8 +108,8 @@ fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.integer(format_args!("the number of {what}"))
 }
 
-/// How vertices with so many numbers more than coordinates stand on the lines that follow: one a row, with whatever programs add
-/// there, unless rows have too few numbers or there are too few rows.
+/// Chooses how to read the vertices, which have `more` numbers besides coordinates. They are read one in each row, with
+/// other text after them ignored, unless rows have too few numbers or there are too few rows.
 fn layout(cursor: &Cursor<'_>, (vertices, faces): (u64, u64), more: usize) -> Syntax {
     let starts_on_row = !cursor.is_at_end();
     let mut first = cursor.clone();
@@ -121,9 +121,9 @@ fn layout(cursor: &Cursor<'_>, (vertices, faces): (u64, u64), more: usize) -> Sy
     if is_of_words { Syntax::WORDS } else { Syntax::RECORDS }
 }
 
-/// Whether at least so many rows follow.
+/// Whether at least `count` rows follow.
 fn has_rows(cursor: &Cursor<'_>, count: u64) -> bool {
-    // Nearly all lines start with a number, and so are rows. That is seen faster than rows are read.
+    // Nearly all lines start with a number and are rows, which is faster to count than rows are read.
     let (bytes, start) = (&cursor.source.bytes, cursor.at());
     let is_row = |&at: &usize| matches!(bytes.get(start + at + 1), Some(b'0'..=b'9' | b'-'));
     let sure = memchr::memchr_iter(b'\n', &bytes[start..]).filter(is_row).count();

@@ -8,10 +8,10 @@ use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// How many bytes a compressed one may stand for. A lattice, as regular as meshes are, has 5 to 20 of them; gzip can do a
+/// The most bytes that one compressed byte may unpack to. Regular lattices unpack to 5 to 20 bytes; gzip can reach a
 /// thousand.
 const MOST: usize = 200;
-/// So many bytes may be unpacked whatever the size of the compressed file.
+/// This many bytes may be unpacked from a file of any size.
 const ALWAYS: usize = 1 << 20;
 
 /// How a file is compressed.
@@ -27,7 +27,7 @@ pub(crate) struct Packed {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Why a compressed file is not read.
+/// Why a compressed file is not read, and what to do.
 #[derive(Debug)]
 pub(crate) struct Unpackable {
     pub(crate) problem: String,
@@ -37,7 +37,7 @@ pub(crate) struct Unpackable {
 impl Packing {
     const ALL: [Packing; 2] = [Packing::Gzip, Packing::Zstd];
 
-    /// What a name ends in that promises a file compressed so, without the dot.
+    /// Returns the ending of file names for this compression, without the dot.
     fn ending(self) -> &'static str {
         match self {
             Packing::Gzip => "gz",
@@ -52,7 +52,7 @@ impl Packing {
         }
     }
 
-    /// What files start with that are compressed so.
+    /// Returns the first bytes of files with this compression.
     fn opens(self) -> &'static [u8] {
         match self {
             Packing::Gzip => b"\x1F\x8B",
@@ -60,13 +60,13 @@ impl Packing {
         }
     }
 
-    /// How a file of this name is compressed, if the name tells.
+    /// Returns the compression that the ending of a path stands for.
     pub(crate) fn of(path: &Path) -> Option<Packing> {
         let ending = path.extension()?;
         Self::ALL.into_iter().find(|packing| ending.eq_ignore_ascii_case(packing.ending()))
     }
 
-    /// Compresses what is written.
+    /// Compresses what `write` writes.
     pub(crate) fn pack(
         self,
         out: &mut (dyn Write + Send),
@@ -87,15 +87,15 @@ impl Packing {
     }
 }
 
-/// The name of the file, in small letters, that is in a compressed one.
+/// Returns the name of the file inside a compressed one. `name` must be in small letters.
 pub(crate) fn inner_name(name: &str) -> &str {
     let inner = |packing: Packing| name.strip_suffix(packing.ending())?.strip_suffix('.');
     Packing::ALL.into_iter().find_map(inner).unwrap_or(name)
 }
 
-/// The content of a file, if it is compressed, and how it is.
+/// Unpacks a file if it is compressed. Returns its compression and content; `None` if it is not compressed.
 pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<(Packing, Vec<u8>)>, Unpackable> {
-    /// What other programs open their files with.
+    /// The first bytes of files that other programs have compressed.
     const OTHERS: [(&[u8], &str, &str); 3] = [
         (b"\xFD7zXZ\0", "xz", "Decompress it first (unxz), or compress it by gzip or zstd"),
         (b"BZh", "bzip2", "Decompress it first (bunzip2), or compress it by gzip or zstd"),
@@ -128,16 +128,16 @@ pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<(Packing, Vec<u8>)>, Unpacka
     Ok(Some((packing, content)))
 }
 
-/// Unpacks up to a byte more than `most`.
+/// Unpacks at most one byte more than `most`.
 fn unpack_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
     let read = MultiGzDecoder::new(bytes).take(limit).read_to_end(content);
     read.map(drop).map_err(|error| error.to_string())
 }
 
-/// Unpacks one frame after the other, until the content has more than `most` bytes.
+/// Unpacks frame after frame, until the content has more than `most` bytes.
 fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
-    /// How many bytes are unpacked at a time.
+    /// Bytes that are unpacked at a time.
     const PART: usize = 1 << 20;
     let mut decoder = FrameDecoder::new();
     while !bytes.is_empty() {
@@ -165,7 +165,7 @@ fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(
     Ok(())
 }
 
-/// What follows a frame that is to be passed over, if one comes next.
+/// Returns the bytes after a frame that is to be skipped, if such a frame is next.
 fn after_skipped(bytes: &[u8]) -> Result<Option<&[u8]>, String> {
     match bytes {
         [0x50..=0x5F, 0x2A, 0x4D, 0x18, rest @ ..] => {
@@ -206,7 +206,7 @@ mod tests {
             for content in [&content[..], text.as_bytes(), b"", b"a", &[7; 4000]] {
                 assert!(unpacked(&packed(packing, content)) == content, "{packing:?}");
             }
-            // Several in one, as parallel programs write them.
+            // Parallel programs write several compressed parts, one after the other.
             let twice = [packed(packing, b"$MeshFormat"), packed(packing, b"\n4.1")].concat();
             assert_eq!(unpacked(&twice), b"$MeshFormat\n4.1");
         }
@@ -216,7 +216,7 @@ mod tests {
         assert!(unpack(b"$MeshFormat").ok().flatten().is_none());
     }
 
-    /// A file of the zstd command, with a checksum.
+    /// A file that the zstd command has written, with a checksum.
     #[test]
     fn files_of_other_programs_are_unpacked() {
         // printf 'mesh mesh mesh mesh mesh mesh mesh mesh\n' | zstd
@@ -254,7 +254,7 @@ mod tests {
                 for byte in [0, 1, 0x7F, 0xFF] {
                     let mut wrong = whole.clone();
                     wrong[at] = byte;
-                    // Told, or of no consequence; never a panic or a lot of memory.
+                    // Damage must cause an error or no harm, but never a panic or a large use of memory.
                     let _ = unpack(&wrong);
                 }
             }

@@ -1,21 +1,22 @@
-//! Reads a long list on all threads, as far as its rows are plain.
+//! Reads the rows of a long list on all threads, as long as they are plain.
 //!
-//! It stops before the first row that is not: one that is damaged or has a number that is not expected. A reader that
-//! takes row after row goes on from there, and is the only one that returns errors.
+//! Reading stops before the first row that is damaged or has an unexpected number. A reader that takes row by row
+//! continues from there, and is the only one that returns errors.
 
 use crate::error::ReadError;
 use crate::file::text::Cursor;
 use crate::parallel::{map_parts, meanwhile};
 
-/// How many bytes of text one thread reads at a time.
+/// Bytes of text that one thread reads at a time.
 const CHUNK: usize = 1 << 17;
-/// Lists with fewer rows are read as fast on one thread.
+/// Shorter lists are read as fast on one thread.
 const LONG: u64 = 1 << 14;
 
-/// Reads rows by `read`, each on a cursor that stands at its first token, and hands them to `take` in their order,
-/// until one cannot be read, `take` refuses one, or `count` are taken. Returns how many were.
+/// Reads up to `count` rows by `read`, each with a cursor at its first token, and hands them to `take` in their order.
+/// Stops if a row cannot be read or `take` refuses it. Returns how many rows were taken.
 ///
-/// The next row of the cursor is then the first one not taken. After all `count` it stands on the last one taken.
+/// The cursor's next row is then the first one that was not taken. If all `count` were taken, the cursor stands on the
+/// last one.
 pub(crate) fn take_rows<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -41,7 +42,7 @@ fn take_chunks<'a, T: Send>(
     batch.read(count, &read);
     let mut done = 0;
     while done < count && !batch.parts.is_empty() {
-        // While this thread takes what was read, the others read on.
+        // While this thread takes rows, the others read the next ones.
         let found: u64 = batch.rows.iter().map(|rows| rows.len() as u64).sum();
         let parts = match done + found < count {
             true => cursor.parts_after(batch.parts.last(), size, at_once),
@@ -60,22 +61,22 @@ fn take_chunks<'a, T: Send>(
     done
 }
 
-/// Some parts of a list, and the rows of each.
+/// Some parts of a list, with the rows that were read from each.
 struct Batch<'a, T> {
     parts: Vec<Cursor<'a>>,
     rows: Vec<Vec<T>>,
-    /// Whether a part has a row that cannot be read, after those that were.
+    /// Whether a part has a row that cannot be read, after those in `rows`.
     damaged: Vec<bool>,
 }
 
 impl<'a, T: Send> Batch<'a, T> {
-    /// `rows` are lists that were emptied, and have room.
+    /// Makes a batch without rows. `rows` are empty lists, whose memory is used again.
     fn new(parts: Vec<Cursor<'a>>, mut rows: Vec<Vec<T>>) -> Batch<'a, T> {
         rows.resize_with(parts.len(), Vec::new);
         Batch { parts, rows, damaged: Vec::new() }
     }
 
-    /// Reads at most so many rows of each part.
+    /// Reads at most `most` rows of each part.
     fn read(
         &mut self,
         most: u64,
@@ -93,8 +94,8 @@ impl<'a, T: Send> Batch<'a, T> {
         });
     }
 
-    /// Takes rows up to `count`, of which `done` were taken, and moves the cursor past them. Whether all were taken that the
-    /// parts have.
+    /// Takes rows until `done` reaches `count`, and moves the cursor past them. Returns whether all rows of the parts
+    /// were taken.
     fn take(
         &mut self,
         cursor: &mut Cursor<'a>,
@@ -130,13 +131,14 @@ mod tests {
     use crate::error::Location;
     use crate::file::source::Source;
 
-    /// Rows taken; the line that the cursor then stands on, if all were taken; line and tokens of the rows that follow.
+    /// The rows that were taken; the location of the cursor, if all were taken; location and tokens of the rows that
+    /// follow.
     type Seen = (Vec<(u64, u64)>, Option<Location>, Vec<(Location, Vec<u8>)>);
 
     fn seen(source: &Source, count: u64, size: Option<usize>) -> Seen {
         let read = |cursor: &mut Cursor<'_>| Ok((cursor.integer("a")?, cursor.integer("b")?));
         let mut rows = Vec::new();
-        // As a reader refuses a number that is not consecutive.
+        // A reader may refuse a row, such as one whose number is not consecutive.
         let mut take = |row: (u64, u64)| {
             let takes = row.0 != 13;
             if takes {
@@ -151,7 +153,8 @@ mod tests {
                 let done = take_chunks(cursor, count, size, read, &mut take);
                 assert_eq!(done, rows.len() as u64);
             }
-            // Row after row, another cursor one row ahead, so that this one stands on the last row taken.
+            // The rows are read one by one. Another cursor is a row ahead, so that this one stays on the last row
+            // taken.
             None => {
                 let mut ahead = Cursor::new(source);
                 ahead.next_row();

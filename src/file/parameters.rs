@@ -1,4 +1,4 @@
-//! Parameters of vertices on surfaces of a model, as gmsh's files may have them.
+//! Parameters of vertices on surfaces of a model, which gmsh's files may have.
 
 use crate::error::MeshError;
 use crate::file::families::Family;
@@ -6,16 +6,16 @@ use crate::file::field::PointField;
 use crate::file::mesh_file::MeshFile;
 use crate::file::parametric;
 
-/// How far parameters may be from those of a plane, as a share of how far they reach.
+/// The most that parameters may deviate from those of a plane, as a share of their range.
 const FLAT: f64 = 1e-8;
 
 impl MeshFile {
-    /// The parameters that the file gives vertices on surfaces of a model, brought up to date for vertices at `points`, as
-    /// fields for [`write_with`](Self::write_with). Only those of plane surfaces can be: there u and v are linear in x and
-    /// y. Returns them, and on how many other surfaces there are parameters.
+    /// Returns the parameters of vertices on plane surfaces of a model, updated for vertices at `points`, as fields for
+    /// [`write_with`](Self::write_with). On a plane, u and v are linear in x and y. Also returns the number of other
+    /// surfaces with parameters, which cannot be updated. Without parameters, both are empty.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex. Without parameters there is nothing to return.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
     pub fn plane_parameters(
         &self,
         points: &[[f64; 2]],
@@ -25,7 +25,7 @@ impl MeshFile {
             return Err(MeshError::PointCount { expected: old.len(), given: points.len() });
         }
         let reader = Family::of(self.format()).reader.as_ref().filter(|_| self.has_parameters());
-        // What was read once can be read again.
+        // Reading the file again cannot fail, as it was read before.
         let fields =
             reader.and_then(|reader| parametric::parameters(reader, &self.sources()[0]).ok());
         let (mut plane, mut others) = (Vec::new(), 0);
@@ -37,7 +37,7 @@ impl MeshFile {
             let pairs = field.values().as_chunks::<2>().0.iter().zip(old.iter().zip(points));
             let moved = pairs.flat_map(|(parameters, (old, new))| {
                 let by = [new[0] - old[0], new[1] - old[1]];
-                // A vertex that has not moved keeps its numbers to the bit.
+                // A vertex that has not moved keeps the bits of its parameters.
                 [0, 1].map(|k| match by {
                     [0.0, 0.0] => parameters[k],
                     [x, y] => parameters[k] + slopes[k][0] * x + slopes[k][1] * y,
@@ -51,10 +51,11 @@ impl MeshFile {
     }
 }
 
-/// x and y of a vertex, and its u and v.
+/// x and y of a vertex, and its parameters u and v.
 type Pair = ([f64; 2], [f64; 2]);
 
-/// How u and v grow with x and y, if they are linear in these for all vertices that have them: by least squares.
+/// Returns the slopes of u and v in x and y, by least squares. `None` unless u and v are linear for all vertices that
+/// have them.
 fn slopes(points: &[[f64; 2]], parameters: &[f64]) -> Option<[[f64; 2]; 2]> {
     let pairs = points.iter().zip(parameters.as_chunks::<2>().0);
     let given: Vec<Pair> = pairs
@@ -83,7 +84,7 @@ fn slopes(points: &[[f64; 2]], parameters: &[f64]) -> Option<[[f64; 2]; 2]> {
     let slopes =
         right.map(|[x, y]| [(x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant]);
     let reach = centered().flat_map(|(_, own)| own).fold(0.0, |a: f64, b| a.max(b.abs()));
-    // Not so for NaN, of which the slopes are where all vertices are on a line.
+    // If all vertices lie on a line, the slopes are NaN and this does not hold.
     let is_linear = centered().all(|([x, y], own)| {
         let far = |k: usize| (slopes[k][0] * x + slopes[k][1] * y - own[k]).abs();
         far(0) <= FLAT * reach && far(1) <= FLAT * reach

@@ -1,4 +1,4 @@
-//! Walks through a file that was read before for parameters of vertices on surfaces of a model.
+//! Walks again through a file for the parameters of vertices on surfaces of a model.
 
 use crate::error::ReadError;
 use crate::file::field::PointField;
@@ -7,11 +7,11 @@ use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 
-/// The parameters of the vertices of each surface, two numbers a vertex, of a file that was read before.
+/// Returns a field for each surface, with two parameters for each of its vertices. The file must have been read before.
 pub(crate) fn parameters(reader: &Reader, source: &Source) -> Result<Vec<PointField>, ReadError> {
     let mut seeker = Seeker::default();
     (reader.walk)(source, &mut seeker)?;
-    // There is no error to tell: the file was read before without one.
+    // There is no error to report, as the file was read before without one.
     let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
     let field = |(surface, numbers): (i64, PointNumbers)| {
         let nodes = numbers.nodes.as_deref().unwrap_or_default();

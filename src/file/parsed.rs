@@ -1,38 +1,38 @@
-//! What a format's reader makes of a mesh's files.
+//! What the reader of a format returns.
 
 use crate::file::curves::Curves;
 use crate::file::format::Format;
 use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::mesh::Mesh;
 
-/// What a reader returns.
+/// A mesh, and how its file stores it.
 pub(crate) struct Parsed {
     pub(crate) format: Format,
-    /// The mesh. Its fixed vertices are those of lines and other elements of the file, not those between regions.
+    /// The mesh. Its fixed vertices are those on lines and other elements, without those between regions.
     pub(crate) mesh: Mesh,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
     pub(crate) x_at: Places,
-    /// The vertex of each of these, if they are not one for each vertex in their order.
+    /// The vertex of each offset in `x_at`; `None` if there is one for each vertex in order.
     pub(crate) owners: Option<Vec<u32>>,
-    /// How the file has its coordinates.
+    /// How the file stores coordinates.
     pub(crate) numbers: Numbers,
     /// Which of the files of the mesh holds them, counted from zero.
     pub(crate) part: usize,
     /// The points, if they are encoded.
     pub(crate) encoded: Option<Box<dyn Encoded>>,
-    /// The region of each triangle, or none if all are of one.
+    /// The region of each triangle; `None` if all are of one.
     pub(crate) regions: Option<Vec<u32>>,
-    /// The lines of the file, and what it holds besides.
+    /// The lines of the file, and the vertices that do not slide.
     pub(crate) curves: Curves,
     /// One-line remarks for the user.
     pub(crate) notes: Vec<String>,
     /// The names of real numbers that the file gives vertices besides x and y, each once.
     pub(crate) data: Vec<String>,
-    /// Whether the file gives vertices parameters on surfaces of a model, in places that are known.
+    /// Whether the file gives vertices parameters on surfaces of a model, at offsets that are known.
     pub(crate) has_parameters: bool,
 }
 
-/// The remark that elements other than triangles keep their vertices fixed.
+/// Words the remark that elements other than triangles keep their vertices fixed.
 pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
     let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
     format!("{count} {what}{s}{of}: {their} vertices stay fixed")

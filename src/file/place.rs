@@ -1,4 +1,4 @@
-//! Where a file has its vertices and triangles, for messages.
+//! Finds where a file has its vertices and triangles, for messages.
 
 use crate::error::Location;
 use crate::file::assemble;
@@ -17,7 +17,7 @@ pub struct Place {
     pub path: PathBuf,
     /// The line or byte.
     pub location: Location,
-    /// The file's own number or tag for it.
+    /// The file's own number or tag of the vertex or triangle.
     pub label: u64,
 }
 
@@ -28,7 +28,8 @@ impl fmt::Display for Place {
 }
 
 impl MeshFile {
-    /// Where vertex `index` (zero-based, as in [`Mesh::points`](crate::Mesh::points)) has its coordinates.
+    /// Returns where vertex `index` has its coordinates. The index is zero-based, as in
+    /// [`Mesh::points`](crate::Mesh::points).
     ///
     /// Meant for messages: it may search the whole file.
     ///
@@ -39,11 +40,11 @@ impl MeshFile {
         found.unwrap_or_else(|| panic!("there is no vertex {index}"))
     }
 
-    /// Where vertices have their coordinates, by their zero-based indices. The file is searched once for all of them.
-    /// Indices of no vertex are left out.
+    /// Returns where vertices have their coordinates, by their zero-based indices. The file is searched once for all of
+    /// them. Indices of vertices that do not exist are left out.
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
         let wanted: Vec<u32> = indices.into_iter().collect();
-        // A copy is where its vertex is.
+        // A copy stands where its vertex stands.
         let count = self.original().points.len();
         let owner = |v: u32| match self.chart().zip((v as usize).checked_sub(count)) {
             Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
@@ -72,7 +73,8 @@ impl MeshFile {
         wanted.iter().map(|&v| v as u32).zip(found.into_iter().map(place)).collect()
     }
 
-    /// Where triangle `index` (zero-based, as in [`Mesh::triangles`](crate::Mesh::triangles)) lists its vertices.
+    /// Returns where triangle `index` lists its vertices. The index is zero-based, as in
+    /// [`Mesh::triangles`](crate::Mesh::triangles).
     ///
     /// Meant for messages: it may search the whole file.
     ///
@@ -83,8 +85,8 @@ impl MeshFile {
         found.unwrap_or_else(|| panic!("there is no triangle {index}"))
     }
 
-    /// Where triangles list their vertices, by their zero-based indices. The file is searched once for all of them.
-    /// Indices of no triangle are left out.
+    /// Returns where triangles list their vertices, by their zero-based indices. The file is searched once for all of
+    /// them. Indices of triangles that do not exist are left out.
     pub fn triangle_places(
         &self,
         indices: impl IntoIterator<Item = usize>,

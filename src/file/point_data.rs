@@ -1,4 +1,4 @@
-//! Walks through a file that was read before for arrays of point data.
+//! Walks again through a file for arrays of point data.
 
 use crate::error::ReadError;
 use crate::file::field::PointField;
@@ -10,22 +10,22 @@ use crate::file::text::Cursor;
 /// Which arrays are looked for.
 #[derive(Clone, Copy)]
 pub(crate) enum Wanted<'n> {
-    /// Those of these names, be their numbers real or whole.
+    /// Arrays with these names, of real or whole numbers.
     Named(&'n [String]),
-    /// All of real numbers.
+    /// All arrays of real numbers.
     Real,
 }
 
-/// What was found.
+/// The arrays that were found.
 #[derive(Default)]
 pub(crate) struct PointData {
-    /// The wanted arrays, in the order of the file. Several may have one name.
+    /// The arrays that were looked for, in the order of the file. Several may have the same name.
     pub(crate) fields: Vec<PointField>,
     /// The name of each array of the file, and whether its numbers are real.
     pub(crate) known: Vec<(String, bool)>,
 }
 
-/// The arrays of point data that are wanted.
+/// Reads the arrays of point data that are wanted.
 pub(crate) fn point_data(
     reader: &Reader,
     source: &Source,
@@ -38,7 +38,7 @@ pub(crate) fn point_data(
 
 struct Seeker<'n> {
     wanted: Wanted<'n>,
-    /// The name and the components of the array that was announced last.
+    /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
     tags: Vec<u64>,
     map: Option<TagMap>,
@@ -91,7 +91,7 @@ impl Sink for Seeker<'_> {
     fn point_numbers(&mut self, numbers: PointNumbers) {
         let tags = &self.tags;
         let vertices = numbers.nodes.as_ref().map(|nodes| {
-            // There is no error to tell: the file was read before without one.
+            // There is no error to report, as the file was read before without one.
             let map = self.map.get_or_insert_with(|| {
                 TagMap::new(tags).unwrap_or(TagMap::Run { first: 0, count: 0 })
             });

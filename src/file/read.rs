@@ -1,4 +1,4 @@
-//! Reading a mesh from its file, or from a program's memory.
+//! Reads a mesh from its file, or from memory.
 
 use crate::error::{Location, ReadError};
 use crate::file::assemble;
@@ -15,25 +15,26 @@ use crate::file::triangle_names::Names;
 use std::path::Path;
 
 impl MeshFile {
-    /// Reads a mesh, in the format its content shows.
+    /// Reads a mesh. The content of the file tells the format.
     ///
     /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
     /// compressed by gzip or zstd. Of an XDMF that has numbers in other files, these are read too.
     ///
     /// # Errors
-    /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of
-    /// [`Format`](crate::Format), does not hold what its format asks for, or holds other than first-order
-    /// elements of the plane, or no triangle.
+    /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of [`Format`](crate::Format),
+    /// does not follow its format, has elements other than first-order elements of the plane, or has no triangle. An
+    /// STL is refused, too: see [`read_welded`](Self::read_welded).
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
         Self::read_as(path, false)
     }
 
-    /// Reads a mesh as [`read`](Self::read) does, an STL too: there corners of triangles at the same place become one
-    /// vertex. Vertices are numbered in the order in which the file first has them, and are written wherever it has
-    /// them. Meshes of other formats are read as they are.
+    /// Reads a mesh as [`read`](Self::read) does, and an STL by joining corners of triangles at the same place to one
+    /// vertex. Vertices are numbered in the order in which the file first has them. Each is written wherever the file
+    /// has it.
     ///
     /// # Errors
-    /// [`ReadError`] as for [`read`](Self::read), and for an STL whose corners have not all the same third coordinate.
+    /// [`ReadError`] for the reasons of [`read`](Self::read), and if the corners of an STL have different third
+    /// coordinates.
     pub fn read_welded(path: &Path) -> Result<MeshFile, ReadError> {
         Self::read_as(path, true)
     }
@@ -59,20 +60,21 @@ impl MeshFile {
         }
     }
 
-    /// Reads a mesh that a program has in memory, such as its standard input. `name` stands for it in messages, and its
-    /// ending helps to tell the format where the content is not enough.
+    /// Reads a mesh from memory, such as what a program got by its standard input. `name` stands for it in messages.
+    /// Its ending helps to tell the format if the content is not enough.
     ///
     /// # Errors
-    /// [`ReadError`] as for [`read`](Self::read), and for files of Triangle, of which there are two to a mesh.
+    /// [`ReadError`] for the reasons of [`read`](Self::read), and for a Triangle mesh, which has two files.
     pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
         Self::of_source(Source::new(name, bytes)?)
     }
 
-    /// Reads a mesh in memory as [`from_bytes`](Self::from_bytes) does, an STL too, as
-    /// [`read_welded`](Self::read_welded) tells.
+    /// Reads a mesh from memory as [`from_bytes`](Self::from_bytes) does, and an STL as
+    /// [`read_welded`](Self::read_welded) does.
     ///
     /// # Errors
-    /// [`ReadError`] as for these two.
+    /// [`ReadError`] for the reasons of [`read_welded`](Self::read_welded), and for a Triangle mesh, which has two
+    /// files.
     pub fn from_bytes_welded(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
         Self::of_source(Source { welds: true, ..Source::new(name, bytes)? })
     }
@@ -119,7 +121,7 @@ impl MeshFile {
     }
 }
 
-/// What a file holds.
+/// Finds the format of a file, or explains why it has none that is read.
 fn content(given: &Source) -> Result<Content, ReadError> {
     detect::content(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
 }
@@ -168,14 +170,14 @@ fn load_beside(reader: &Reader, given: &mut Source) -> Result<(), ReadError> {
 }
 
 fn of_one_file(reader: &Reader, given: Source) -> Result<MeshFile, ReadError> {
-    // Formats that go by words are read whatever ends lines.
+    // Formats that are read by words may have any line ends.
     let ends = ends_by_returns(&given);
     let read = assemble::parse(reader, &given);
     let made = read.and_then(|parsed| MeshFile::new(parsed, vec![given]));
     made.map_err(|error| ends.unwrap_or(error))
 }
 
-/// The error for a text whose lines end as those of old Macintosh systems do.
+/// Returns the error for a text whose lines end in carriage returns alone, as on old Macintosh systems.
 fn ends_by_returns(source: &Source) -> Option<ReadError> {
     let is_control = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\r' | b'\x0C');
     let is_text = memchr::memchr2(b'\n', 0, &source.bytes).is_none()
@@ -186,7 +188,7 @@ fn ends_by_returns(source: &Source) -> Option<ReadError> {
     })
 }
 
-/// The error for a Triangle mesh of which the file `missing` is not there, though the other one is.
+/// Returns the error for a Triangle mesh whose file `missing` does not exist, though the other one does.
 fn half_missing(missing: &Path, names: &Names) -> Result<Source, ReadError> {
     let there = if missing == names.node { &names.ele } else { &names.node };
     let remedy = format!(

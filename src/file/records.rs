@@ -1,7 +1,7 @@
-//! Lists of records in binary, all of one size, read on all threads.
+//! Reads lists of binary records, all of one size, on all threads.
 //!
-//! They are read in chunks, as far as these are plain. A reader hands on what is left one by one, and is the only one that
-//! returns errors.
+//! A list is read in chunks, as long as these are plain. A reader hands on the other records one by one, and is the
+//! only one that returns errors.
 
 use crate::file::binary::Order;
 use crate::file::numbers::FoundPlaces;
@@ -10,25 +10,25 @@ use crate::mesh::Precision;
 use crate::parallel::{map_parts, map_ranges};
 use std::ops::Range;
 
-/// How many records one thread reads at a time.
+/// Records that one thread reads at a time.
 const CHUNK: usize = 1 << 13;
-/// Lists of fewer records are read as fast on one thread.
+/// Shorter lists are read as fast on one thread.
 pub(crate) const LONG: usize = 1 << 14;
 
-/// A number, or several side by side, that each record of a list has at the same place.
+/// A number, or several side by side, at the same place in each record of a list.
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
-    /// From the number of the first record on.
+    /// The bytes from the first record's number on.
     bytes: &'a [u8],
-    /// How many bytes after the number of one record that of the next stands.
+    /// The distance from the number of one record to that of the next, in bytes.
     stride: usize,
-    /// How many bytes a number has.
+    /// The width of a number in bytes.
     width: usize,
     order: Order,
 }
 
 impl<'a> Field<'a> {
-    /// `bytes` are those from the number of the first record on; none if there is none.
+    /// Makes a field. `bytes` start at the first record's number; `None` makes a field without records.
     pub(crate) fn new(
         bytes: Option<&'a [u8]>,
         (stride, width): (usize, usize),
@@ -41,46 +41,47 @@ impl<'a> Field<'a> {
         self.stride
     }
 
-    /// Whether so many records have so many of these numbers.
+    /// Whether this many records have this many numbers side by side.
     fn holds(self, records: usize, numbers: usize) -> bool {
         let last = records.saturating_sub(1).checked_mul(self.stride);
         let end = last.and_then(|last| last.checked_add(numbers * self.width));
         self.stride > 0 && self.width > 0 && end.is_some_and(|end| end <= self.bytes.len())
     }
 
-    /// The bytes from the number on, of some of the records. There have to be so many.
+    /// Returns the bytes from the number on, for each of some records. The field must hold them.
     fn of(self, records: Range<usize>) -> impl Iterator<Item = &'a [u8]> {
         self.bytes[records.start * self.stride..].chunks(self.stride).take(records.len())
     }
 
-    /// The whole numbers of some of the records.
+    /// Returns the whole numbers of some records. The field must hold them.
     fn whole(self, records: Range<usize>) -> impl Iterator<Item = u64> {
         self.of(records).map(move |bytes| self.order.whole(&bytes[..self.width]))
     }
 
-    /// The real numbers of some of the records. There have to be so many.
+    /// Returns the real numbers of some records. The field must hold them.
     pub(crate) fn real(self, records: Range<usize>) -> impl Iterator<Item = f64> {
         let precision = if self.width == 4 { Precision::Single } else { Precision::Double };
         self.of(records).map(move |bytes| self.order.real(precision, &bytes[..self.width]))
     }
 
-    /// Whether this holds for the real numbers of all records, of which there are so many.
+    /// Whether `holds` is true for the real numbers of this many records. False if there are fewer.
     pub(crate) fn all_real(self, records: usize, holds: impl Fn(f64) -> bool + Sync) -> bool {
         let fits = matches!(self.width, 4 | 8) && self.holds(records, 1);
         let each = |records| self.real(records).all(&holds);
         fits && map_ranges(records, CHUNK, each).into_iter().all(|all| all)
     }
 
-    /// The greatest number that has no sign in a field of this width. What is greater is left to the reader.
+    /// Returns the largest number of this width that is positive if it is read as signed. Larger ones are left to the
+    /// reader.
     fn most(self) -> u64 {
         u64::MAX >> (65 - 8 * self.width.clamp(1, 8))
     }
 }
 
-/// The tags of the nodes of a list.
+/// The tags of a list's nodes.
 #[derive(Clone, Copy)]
 pub(crate) enum Tags<'a> {
-    /// Consecutive ones from this one on.
+    /// Consecutive tags from this one on.
     From(u64),
     Listed(Field<'a>),
 }
@@ -88,16 +89,16 @@ pub(crate) enum Tags<'a> {
 /// A list of nodes.
 pub(crate) struct NodeRecords<'a> {
     pub(crate) count: usize,
-    /// The coordinates: `float` or `double` by their width.
+    /// The coordinates, single or double precision by the width of the fields.
     pub(crate) x: Field<'a>,
     pub(crate) y: Field<'a>,
-    /// Where the x of the first node starts in the bytes that are written again.
+    /// The offset of the first node's x, in the bytes that are written again.
     pub(crate) x_at: usize,
     pub(crate) tags: Tags<'a>,
 }
 
 impl NodeRecords<'_> {
-    /// Reads nodes from the first one on, as far as they are plain. Returns how many.
+    /// Reads nodes from the first one on, as long as they are plain. Returns how many were read.
     pub(crate) fn read(
         &self,
         points: &mut Vec<[f64; 2]>,
@@ -148,24 +149,24 @@ fn add_tags(field: Field<'_>, count: usize, tags: &mut FoundTags) {
     }
 }
 
-/// What whole numbers of records have to be.
+/// What the whole numbers of records must be for a triangle.
 #[derive(Clone, Copy)]
 pub(crate) enum Expected {
     /// Not negative.
     Natural,
-    /// This number.
+    /// This number in each record.
     Is(u64),
-    /// So much more than that of the record before, from `first` on.
+    /// `first` in the first record, and `step` more in each that follows.
     Steps { first: u64, step: u64 },
 }
 
-/// One of the numbers that name the region of a triangle.
+/// One of the two numbers that name the region of a triangle.
 #[derive(Clone, Copy)]
 pub(crate) enum Region<'a> {
-    /// The same for all.
+    /// The same number for all triangles.
     Same(i64),
     Field(Field<'a>),
-    /// One for each triangle; zero for those beyond its end.
+    /// A number for each triangle; 0 for triangles beyond the end of the list.
     List(&'a [i64]),
 }
 
@@ -184,19 +185,19 @@ impl Region<'_> {
 /// A list of triangles.
 pub(crate) struct TriangleRecords<'a> {
     pub(crate) count: usize,
-    /// The tags of three nodes.
+    /// The numbers of three nodes. Each must be less than `below`.
     pub(crate) corners: Field<'a>,
-    /// What is added to a tag, which has to be less than the second number before.
+    /// This is added to a number to get the node's tag.
     pub(crate) first: u64,
     pub(crate) below: u64,
     pub(crate) regions: [Region<'a>; 2],
-    /// What else has to hold for a record to be that of a triangle.
+    /// Further conditions for a record to be a triangle.
     pub(crate) expected: &'a [(Field<'a>, Expected)],
 }
 
 impl TriangleRecords<'_> {
-    /// Reads triangles from the first one on, as far as they are plain. Hands the region of each to `region`. Returns how
-    /// many there are.
+    /// Reads triangles from the first one on, as long as they are plain. Hands regions to `region`, with how many
+    /// triangles have each. Returns how many triangles were read.
     pub(crate) fn read(
         &self,
         map: &TagMap,
@@ -210,7 +211,7 @@ impl TriangleRecords<'_> {
             _ => true,
         });
         let fits = corners.holds(count, 3) && fields.all(|field| field.holds(count, 1));
-        // The first chunk tells whether it is worth while to try more.
+        // If the first chunk fails, it is not worth trying more.
         if count < LONG || !fits || !has_regions || !self.is_expected(0..CHUNK) {
             return 0;
         }
@@ -234,7 +235,7 @@ impl TriangleRecords<'_> {
         taken
     }
 
-    /// Puts the indices of the corners of some triangles in place. Whether each has three.
+    /// Fills in the indices of triangles' corners. Returns whether each triangle has three different corners.
     fn fill(
         &self,
         records: Range<usize>,
@@ -276,7 +277,7 @@ impl TriangleRecords<'_> {
         })
     }
 
-    /// The region of some triangles, if it is the same for all.
+    /// Returns the region of some triangles, if it is the same for all.
     fn same_region(&self, mut records: Range<usize>) -> Option<[i64; 2]> {
         let of = |record| self.regions.map(|region| region.of(record));
         let first = of(records.start);
@@ -286,8 +287,8 @@ impl TriangleRecords<'_> {
     }
 }
 
-/// Appends so many items to a list, which `fill` puts in place in chunks on all threads, up to the first chunk where it returns
-/// none. Returns how many there are, and what it returned, with the range of each.
+/// Appends `count` items to a list. `fill` fills them in chunks on all threads, and items from the first chunk on for
+/// which it returns `None` are dropped. Returns how many items are left, and the range and result of each chunk.
 fn append<T: Copy + Default + Send, R: Send, const N: usize>(
     list: &mut Vec<[T; N]>,
     count: usize,
@@ -295,7 +296,7 @@ fn append<T: Copy + Default + Send, R: Send, const N: usize>(
 ) -> (usize, Vec<(Range<usize>, R)>) {
     let before = list.len();
     match before {
-        // Memory that the system has filled with zeros need not be touched twice.
+        // The system provides this memory filled with zeros, so it need not be written twice.
         0 => {
             *list = vec![[T::default(); N]; list.capacity().max(count)];
             list.truncate(count);

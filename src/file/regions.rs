@@ -1,16 +1,16 @@
-//! Which region each triangle belongs to, and the vertices between regions.
+//! The region of each triangle, and the vertices between regions.
 //!
-//! A reader names the region of each triangle by what its format has for that: a tag, a group, attributes. It hands
-//! these names to [`Regions`]; the rest is the same for all formats.
+//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`Regions`] takes
+//! these names, and the rest is the same for all formats.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Gives numbers to names, from zero in the order in which they are first met.
+/// Numbers names from 0, in the order in which they are first met.
 #[derive(Default)]
 pub(crate) struct Numbering<N> {
     numbers: HashMap<N, u32>,
-    /// The last name and its number: mostly the next one is the same.
+    /// The last name and its number, as the next name is mostly the same.
     last: Option<(N, u32)>,
 }
 
@@ -24,7 +24,7 @@ impl<N: Clone + Eq + Hash> Numbering<N> {
     }
 
     fn look_up(&mut self, name: N) -> u32 {
-        // Names are not more than triangles, of which there are fewer than 2^32.
+        // There are no more names than triangles, of which there are fewer than 2^32.
         let next = self.numbers.len() as u32;
         let number = *self.numbers.entry(name.clone()).or_insert(next);
         self.last = Some((name, number));
@@ -32,16 +32,16 @@ impl<N: Clone + Eq + Hash> Numbering<N> {
     }
 }
 
-/// The regions of the triangles read so far. Takes memory only once there are two.
+/// The regions of the triangles read so far. It needs memory only if there are several regions.
 #[derive(Default)]
 pub(crate) struct Regions {
     triangles: usize,
-    /// The region of each triangle, empty while all are of region 0.
+    /// The region of each triangle; empty as long as all are of region 0.
     numbers: Vec<u32>,
 }
 
 impl Regions {
-    /// Adds a triangle to a region. The first triangle has to be of region 0.
+    /// Adds a triangle that belongs to a region. The first triangle must be of region 0.
     #[inline]
     pub(crate) fn push(&mut self, region: u32) {
         if region != 0 && self.numbers.is_empty() {
@@ -53,14 +53,14 @@ impl Regions {
         self.triangles += 1;
     }
 
-    /// The region of each triangle, or none if all are of one.
+    /// Returns the region of each triangle; `None` if all are of one.
     pub(crate) fn finish(self) -> Option<Vec<u32>> {
         (!self.numbers.is_empty()).then_some(self.numbers)
     }
 }
 
-/// The vertices of triangles of different regions, ascending, without those of `fixed` and those on the boundary,
-/// which do not move anyway.
+/// Returns the vertices of triangles of different regions, ascending. Vertices in `fixed` and on the boundary are left
+/// out, as they do not move anyway.
 pub(crate) fn interface_vertices(
     regions: &[u32],
     triangles: &[[u32; 3]],
@@ -69,11 +69,11 @@ pub(crate) fn interface_vertices(
 ) -> Vec<u32> {
     #[derive(Clone, Copy)]
     struct Vertex {
-        /// The region of its first triangle.
+        /// The region of the vertex's first triangle.
         region: Option<u32>,
         is_between: bool,
-        /// Its neighbors in all its triangles, by exclusive or: zero once every neighbor was met twice, as around a
-        /// vertex inside the mesh. On the boundary the two ends of the fan are left, and they differ.
+        /// The exclusive or of its neighbors in all its triangles. Around a vertex inside the mesh each neighbor is met
+        /// twice, which gives 0. On the boundary the two ends of the fan remain, which differ.
         neighbors: u32,
     }
     let mut all = vec![Vertex { region: None, is_between: false, neighbors: 0 }; vertices];
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(regions.numbers.capacity(), 0);
     }
 
-    /// Two squares side by side, each around a vertex in its middle, and the vertex in the middle of their common edge.
+    /// Two squares side by side, each with a vertex in its middle, and a vertex in the middle of their common edge.
     #[test]
     fn only_vertices_that_nothing_else_holds_are_between_regions() {
         let triangles = [
@@ -132,7 +132,7 @@ mod tests {
         let regions = [0, 0, 0, 0, 0, 1, 1, 1, 1, 1];
         let between =
             |regions: &[u32], fixed: &[u32]| interface_vertices(regions, &triangles, 9, fixed);
-        // 1 and 4 are on the boundary.
+        // Vertices 1 and 4 are on the boundary.
         assert_eq!(between(&regions, &[]), [8]);
         assert_eq!(between(&regions, &[6, 8, 8]), []);
         assert_eq!(between(&[3; 10], &[]), []);

@@ -6,21 +6,21 @@ use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
 
-/// How many bytes one thread rewrites at a time.
+/// Bytes that one thread rewrites at a time.
 const BLOCK: usize = 1 << 17;
 
-/// A file's content, and which of its numbers may be replaced.
+/// A file's content, with the numbers that may be replaced.
 pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
-    /// Numbers that stand in it.
+    /// The numbers in the content that may be replaced.
     pub(crate) columns: &'a [Column<'a>],
-    /// Ranges that are replaced whole, ascending. No number of the columns stands in them.
+    /// Replacements of whole ranges, ascending. The ranges hold no number of the columns.
     pub(crate) splices: &'a [Splice],
 }
 
 impl Rewrite<'_> {
-    /// Writes the content to `out`, with those numbers replaced that are not as they were.
+    /// Writes the content to `out`, with changed numbers and splices replaced.
     pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         let mut at = 0;
         for splice in self.splices {
@@ -38,13 +38,13 @@ impl Rewrite<'_> {
         let count = range.len().div_ceil(BLOCK);
         let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK));
         write_blocks(out, count, |block| {
-            // The first block starts where the range does, even if that is within a number.
+            // The first block starts where the range starts, even within a number.
             let start = if block == 0 { range.start } else { cut(block) };
             self.block(start..cut(block + 1).max(start))
         })
     }
 
-    /// The first place from `at` on that is within no number.
+    /// Returns the first offset from `at` on that is not within a number.
     fn cut(&self, mut at: usize) -> usize {
         loop {
             let before = at;
@@ -60,7 +60,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// The new content of a range.
+    /// Returns the new content of a range.
     fn block(&self, range: Range<usize>) -> Vec<u8> {
         let mut changes = Vec::new();
         for column in self.columns {
@@ -68,7 +68,7 @@ impl Rewrite<'_> {
             column.changes(self.bytes, items, &mut changes);
         }
         if self.columns.len() > 1 {
-            // Those of each column ascend already, which a stable sort makes use of.
+            // The changes of each column ascend already, which makes a stable sort fast.
             changes.sort_by_key(|change| change.range.start);
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
@@ -83,7 +83,7 @@ impl Rewrite<'_> {
     }
 }
 
-/// Writes blocks of a file in their order. While one thread writes some of them, the others make the next.
+/// Writes blocks of a file in their order. While one thread writes blocks, the others make the next ones.
 fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// Against a plain replacement, row by row, of as many rows as fill several waves of blocks.
+    /// The result must equal a plain replacement row by row. The rows fill several rounds of blocks.
     #[test]
     fn blocks_join_without_a_seam() {
         for vertices in [0, 1, 4000, 4001, 200_017] {
@@ -180,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Numbers of several arrays in binary, interleaved and apart, beside ranges that are replaced.
+    /// Binary numbers of several arrays, interleaved and separate, beside ranges that are replaced.
     #[test]
     fn numbers_in_binary_are_replaced_where_they_stand() {
         let count = 40_000;

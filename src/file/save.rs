@@ -1,4 +1,4 @@
-//! Writing a mesh file again, with the coordinates of moved vertices replaced.
+//! Writes a mesh file again, with the coordinates of moved vertices replaced.
 
 use crate::error::WriteError;
 use crate::file::beside;
@@ -19,30 +19,29 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl MeshFile {
-    /// Writes the file again, vertex `i` moved to `points[i]` (in the units of the file).
+    /// Writes the file again with vertex `i` at `points[i]`, in the units of the file.
     ///
-    /// Coordinates that have the bits they were read with keep their text too; others are written
-    /// with the fewest digits that read back as the same bits. Of a Triangle mesh, all files are
-    /// written under the name that `path` gives with or without ending. `path` may be the file
-    /// that was read. It is replaced only once all is written; symbolic links are followed.
+    /// A coordinate with the bits that were read keeps its text. Others are written with the fewest digits that read
+    /// back as the same bits. For a Triangle mesh, all files are written under the name that `path` gives, with or
+    /// without ending. `path` may be the file that was read. Existing files are replaced only once all is written, and
+    /// symbolic links are followed.
     ///
     /// The file is compressed if `path` ends in `.gz` (gzip) or `.zst` (zstd); if nothing has moved, a file that was compressed keeps its
     /// bytes.
     ///
     /// # Errors
-    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the
-    /// points are not finite or not one per vertex, or if the system refuses. What stood at the
-    /// destination then still stands there.
+    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the points are not finite
+    /// or not one per vertex, or if the system refuses. Existing files are then unchanged.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
         self.write_with(path, points, &[])
     }
 
-    /// Writes what [`write`](Self::write) does, with data of the vertices replaced too: by the values of these fields of this
-    /// file, which come from [`point_fields`](Self::point_fields). Numbers that have the bits they were read with keep
-    /// their text.
+    /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
+    /// fields. The fields must come from [`point_fields`](Self::point_fields) or
+    /// [`plane_parameters`](Self::plane_parameters) of this file. A number with the bits that were read keeps its text.
     ///
     /// # Errors
-    /// [`WriteError`] as for [`write`](Self::write).
+    /// [`WriteError`] for the reasons of [`write`](Self::write).
     pub fn write_with(
         &self,
         path: &Path,
@@ -95,10 +94,11 @@ impl MeshFile {
         self.write_to_with(name, out, points, &[])
     }
 
-    /// Writes what [`write_with`](Self::write_with) does to where bytes can be written, as [`write_to`](Self::write_to) does.
+    /// Writes the file and these fields as [`write_with`](Self::write_with) does, to any writer as
+    /// [`write_to`](Self::write_to) does.
     ///
     /// # Errors
-    /// [`WriteError`] as for [`write_to`](Self::write_to).
+    /// [`WriteError`] for the reasons of [`write_to`](Self::write_to).
     pub fn write_to_with(
         &self,
         name: &Path,
@@ -119,8 +119,8 @@ impl MeshFile {
         })
     }
 
-    /// How what is written to this path is to be compressed: its ending tells. Where a file was compressed without such an
-    /// ending, any other name gets a compressed file too.
+    /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
+    /// ending stays compressed under any name.
     fn packs(&self, path: &Path) -> Option<Packing> {
         let source = &self.sources()[0];
         match Packing::of(path) {
@@ -131,7 +131,7 @@ impl MeshFile {
         }
     }
 
-    /// Writes one of the files.
+    /// Writes the file with index `part`.
     fn put(
         &self,
         part: usize,
@@ -165,7 +165,7 @@ impl MeshFile {
             let places = (self.x_at(), self.owners());
             Column::of_points(places, self.numbers(), &self.original().points, new)
         };
-        // Those that stand in the file, those beside the points where these are encoded, and those encoded by themselves.
+        // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become splices.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
         let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();
         let (mut splices, mut end) = (renamed.to_vec(), bytes.len());
@@ -221,27 +221,28 @@ impl MeshFile {
         Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
     }
 
-    /// Whether these are the points that were read, in the digits of the file.
+    /// Whether these points, rounded to the precision of the file, are those that were read.
     fn is_unmoved(&self, points: &[[f64; 2]]) -> bool {
         let bits = |x: f64| self.precision().rounded(x).to_bits();
         let mut pairs = points.iter().flatten().zip(self.mesh().points.iter().flatten());
         pairs.all(|(&new, &old)| bits(new) == old.to_bits())
     }
 
-    /// Checks, as far as is possible without writing, whether [`write`](Self::write) to `path` can work: that its ending
-    /// does not promise another format, that the directory exists and takes new files, and that no directory or
-    /// read-only file is in the way.
+    /// Checks, without writing, whether [`write`](Self::write) to `path` can work. The ending must not belong to
+    /// another format, the directory must exist and take new files, and no directory or read-only file may be in the
+    /// way.
     ///
     /// # Errors
-    /// [`WriteError`] that says what is wrong.
+    /// [`WriteError`] if the file cannot be written, with the reason.
     pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
         self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
     }
 
-    /// The files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
+    /// Lists the files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
     ///
     /// # Errors
-    /// [`WriteError::Format`] if `path` is not the name of a file or promises another format.
+    /// [`WriteError::Format`] if `path` is not the name of a file, if its ending belongs to another format, or if a
+    /// file in the way would be read in place of or with a Triangle mesh.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let usual = Family::of(self.format()).endings[0];
         let refused = |problem: String, remedy: String| {

@@ -1,7 +1,7 @@
 //! TELEMAC's SELAFIN (also SERAFIN), in either byte order and precision.
 //!
-//! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each between
-//! two copies of its length. All x stand before all y; time steps follow and are kept.
+//! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
+//! between two copies of its length. All x come before all y. The time steps after them are kept.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
@@ -119,8 +119,8 @@ impl Walk for Selafin {
     }
 }
 
-/// Reads the time steps, each a time and a record for each variable, up to the first that is damaged or cut off: the mesh does
-/// not depend on them.
+/// Reads the time steps, each a time and a record for each variable. The first damaged or incomplete step ends the
+/// reading without an error, as the mesh does not depend on it.
 fn steps(
     mut cursor: Cursor<'_>,
     order: Order,
@@ -146,7 +146,8 @@ fn steps(
     }
 }
 
-/// Takes a record, of so many bytes if that is known. The cursor's bytes last taken are then those of the record.
+/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::taken`] is then the offset of the
+/// record's content.
 fn record<'a>(
     cursor: &mut Cursor<'a>,
     order: Order,

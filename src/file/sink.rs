@@ -1,4 +1,4 @@
-//! What readers make of a file, item by item, and who takes it.
+//! The items that readers hand on, and the trait of what takes them.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -11,7 +11,7 @@ use crate::file::text::Cursor;
 use crate::periodic::Motion;
 use std::sync::Arc;
 
-/// The kinds of elements: triangles to smooth, and others whose vertices stay fixed.
+/// The kinds of elements: triangles, which are smoothed, and others, whose vertices stay fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
@@ -42,7 +42,7 @@ impl Kind {
         }
     }
 
-    /// The dimension of the elements: 0 for points, 1 for lines, 2 for surfaces.
+    /// Returns the dimension of the elements: 0 for points, 1 for lines, 2 for surfaces.
     pub(crate) fn dimension(self) -> u8 {
         match self {
             Kind::Point => 0,
@@ -51,7 +51,7 @@ impl Kind {
         }
     }
 
-    /// The kind of a polygon with so many corners, if it is one.
+    /// Returns the kind of a polygon with this many corners, if there is one.
     pub(crate) fn of_polygon(corners: u64) -> Option<Kind> {
         [Kind::Point, Kind::Line, Kind::Triangle, Kind::Quadrilateral]
             .into_iter()
@@ -59,63 +59,63 @@ impl Kind {
     }
 }
 
-/// One element, as the file has it.
+/// An element of a file.
 pub(crate) struct Element {
-    /// The file's number for it; where it has none, its position in the list, counted as the file counts.
+    /// The file's number of the element. If it has none, its position in the list, counted as the file counts.
     pub(crate) tag: u64,
     pub(crate) kind: Kind,
-    /// What names its region, of what the format has for that; zeros where it has nothing.
+    /// Numbers that name the element's region; 0 where the format has none.
     pub(crate) region: [i64; 2],
-    /// As many node tags as the kind has.
+    /// The tags of as many nodes as the kind has.
     pub(crate) nodes: [u64; 4],
 }
 
-/// What one of the numbers of [`Element::region`] tells.
+/// The meaning of one number of [`Element::region`].
 pub(crate) struct Column {
-    /// What the format calls the groups that the number tells apart: `physical`, `reference`, or the name of an array.
+    /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
     pub(crate) what: String,
-    /// The least dimension of elements that have the number.
+    /// The least dimension of elements that have this number.
     pub(crate) from_dimension: u8,
-    /// The label that the number stands for; none if elements with this number are of no group.
+    /// Returns the label that a number stands for; `None` if it stands for no group.
     pub(crate) label: fn(i64) -> Option<Label>,
 }
 
 impl Column {
-    /// A column of tags, all of which are groups.
+    /// Makes a column of tags that all stand for groups.
     pub(crate) fn tags(what: &str, from_dimension: u8) -> Column {
         Column { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
     }
 
-    /// A column of tags of which zero stands for no group.
+    /// Makes a column of tags in which 0 stands for no group.
     pub(crate) fn tags_from_one(what: &str) -> Column {
         let label = |tag| (tag != 0).then_some(Label::Tag(tag));
         Column { what: what.into(), from_dimension: 0, label }
     }
 }
 
-/// A group that elements belong to for where they stand in the file.
+/// A group whose elements stand together in the file.
 #[derive(Clone, Debug)]
 pub(crate) struct Within<'w> {
-    /// What the format calls such a group.
+    /// The kind of group, as the format calls it.
     pub(crate) what: &'w str,
     pub(crate) label: Label,
-    /// The dimension of the group, where that is not the dimension of each element.
+    /// The dimension of the group, if it differs from that of its elements.
     pub(crate) dimension: Option<u8>,
 }
 
-/// Takes what a file lists: first all nodes, then all elements, each in the order of the file.
+/// Takes the items of a file: first all nodes, then all elements, each in the order of the file.
 pub(crate) trait Sink {
-    /// Whether it uses the cursor for nothing but errors. Then it may also be handed what was read in parallel, with
-    /// another cursor. Where it returns an error it must not have changed.
+    /// Whether the sink uses the cursor only for errors. Then items that were read in parallel may come with another
+    /// cursor, and a call that returns an error must leave the sink unchanged.
     fn takes_ahead(&self) -> bool {
         false
     }
     /// Announces about how many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
-    /// Takes a node whose coordinates were just read. `dimension` is that of the model entity it lies on,
-    /// where the file says so; else 2.
+    /// Takes a node that was just read. `x_at` is the offset of x, and `at` are x and y. `dimension` is that of the
+    /// model entity it lies on if the file tells it, else 2.
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
-    /// Takes nodes of a list in binary, from the first one on, and returns how many. The others are to be handed to
+    /// Takes nodes of a binary list from the first one on. Returns how many it took; the caller hands the others to
     /// [`node`](Self::node).
     fn node_records(&mut self, _records: &NodeRecords<'_>) -> usize {
         0
@@ -128,12 +128,12 @@ pub(crate) trait Sink {
     fn expect_elements(&mut self, _count: usize) {}
     /// Takes an element that was just read.
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
-    /// Takes triangles of a list in binary, from the first one on, and returns how many. The others are to be handed to
+    /// Takes triangles of a binary list from the first one on. Returns how many it took; the caller hands the others to
     /// [`element`](Self::element).
     fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {
         0
     }
-    /// Takes a polygon of more than four corners, which stay fixed.
+    /// Takes a polygon of more than four corners. Its vertices stay fixed.
     fn polygon(
         &mut self,
         cursor: &Cursor<'_>,
@@ -157,79 +157,81 @@ pub(crate) trait Sink {
             self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
         })
     }
-    /// Whether it asks for vertices that belong together in pairs, as where a model is periodic. If not, readers may leave out the call
-    /// below.
+    /// Whether the sink asks for periodic pairs of vertices. If not, readers may leave out calls of
+    /// [`pairs`](Self::pairs).
     fn asks_for_pairs(&self) -> bool {
         false
     }
-    /// Takes what the file says of such vertices; `None` if that could not be read.
+    /// Takes the periodic pairs of the file; `None` if they could not be read.
     fn pairs(&mut self, _pairs: Option<Vec<Pairs>>) {}
     /// Takes a remark for the user, one line.
     fn note(&mut self, _note: &str) {}
 
-    /// Whether it asks for groups. If not, readers may leave out the calls below.
+    /// Whether the sink asks for groups. If not, readers may leave out the calls on groups below.
     fn asks_for_groups(&self) -> bool {
         false
     }
-    /// Takes what the numbers of each element's region tell, before the first element.
+    /// Takes the meaning of the numbers in [`Element::region`], before the first element.
     fn columns(&mut self, _columns: Vec<Column>) {}
-    /// Takes the groups that the elements that follow belong to besides, until it is called again.
+    /// Takes the groups that the elements after this call belong to besides those of their regions, until the next
+    /// call.
     fn within(&mut self, _groups: &[Within<'_>]) {}
-    /// Takes the tag of a group that a node belongs to, by the position of the node among those that were taken.
+    /// Takes the tag of a group that a node belongs to. `node` is the index of the node in the order of the file.
     fn node_within(&mut self, _node: u32, _what: &str, _tag: i64) {}
-    /// Takes the name of the groups of a tag, of one dimension or of all.
+    /// Takes the name of the groups with a tag, in one dimension or (for `None`) in all.
     fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
-    /// Whether it asks for data of points that a reading may leave out: third coordinates that are all the same, and
+    /// Whether the sink asks for data that a plain reading may leave out: third coordinates that are all the same, and
     /// lists after the elements.
     fn asks_for_data(&self) -> bool {
         false
     }
-    /// Takes the name of an array of point data, how many numbers it has a point, and whether these are real numbers, not
-    /// whole ones. Third coordinates are such an array too. Whether its numbers are wanted.
+    /// Takes the name of an array of point data, its numbers per point, and whether these are real, not whole. Third
+    /// coordinates are such an array too. Returns whether the sink wants the numbers.
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes notice that nodes have parameters on a surface of the model. Whether these are wanted, two numbers a node.
+    /// Takes notice that nodes have parameters on a surface of the model. Returns whether the sink wants them, two
+    /// numbers for each node.
     fn parameters(&mut self, _surface: i64) -> bool {
         false
     }
-    /// Takes the parameters that were announced last and are wanted.
+    /// Takes the parameters that were announced last, if the sink wants them.
     fn parameter_numbers(&mut self, _numbers: PointNumbers) {}
-    /// Announces third coordinates or depths as an array of point data.
+    /// Announces third coordinates or depths as an array of point data. Returns whether the sink wants the numbers.
     fn height_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)
     }
-    /// Takes the name of an array of cell data, as [`point_array`](Self::point_array) does those of points. Only a sink that
-    /// asks for data is to be told.
+    /// Takes the name of an array of cell data, with the same arguments and result as
+    /// [`point_array`](Self::point_array). Called only if the sink asks for data.
     fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes the numbers of the array of cell data that was announced last and is wanted. `tags` are those of the elements
-    /// that have them.
+    /// Takes the numbers of the cell data that were announced last, if the sink wants them. `tags` are those of the
+    /// elements that the numbers belong to; `None` if they belong to all.
     fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
-    /// Takes what the file holds that is handed on nowhere, a few words. Only a sink that asks for data is to be told.
+    /// Takes a few words on a part of the file that is not handed on. Sinks that do not ask for data ignore it.
     fn leaves_out(&mut self, _what: &str) {}
-    /// Takes the numbers of the array that was announced last and is wanted.
+    /// Takes the numbers of the point data that were announced last, if the sink wants them.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}
 }
 
-/// Nodes that belong together in pairs.
+/// Nodes that belong together in pairs, as in a periodic model.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Pairs {
-    /// The motion that takes the first of each pair to the second, if the file gives it.
+    /// The motion that takes the first node of each pair to the second, if the file gives it.
     pub(crate) motion: Option<Motion>,
-    /// The tags of both nodes of each pair; none if the file gives the motion alone.
+    /// The tags of the two nodes of each pair; empty if the file gives only the motion.
     pub(crate) nodes: Vec<[u64; 2]>,
 }
 
 /// The numbers of an array of point data.
 pub(crate) struct PointNumbers {
-    /// Those of one point after those of another, in the order of the file.
+    /// The numbers, tuple by tuple in the order of the file.
     pub(crate) numbers: Vec<f64>,
-    /// The tag of the node that each tuple belongs to, if they are not those of all nodes in their order.
+    /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
     pub(crate) nodes: Option<Vec<u64>>,
-    /// Where they stand; none if they cannot be replaced.
+    /// Where the numbers stand; `None` if they cannot be replaced.
     pub(crate) stored: Option<Stored>,
 }
 
@@ -243,26 +245,26 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// Numbers that stand in the file itself.
+    /// Makes the value for numbers that stand in the file itself.
     pub(crate) fn in_place(places: Places, form: Form) -> Option<Stored> {
         Some(Stored { places, form, home: Home::File, part: 0 })
     }
 }
 
-/// What bytes the places of numbers are those of.
+/// The bytes that the places of numbers refer to.
 pub(crate) enum Home {
     File,
-    /// Those of the encoded points.
+    /// The decoded bytes of the encoded points.
     Points,
     /// Those of an array that is encoded itself, perhaps with other arrays.
     Encoded(Arc<dyn Encoded>),
 }
 
-/// How a file has its numbers, known once it was read.
+/// How a file stores its numbers, known after it was read.
 pub(crate) struct Layout {
     pub(crate) format: Format,
     pub(crate) numbers: Numbers,
-    /// The points, if they are encoded. Places of coordinates are then those in its bytes.
+    /// The encoded points, if they are encoded. The offsets of coordinates are then those in its decoded bytes.
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// Where the coordinates stand, if a vertex may have them in several places.
     pub(crate) copies: Option<Copies>,
@@ -270,24 +272,24 @@ pub(crate) struct Layout {
     pub(crate) part: usize,
 }
 
-/// All places of coordinates in a file that repeats them.
+/// All places of coordinates in a file that repeats vertices.
 pub(crate) struct Copies {
-    /// Where each x starts, ascending.
+    /// The offset of each x, ascending.
     pub(crate) x_at: Vec<usize>,
-    /// The index of the vertex of each.
+    /// The index of each x's vertex.
     pub(crate) vertices: Vec<u32>,
 }
 
 impl Layout {
-    /// Of a file that has its coordinates in place.
+    /// Makes the layout of a file that has its coordinates in place.
     pub(crate) fn in_place(format: Format, numbers: Numbers) -> Layout {
         Layout { format, numbers, encoded: None, copies: None, part: 0 }
     }
 }
 
-/// A format of one file, by the way through it.
+/// The reader of a format of one file.
 pub(crate) trait Walk {
-    /// Where the file lists its vertices, for messages.
+    /// Names the file's list of vertices in messages.
     const VERTICES: &'static str;
     /// The files that it names, in which it has numbers.
     ///
@@ -300,8 +302,8 @@ pub(crate) trait Walk {
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError>;
 }
 
-/// The reader of a format of one file. All that is read of a file is read by its one way through it, which takes any sink, so
-/// that it is compiled once.
+/// The reader of a format of one file, as a value. All that is read of a file goes through this one walk. It takes any
+/// sink, so that it is compiled once.
 pub(crate) struct Reader {
     /// [`Walk::walk`].
     pub(crate) walk: fn(&Source, &mut dyn Sink) -> Result<Layout, ReadError>,
@@ -317,8 +319,8 @@ impl Reader {
     }
 }
 
-/// Reads a list of one row an item and hands the items to the sink with their positions: on all threads as far as its
-/// rows are plain and the sink allows that, and then row by row, or as the cursor's syntax has items on lines.
+/// Reads a list and hands its items, one in each row, to the sink with their positions. Plain rows are read on all
+/// threads if the sink allows it. The rest is read row by row, or as the cursor's syntax lays out items.
 pub(crate) fn each_row<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -331,8 +333,8 @@ pub(crate) fn each_row<'a, T: Send>(
     each_item(cursor, count, sink, next, |cursor, _| read(cursor), take)
 }
 
-/// The same, where `next` moves to the next item, given how many were read, and `read` may be told its position for what it says in
-/// errors.
+/// Reads a list as [`each_row`] does. `next` moves to the next item, given how many were read. `read` may get the
+/// item's position, for messages.
 pub(crate) fn each_item<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -343,7 +345,7 @@ pub(crate) fn each_item<'a, T: Send>(
 ) -> Result<(), ReadError> {
     let mut done = 0;
     if sink.takes_ahead() {
-        // The sink uses this cursor for errors only. They are dropped: reading row by row meets them again.
+        // The sink uses this cursor for errors only. They are dropped here, as reading row by row meets them again.
         let nowhere = &Cursor::new(cursor.source);
         take_rows(
             cursor,
@@ -356,7 +358,8 @@ pub(crate) fn each_item<'a, T: Send>(
             },
         );
         if done > 0 {
-            // It stands on the last row, before its words. A reader that goes on by words is to find none of them.
+            // The cursor stands on the last row, before its words. A reader that continues by words must find none of
+            // them.
             cursor.rest();
         }
     }
@@ -367,7 +370,7 @@ pub(crate) fn each_item<'a, T: Send>(
         let item = next(cursor, done).and_then(|()| cursor.item(read, &mut missing));
         match item.and_then(|item| take(cursor, sink, done, item)) {
             Ok(()) => {}
-            // Where a single row of many lacks a number, the next ones are read wrongly.
+            // If one row among many lacks a number, the rows after it are read wrongly.
             Err(error) if is_plain => return Err(missing.unwrap_or(error)),
             Err(error) => return Err(error),
         }
@@ -377,7 +380,8 @@ pub(crate) fn each_item<'a, T: Send>(
     Ok(())
 }
 
-/// The same for all rows that follow, of whatever kind each is.
+/// Reads all rows that follow, of any kind, and hands them to `take`. Long files are read on all threads if the sink
+/// allows it.
 pub(crate) fn all_rows<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     sink: &mut dyn Sink,
@@ -405,7 +409,7 @@ pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: Kind) -> Result<[u64; 4], Rea
     Ok(nodes)
 }
 
-/// The error that a file holds elements of a volume.
+/// Returns the error that a file holds elements of a volume.
 #[cold]
 pub(crate) fn volume(cursor: &Cursor<'_>, what: &str) -> ReadError {
     let problem = format!("{what} make this a volume mesh");

@@ -14,24 +14,24 @@ use crate::file::text::{CORRECT, Cursor};
 
 pub(crate) struct Sms;
 
-/// Stands for the material of lines that have none.
+/// The material of lines that have none.
 const NO_MATERIAL: i64 = i64::MIN;
 
-/// A row that is used.
+/// A row of the file, as far as it is used.
 enum Row {
     Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
     String(Vec<u64>, End),
-    /// The name of a material.
+    /// The number and name of a material.
     Material(i64, Vec<u8>),
     Other,
 }
 
 /// How a row of a node string ends.
 enum End {
-    /// The string goes on in the next row.
+    /// The string continues in the next row.
     Open,
-    /// The string ends here. It may have a name, which is the rest of the row.
+    /// The string ends here. The rest of the row is its name, if it has one.
     Last(Vec<u8>),
 }
 
@@ -62,10 +62,10 @@ impl Walk for Sms {
             match row {
                 Row::Element(element) => sink.element(cursor, &element)?,
                 Row::String(nodes, end) => {
-                    // A row that goes on has the label of the one before it.
+                    // A row that continues a string has the same label.
                     let label = Label::Tag(string);
                     sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
-                    // Node strings are of no material.
+                    // Node strings belong to no material.
                     sink.columns(Vec::new());
                     sink.polyline(cursor, (0, [0; 2]), &nodes)?;
                     sink.columns(materials());
@@ -92,8 +92,8 @@ impl Walk for Sms {
     }
 }
 
-/// The first word of a row in capital letters, and how long it is; without letters if it is longer than any keyword that is looked
-/// for. Programs write keywords in small letters too.
+/// Returns the first word of a row in capital letters, and its length. The length is 0 if the word is longer than any
+/// known keyword. Programs also write keywords in small letters.
 #[inline]
 fn keyword(cursor: &mut Cursor<'_>) -> ([u8; 3], usize) {
     let mut word = [0; 3];
@@ -104,7 +104,7 @@ fn keyword(cursor: &mut Cursor<'_>) -> ([u8; 3], usize) {
     (word, token.len())
 }
 
-/// Reads a row if it is a node's.
+/// Reads a row if it is that of a node.
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
@@ -117,7 +117,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     Ok(Row::Node(tag, x_at, at, cursor.height_if_any(owner)?))
 }
 
-/// Reads a row if it is that of an element or a node string.
+/// Reads a row if it is that of an element, a node string or a material.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
@@ -139,14 +139,14 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     };
     let tag = cursor.integer("the number of an element")?;
     let nodes = nodes(cursor, kind)?;
-    // A material is a number. Some programs leave it out.
+    // A material is a number, which some programs leave out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
     let of_none = kind == Kind::Line && material == 0;
     let region = [if of_none { NO_MATERIAL } else { material }, 0];
     Ok(Row::Element(Element { tag, kind, region, nodes }))
 }
 
-/// Reads the nodes of a row of a node string. The last node of a string is negative; what follows is its name.
+/// Reads the nodes in a row of a node string. The last node of a string is negative, and the string's name may follow.
 #[cold]
 fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let mut nodes = Vec::new();
@@ -162,7 +162,7 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     Ok(Row::String(nodes, End::Open))
 }
 
-/// Reads the number and the name of a material. A row without them is passed over: the mesh does not depend on it.
+/// Reads the number and the name of a material. A row without them is ignored, as the mesh does not depend on it.
 #[cold]
 fn material(cursor: &mut Cursor<'_>) -> Row {
     match cursor.signed("a material") {
@@ -174,7 +174,7 @@ fn material(cursor: &mut Cursor<'_>) -> Row {
     }
 }
 
-/// A name without the quotes around it.
+/// Removes the quotes around a name.
 fn unquoted(name: &[u8]) -> Vec<u8> {
     let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
     inner.unwrap_or(name).to_vec()

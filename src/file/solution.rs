@@ -1,4 +1,4 @@
-//! Sizes and tensors given for the vertices of a mesh, in a file beside it: Medit's `.sol` and BAMG's metric files.
+//! Sizes or tensors for the vertices of a mesh, from a file of their own: Medit's `.sol` and BAMG's metric files.
 
 use std::path::Path;
 
@@ -6,8 +6,8 @@ use crate::error::ReadError;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
 
-/// The numbers of each vertex of a mesh, vertex by vertex in the order of its file: one, a size, or three, a symmetric
-/// tensor as xx, xy, yy.
+/// Numbers for the vertices of a mesh, in the order of the mesh file. Each vertex has one number, a size in the unit of
+/// the mesh, or three, a symmetric tensor as xx, xy, yy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     components: usize,
@@ -15,11 +15,11 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG: the number of vertices and of
-    /// numbers of each, 1 or 3, and then these numbers.
+    /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG. A metric file has the
+    /// number of vertices, how many numbers each has (1 or 3), and then these numbers.
     ///
     /// # Errors
-    /// [`ReadError`] if the file cannot be read, or follows neither format.
+    /// [`ReadError`] if the file cannot be read, or is in neither format.
     pub fn read(path: &Path) -> Result<Self, ReadError> {
         let source = Source::load(path)?;
         let mut cursor = Cursor::new(&source);
@@ -30,18 +30,18 @@ impl Solution {
         }
     }
 
-    /// How many numbers each vertex has: 1 or 3.
+    /// Returns how many numbers each vertex has: 1 or 3.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// All numbers.
+    /// Returns all numbers, [`components`](Self::components) for each vertex.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 }
 
-/// The kinds of values that `.sol` files number: a scalar, a vector and a symmetric tensor.
+/// The numbers by which `.sol` files name a scalar and a symmetric tensor. A vector is 2.
 const SCALAR: u64 = 1;
 const TENSOR: u64 = 3;
 
@@ -97,13 +97,13 @@ fn bamg(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
     }
 }
 
-/// A whole number on this row or a later one.
+/// Reads a whole number on this row or a later one.
 fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.next_word();
     cursor.integer(what)
 }
 
-/// The numbers of all vertices. There may be no more than those.
+/// Reads `components` numbers for each of `count` vertices. Text after them is ignored.
 fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solution, ReadError> {
     let wanted = count.saturating_mul(components as u64);
     let mut values = Vec::with_capacity(cursor.capacity(wanted, 2));

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
-    /// The file's own bytes, if it is compressed.
+    /// The compressed bytes of the file, if it is compressed.
     pub(crate) packed: Option<Packed>,
-    /// Whether corners at the same place are to be one vertex, where the format has no vertices.
+    /// Whether corners at the same place become one vertex, for formats without vertices.
     pub(crate) welds: bool,
     /// The files that it names, in which numbers of the mesh stand.
     pub(crate) beside: Vec<Beside>,
@@ -51,7 +51,7 @@ impl Source {
         }
     }
 
-    /// The content of a file, decompressed if need be.
+    /// Makes a source of a file's bytes, and decompresses them if needed.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
         let source =
             Source { path: path.to_owned(), bytes, packed: None, welds: false, beside: Vec::new() };
@@ -82,12 +82,12 @@ impl Source {
         ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
     }
 
-    /// Where the content starts: after a byte order mark, if there is one.
+    /// Returns the offset of the content, after a byte order mark if there is one.
     pub(crate) fn begin(&self) -> usize {
         if self.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 }
     }
 
-    /// One-based line of a byte.
+    /// Returns the line of a byte, counted from 1.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
     }
@@ -103,16 +103,16 @@ impl Source {
     }
 }
 
-/// How many bytes one thread reads at a time.
+/// Bytes that one thread reads at a time.
 const CHUNK: usize = 1 << 22;
 
-/// The content of a file. A long one is read on all threads, each at places of its own: a single one takes most of its time to
-/// have memory made by the system.
+/// Reads a file. All threads read parts of a long one, as a single thread spends most of its time waiting for the
+/// system to provide memory.
 fn content(path: &Path) -> io::Result<Vec<u8>> {
     let about = fs::metadata(path)?;
     match usize::try_from(about.len()) {
         Ok(length) if about.is_file() && length >= 2 * CHUNK => {
-            // Where there is not so much memory, this is an error, and the line after it an end without a message.
+            // If memory is short, this is an error, while the next line would end the process without a message.
             Vec::<u8>::new().try_reserve_exact(length)?;
             let mut bytes = vec![0; length];
             let each = bytes.chunks_mut(CHUNK);
@@ -131,7 +131,7 @@ fn content(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// The last part of a path, for messages.
+/// Returns the last part of a path, for messages.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,7 +1,7 @@
-//! STL, as text and in binary, of a mesh in the plane.
+//! STL, as text and in binary, for a mesh in the plane.
 //!
-//! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices, so a mesh is
-//! read only where it is asked for that corners at the same place be joined. Normals are not read.
+//! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices. A
+//! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
@@ -19,21 +19,22 @@ use std::collections::HashMap;
 
 pub(crate) struct Stl;
 
-/// The header and the count of a binary file.
+/// The size of a binary file's header in bytes. The number of triangles follows, and then the triangles.
 const HEADER: usize = 80;
 const START: usize = HEADER + 4;
-/// A triangle in binary: a normal and three corners of three floats each, and an attribute of two bytes.
+/// The size of a binary triangle in bytes: a normal and three corners of three floats each, and an attribute of two
+/// bytes.
 const TRIANGLE: usize = 50;
 
-/// The triangles of a file.
+/// The triangles of a file, which share no vertices.
 #[derive(Default)]
 struct Soup<'a> {
-    /// Where each triangle starts, and its solid.
+    /// The offset of each triangle, and the number of its solid.
     triangles: Vec<(usize, u32)>,
-    /// Where the x of each corner stands, ascending, three to a triangle.
+    /// The offset of each corner's x, ascending, three for each triangle.
     x_at: Vec<usize>,
     corners: Vec<[f64; 2]>,
-    /// The third coordinate of all corners.
+    /// The third coordinate, which is the same for all corners.
     z: Option<f64>,
     /// The names of the solids.
     solids: Vec<&'a [u8]>,
@@ -71,14 +72,14 @@ impl Walk for Stl {
     }
 }
 
-/// Whether a file is in binary. Some of those start with `solid`, as text does, but no text has zeros.
+/// Whether a file is binary. Some binary files start with `solid` as text does, but no text has zero bytes.
 fn is_binary(bytes: &[u8]) -> bool {
     let begin = bytes.trim_ascii_start().get(..5);
     let first = &bytes[..bytes.len().min(512)];
     !begin.is_some_and(|w| w.eq_ignore_ascii_case(b"solid")) || memchr::memchr(0, first).is_some()
 }
 
-/// How many triangles a binary file says it has.
+/// Returns the number of triangles that a binary file announces.
 fn announced(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEADER..START)?;
     usize::try_from(Order::Little.whole(count)).ok()
@@ -181,7 +182,7 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
 }
 
 impl Soup<'_> {
-    /// Takes the next corner.
+    /// Adds the next corner. Returns an error if its z differs from that of earlier corners.
     #[inline]
     fn corner(
         &mut self,
@@ -199,16 +200,16 @@ impl Soup<'_> {
     }
 }
 
-/// For each corner the first one at the same place.
+/// Returns for each corner the first corner at the same place.
 fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
     let mut first = HashMap::new();
-    // Zeros of either sign are one place.
+    // Adding zero makes a negative zero positive, so both are one place.
     let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
     (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
 }
 
-/// Joins corners at the same place, and hands on vertices in the order in which the file first has them, and triangles. Returns
-/// where the copies of each vertex stand.
+/// Joins corners at the same place, and hands on vertices and triangles. Vertices are in the order in which the file
+/// first has them. Returns where the copies of each vertex stand.
 fn hand_on(
     source: &Source,
     soup: Soup<'_>,
@@ -242,7 +243,7 @@ fn hand_on(
         && sink.asks_for_data()
         && sink.height_array(b"z")
     {
-        // It is the same everywhere, so it need not be replaced anywhere.
+        // z is the same everywhere, so it never has to be replaced.
         let numbers = vec![z; count];
         sink.point_numbers(PointNumbers { numbers, nodes: None, stored: None });
     }

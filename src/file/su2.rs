@@ -1,7 +1,7 @@
 //! SU2's `.su2`.
 //!
-//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list; the index
-//! at the end of a row is not read. Every zone of a multi-zone mesh has points of its own, numbered from zero.
+//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
+//! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -23,15 +23,15 @@ pub(crate) struct Su2;
 /// A list of elements, which may stand before the points.
 struct List<'a> {
     cursor: Cursor<'a>,
-    /// Its first elements, if they were read already.
+    /// The first elements, if they were read ahead.
     ahead: Vec<Small>,
     count: u64,
     zone: usize,
-    /// The name of the marker whose elements these are.
+    /// The name of the elements' marker; `None` for elements of the domain.
     marker: Option<&'a [u8]>,
 }
 
-/// An element with its nodes, as small as most are.
+/// An element with its nodes. Most fit this small type.
 type Small = (Kind, [u32; 4]);
 
 impl Walk for Su2 {
@@ -40,7 +40,7 @@ impl Walk for Su2 {
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let cursor = &mut Cursor::new(source).of(Syntax::PERCENT);
         let mut lists: Vec<List<'_>> = Vec::new();
-        // The number of points before each zone, and how many there are.
+        // The number of points before each zone, and the number of all points.
         let (mut zones, mut points) = (vec![0], 0_u64);
         let (mut marker, mut motions) = (None, None::<Motions>);
         while cursor.next_row() {
@@ -80,7 +80,7 @@ impl Walk for Su2 {
                     skip_send_to(cursor);
                     let start = cursor.clone();
                     let ahead = read_ahead(cursor, count, sink);
-                    // Not `row`, so that the error comes from the list itself, which knows more.
+                    // Not `row`: the list is read again below and then returns a better error.
                     for _ in ahead.len() as u64..count {
                         if !cursor.next_row() {
                             break;
@@ -88,7 +88,7 @@ impl Walk for Su2 {
                     }
                     lists.push(List { cursor: start, ahead, count, zone, marker });
                 }
-                // The first of them is no motion.
+                // The first periodic entry is no motion.
                 b"NPERIODIC"
                     if !sink.asks_for_data() && integer(value).is_some_and(|count| count > 1) =>
                 {
@@ -100,7 +100,7 @@ impl Walk for Su2 {
                     motions.as_mut().into_iter().for_each(|motions| motions.read(key, all));
                 }
                 b"NMARK" | b"NZONE" | b"IZONE" => {}
-                // Counts of other lists, boxes of free-form deformation.
+                // Counts of other lists, and boxes for free-form deformation.
                 _ if sink.asks_for_data() && !value.is_empty() => {
                     sink.leaves_out(&format!("what {}= is", quoted(key)));
                 }
@@ -146,7 +146,7 @@ fn elements(
         sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
     };
     let mut done = 0;
-    // Errors are dropped: reading row by row meets them again.
+    // Errors are dropped here, as reading row by row meets them again.
     let nowhere = &Cursor::new(cursor.source);
     for &(kind, nodes) in ahead {
         if take(nowhere, done, (kind, nodes.map(u64::from))).is_err() {
@@ -166,7 +166,7 @@ fn elements(
     Ok(())
 }
 
-/// Reads the first elements of a long list on all threads, if the sink allows that, as far as its rows are plain.
+/// Reads the first elements of a long list on all threads, if the sink allows it, as long as its rows are plain.
 fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small> {
     let mut ahead = Vec::new();
     if sink.takes_ahead() {
@@ -185,7 +185,8 @@ fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small
     ahead
 }
 
-/// Moves past the row between the count of a marker's elements and these that says where another process has copies of them.
+/// Skips the row `SEND_TO` between the count of a marker's elements and the elements. It concerns copies in other
+/// processes.
 fn skip_send_to(cursor: &mut Cursor<'_>) {
     let mut next = cursor.clone();
     if next.next_row() && key_and_values(&mut next).0 == b"SEND_TO" {
@@ -193,7 +194,8 @@ fn skip_send_to(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// The two sides of the equals sign of a row, without a comment. The row itself and nothing if there is none.
+/// Returns the two sides of the equals sign of a row, without comments. If there is no equals sign, returns the row and
+/// nothing.
 fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
     let row = cursor.rest();
     match memchr::memchr(b'=', row) {
@@ -205,7 +207,7 @@ fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
     }
 }
 
-/// The first of some values.
+/// Returns the first of several values.
 fn first(values: &[u8]) -> &[u8] {
     let end = values.iter().position(|&byte| byte <= b' ').unwrap_or(values.len());
     &values[..end]
@@ -220,7 +222,7 @@ fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
     cursor.error(format!("{name} is `{}`", quoted(value)), CORRECT)
 }
 
-/// Reads the row of an element, whose type is a number of VTK's.
+/// Reads the row of an element, which starts with VTK's number of its type.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
     let kind = match cursor.integer("the type of an element")? {

@@ -1,20 +1,20 @@
-//! The motions of SU2's periodic boundaries, as older versions of it write them: a list of centers, angles and translations.
+//! The motions of SU2's periodic boundaries, which older versions write as a list of centers, angles and translations.
 
 use crate::file::sink::Pairs;
 use crate::file::token::float;
 use crate::periodic::Motion;
 
-/// What was read of them so far, in the order of the file.
+/// The motions read so far, in the order of the file.
 #[derive(Default)]
 pub(crate) struct Motions {
     centers: Vec<Option<[f64; 3]>>,
-    /// In radians.
+    /// Angles of rotation about x, y and z, in radians.
     angles: Vec<Option<[f64; 3]>>,
     translations: Vec<Option<[f64; 3]>>,
 }
 
 impl Motions {
-    /// Reads the three numbers of a row.
+    /// Reads the three numbers of a row. `key` tells whether they are a center, angles or a translation.
     pub(crate) fn read(&mut self, key: &[u8], values: &[u8]) {
         let list = match key {
             b"PERIODIC_CENTER" => &mut self.centers,
@@ -31,7 +31,7 @@ impl Motions {
         list.push(numbers.and_then(finite));
     }
 
-    /// All that are motions of the plane and move something; `None` if there is none, or one that could not be read.
+    /// Returns all motions of the plane that move something. `None` if there is none, or if one could not be read.
     pub(crate) fn finish(self) -> Option<Vec<Pairs>> {
         let mut found = Vec::new();
         let Self { centers, angles, translations } = self;

@@ -1,39 +1,39 @@
-//! What text formats make of the bytes between their numbers.
+//! How text formats separate numbers.
 
-/// How the items of a list stand on its lines.
+/// How the items of a list are laid out on lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Items {
-    /// One a line.
+    /// One item in each line.
     Rows,
-    /// Each starts on a line of its own and goes on in the next ones until all of it was read, as Fortran reads lists.
+    /// Each item starts on a new line and may continue on the next ones, as Fortran reads lists.
     Records,
-    /// Anywhere: the end of a line is a blank like others.
+    /// Anywhere. The end of a line is a blank.
     Words,
 }
 
-/// What commas are.
+/// The meaning of commas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Commas {
     /// Part of a word.
     Letters,
-    /// At the end of a word they do not count.
+    /// At the end of a word, a comma is ignored.
     Trailing,
-    /// One between two numbers is as good as a blank.
+    /// A comma between two numbers is a blank.
     Blanks,
 }
 
-/// What a text format makes of the bytes between its numbers.
+/// How a text format separates numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Syntax {
     pub(crate) items: Items,
     pub(crate) commas: Commas,
     /// Whether a backslash at the end of a line joins it to the next one.
     pub(crate) joins: bool,
-    /// What, besides `#`, starts a comment.
+    /// The byte that starts a comment, besides `#`.
     pub(crate) comment: u8,
     /// The bytes that end a word.
     ends: &'static [bool; 256],
-    /// Whether nothing but blanks stands between words.
+    /// Whether words are separated only by blanks.
     pub(crate) is_plain: bool,
 }
 
@@ -47,10 +47,10 @@ impl Syntax {
         ends: &PLAIN_ENDS,
         is_plain: true,
     };
-    /// SU2's: comments start with a percent sign.
+    /// SU2: comments also start with a percent sign.
     pub(crate) const PERCENT: Syntax =
         Syntax { comment: b'%', ends: &PERCENT_ENDS, ..Syntax::PLAIN };
-    /// Lists that Fortran reads: commas are blanks, a slash ends what is read of a line.
+    /// Lists as Fortran reads them: commas are blanks, and a slash ends the reading of a line.
     pub(crate) const FORTRAN: Syntax = Syntax {
         items: Items::Records,
         commas: Commas::Blanks,
@@ -58,13 +58,13 @@ impl Syntax {
         is_plain: false,
         ..Syntax::PLAIN
     };
-    /// Items start on lines of their own.
+    /// Each item starts on a new line.
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
-    /// Items stand anywhere, whatever the lines.
+    /// Items stand anywhere on lines.
     pub(crate) const WORDS: Syntax = Syntax { items: Items::Words, ..Syntax::PLAIN };
-    /// Numbers may be followed by a comma, which stands before a blank.
+    /// A number may be followed by a comma, which stands before a blank.
     pub(crate) const TRAILING: Syntax = Syntax { commas: Commas::Trailing, ..Syntax::PLAIN };
-    /// Lines that end in a backslash go on in the next one.
+    /// A line that ends in a backslash continues in the next one.
     pub(crate) const JOINED: Syntax =
         Syntax { joins: true, ends: &JOINED_ENDS, is_plain: false, ..Syntax::PLAIN };
 
@@ -85,7 +85,7 @@ static PERCENT_ENDS: [bool; 256] = ends(b"#%");
 static FORTRAN_ENDS: [bool; 256] = ends(b"#,/");
 static JOINED_ENDS: [bool; 256] = ends(b"#\\");
 
-/// Blanks, control characters and these bytes.
+/// Returns a table in which blanks, control characters and `others` are marked.
 const fn ends(others: &[u8]) -> [bool; 256] {
     let mut ends = [false; 256];
     let mut at = 0;

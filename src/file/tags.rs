@@ -1,23 +1,23 @@
-//! Finds the index of a vertex by the number its file gives it, its tag; tags are arbitrary numbers.
+//! Finds the index of a vertex by its tag, the number that the file gives it. Tags are arbitrary numbers.
 
 use std::collections::HashMap;
 
-/// Finds the index of a tag.
+/// A map from tags to indices.
 pub(crate) enum TagMap {
-    /// Consecutive tags, as most files have them.
+    /// Consecutive tags, which most files have.
     Run { first: u64, count: u64 },
-    /// Tags with few gaps: the index of each tag from `first` on, [`ABSENT`] in the gaps.
+    /// Tags with few gaps: the index for each tag from `first` on, and [`ABSENT`] in the gaps.
     Dense { first: u64, indices: Vec<u32> },
     /// Tags far apart.
     Sparse(HashMap<u64, u32>),
 }
 
-/// Marks a tag without a vertex. Indices are less, as there are at most `u32::MAX` vertices.
+/// Marks a tag without a vertex. All indices are smaller, as there are at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
 impl TagMap {
-    /// Maps each tag to its position, of which there are at most `u32::MAX`. Fails with the
-    /// position of the first tag that was there before.
+    /// Maps each tag to its position. There may be at most `u32::MAX` tags. The error is the position of the first tag
+    /// that repeats an earlier one.
     pub(crate) fn new(tags: &[u64]) -> Result<TagMap, usize> {
         let first = tags.iter().copied().min().unwrap_or(0);
         let last = tags.iter().copied().max().unwrap_or(0);
@@ -25,7 +25,7 @@ impl TagMap {
         if tags.iter().enumerate().all(|(position, &tag)| tag - first == position as u64) {
             return Ok(TagMap::Run { first, count });
         }
-        // The table's size is bound to the number of tags, whatever their values.
+        // The table is at most four times as long as the list of tags, whatever their values.
         if last - first < 4 * count {
             let mut indices = vec![ABSENT; (last - first) as usize + 1];
             for (position, &tag) in tags.iter().enumerate() {
@@ -61,14 +61,14 @@ impl TagMap {
     }
 }
 
-/// Tags as they are found. They take memory only once one is not the next after the one before.
+/// Collects tags as they are found. It needs memory only if they are not consecutive.
 #[derive(Default)]
 pub(crate) struct FoundTags {
     first: u64,
     count: u64,
-    /// All of them, if they are not consecutive.
+    /// All tags, if they are not consecutive.
     list: Vec<u64>,
-    /// About how many there will be.
+    /// About how many tags there will be.
     expected: usize,
 }
 
@@ -82,7 +82,7 @@ impl FoundTags {
         self.extend(tag, 1);
     }
 
-    /// Adds so many consecutive tags.
+    /// Adds `count` consecutive tags.
     #[inline]
     pub(crate) fn extend(&mut self, first: u64, count: u64) {
         if self.count == 0 {
@@ -102,7 +102,7 @@ impl FoundTags {
         self.list.extend((0..count).map(|position| first + position));
     }
 
-    /// The tag at this position.
+    /// Returns the tag at this position.
     pub(crate) fn of(&self, position: usize) -> u64 {
         match self.list.is_empty() {
             true => self.first + position as u64,
@@ -110,7 +110,7 @@ impl FoundTags {
         }
     }
 
-    /// Maps them as [`TagMap::new`] does.
+    /// Maps the tags to their positions, as [`TagMap::new`] does.
     pub(crate) fn map(&self) -> Result<TagMap, usize> {
         match self.list.is_empty() {
             true => Ok(TagMap::Run { first: self.first, count: self.count }),

@@ -6,31 +6,31 @@ use crate::file::syntax::{Commas, Items, Syntax};
 use crate::file::token::line_end;
 use std::ops::Range;
 
-/// What to do about a single wrong line.
+/// The remedy for a single wrong line.
 pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
-/// What to do about a file that stops too early.
+/// The remedy for a file that ends too early.
 pub(crate) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
 
-/// Walks over the rows of a file, which are the lines that hold more than blanks and a `#` comment. In a binary file it
-/// takes bytes between the lines.
+/// Walks over the rows of a file: the lines that have more than blanks and a comment. In a binary file it also takes
+/// bytes between lines.
 #[derive(Clone)]
 pub(crate) struct Cursor<'a> {
     pub(crate) source: &'a Source,
-    /// The source's bytes up to where this cursor ends.
+    /// The source's bytes, up to the end of the cursor's range.
     pub(in crate::file) bytes: &'a [u8],
     pub(in crate::file) at: usize,
-    /// How many lines were begun. Zero before the first one and after bytes were taken: then the next line starts at
+    /// How many lines were begun. 0 before the first line and after bytes were taken, when the next line starts at
     /// `at`.
     line: usize,
-    /// Where the bytes last taken start. None in a text file.
+    /// The offset of the bytes taken last. `None` in a text file.
     taken: Option<usize>,
     pub(in crate::file) syntax: Syntax,
-    /// Whether the end of a line is a blank like others, for the item at hand.
+    /// Whether line ends are blanks for the current item.
     crosses: bool,
 }
 
 impl<'a> Cursor<'a> {
-    /// Stands before the first row.
+    /// Makes a cursor before the first row.
     pub(crate) fn new(source: &'a Source) -> Self {
         let at = source.begin();
         Cursor {
@@ -44,39 +44,39 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Stands on the line of a byte, for messages.
+    /// Makes a cursor on the line of a byte, for messages.
     pub(crate) fn standing_at(source: &'a Source, at: usize) -> Self {
         let mut cursor = Cursor::new(source);
         (cursor.at, cursor.line) = (at, source.line_of(at));
         cursor
     }
 
-    /// Stands before a byte of a binary file, for messages.
+    /// Makes a cursor before a byte of a binary file, for messages.
     pub(crate) fn at_byte_of(source: &'a Source, at: usize) -> Self {
         let mut cursor = Cursor::new(source);
         (cursor.at, cursor.taken) = (at, Some(at));
         cursor
     }
 
-    /// Stands before the first row of a range of the file, of which it sees no more.
+    /// Makes a cursor before the first row of a range, beyond which it does not read.
     pub(crate) fn within(source: &'a Source, range: Range<usize>) -> Self {
         let mut cursor = Cursor::standing_at(source, range.start);
         cursor.bytes = &source.bytes[..range.end];
         cursor
     }
 
-    /// The same in a text of another syntax.
+    /// Returns the cursor with another syntax.
     pub(crate) fn of(self, syntax: Syntax) -> Self {
         Cursor { syntax, ..self }
     }
 
-    /// Splits the lines that follow among cursors of about `size` bytes each, `count` of them at most. Each counts lines
+    /// Splits the lines that follow into parts of about `size` bytes, at most `count` of them. Each part counts lines
     /// from its own first.
     pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
         self.parts_after(None, size, count)
     }
 
-    /// Splits the lines that follow a part in the same way; those that follow this cursor if it is none.
+    /// Splits the lines after `part` as [`parts`](Self::parts) does, or the lines after this cursor for `None`.
     pub(crate) fn parts_after(
         &self,
         part: Option<&Cursor<'_>>,
@@ -94,18 +94,17 @@ impl<'a> Cursor<'a> {
         parts
     }
 
-    /// Moves to the last line of a part, all rows of which were read. It has to be the first one of
-    /// [`parts`](Self::parts).
+    /// Moves to the last line of a part whose rows were all read. It must be the first of [`parts`](Self::parts).
     pub(crate) fn skip(&mut self, part: &Cursor<'_>) {
         self.line += part.line;
         self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
-    /// Where it stands: on a line, the last one if there are no more rows, or in a binary file at the start of the bytes
-    /// last taken.
+    /// Returns the location: the current line, or the last one if there are no more rows. In a binary file, it is the
+    /// offset of the bytes taken last.
     pub(crate) fn location(&self) -> Location {
         match self.taken {
-            // Zero if nothing was read so far, but editors count from one.
+            // The count is 0 if nothing was read so far, but editors count from 1.
             None if self.syntax.joins => Location::Line(self.source.line_of(self.at)),
             None => Location::Line(self.line.max(1)),
             Some(start) if self.line == 0 => Location::Byte(start),
@@ -113,7 +112,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The location of what starts at the byte `at`.
+    /// Returns the location of the byte at offset `at`.
     pub(crate) fn location_of(&self, at: usize) -> Location {
         match self.taken {
             None => Location::Line(self.source.line_of(at)),
@@ -121,8 +120,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes so many bytes from the start of the next line, or from where those last taken end. From then on the file
-    /// counts as binary. None if there are fewer.
+    /// Takes `count` bytes from the start of the next line, or after the bytes taken last. From then on the file counts
+    /// as binary. `None` if there are fewer.
     #[inline]
     pub(crate) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let start = self.next_line();
@@ -132,14 +131,15 @@ impl<'a> Cursor<'a> {
         Some(taken)
     }
 
-    /// The bytes of so many items that [`take`](Self::take) would take next, and where they start. None if there are fewer.
+    /// Returns the next `count` items of `size` bytes, without taking them, and their offset. `None` if there are
+    /// fewer.
     pub(crate) fn ahead(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
         let start = self.next_line();
         let length = usize::try_from(count).ok()?.checked_mul(size)?;
         Some((self.bytes[start..].get(..length)?, start))
     }
 
-    /// Moves to a byte of the whole file, for messages, and there counts the line it stands on. Quick where it moves forward.
+    /// Moves to an offset of the file, for messages, and counts the lines up to it. Moving forward is fast.
     pub(crate) fn go_to(&mut self, at: usize) {
         match self.taken {
             Some(_) => self.taken = Some(at),
@@ -149,22 +149,22 @@ impl<'a> Cursor<'a> {
         self.at = at;
     }
 
-    /// Whether so much follows that it is worth reading on several threads.
+    /// Whether enough text follows that reading it on several threads pays.
     pub(crate) fn is_long(&self) -> bool {
         self.bytes.len() - self.at > 1 << 18
     }
 
-    /// Passes over bytes that are there, without counting them as taken.
+    /// Skips bytes that exist, without counting them as taken.
     pub(crate) fn pass(&mut self, count: usize) {
         self.at += count;
     }
 
-    /// Where the bytes start that are taken next.
+    /// Returns the offset of the bytes that would be taken next.
     pub(crate) fn at_byte(&self) -> usize {
         self.next_line()
     }
 
-    /// Where the bytes last taken start.
+    /// Returns the offset of the bytes taken last.
     #[inline]
     pub(crate) fn taken(&self) -> usize {
         self.taken.unwrap_or(self.at)
@@ -175,7 +175,7 @@ impl<'a> Cursor<'a> {
         if self.line > 0 { self.row_end(self.at) } else { self.at }
     }
 
-    /// Where the line ends that holds this byte, and those that it is joined to, after the line feed.
+    /// Returns the end of the line that has this byte, and of lines joined to it, after the line feed.
     #[inline]
     fn row_end(&self, at: usize) -> usize {
         let end = line_end(self.bytes, at);
@@ -192,7 +192,7 @@ impl<'a> Cursor<'a> {
         end
     }
 
-    /// The first byte from `at` on that does not only separate numbers.
+    /// Returns the first offset from `at` on whose byte is not a separator.
     #[inline]
     pub(in crate::file) fn skip_blanks(&self, mut at: usize) -> usize {
         let bytes = self.bytes;
@@ -226,7 +226,7 @@ impl<'a> Cursor<'a> {
         at
     }
 
-    /// Where the word ends that starts at `at`.
+    /// Returns the end of the word that starts at `at`.
     #[inline]
     pub(in crate::file) fn word_end(&self, mut at: usize) -> usize {
         while at < self.bytes.len() && !self.syntax.ends_before(self.bytes[at]) {
@@ -235,13 +235,13 @@ impl<'a> Cursor<'a> {
         at
     }
 
-    /// Whether no word goes on at `at`.
+    /// Whether a word ends before `at`.
     #[inline]
     pub(in crate::file) fn is_word_end(&self, at: usize) -> bool {
         self.bytes.get(at).is_none_or(|&byte| self.syntax.ends_before(byte))
     }
 
-    /// Moves to the first token of the next row. False when there is none.
+    /// Moves to the first token of the next row. Returns false if there is none.
     pub(crate) fn next_row(&mut self) -> bool {
         let bytes = self.bytes;
         loop {
@@ -259,8 +259,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Moves to the next of `count` items, `done` of which were read: to the next row, or the next word where items do not keep
-    /// to rows.
+    /// Moves to the next of `count` items, after `done` were read: to the next row, or to the next word if items do not
+    /// keep to rows.
     #[inline]
     pub(crate) fn row(&mut self, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
         if (self.syntax.items == Items::Words && self.is_within_row()) || self.next_row() {
@@ -269,7 +269,7 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
     }
 
-    /// Takes the next line whole, without what ends it, be it a row or not.
+    /// Takes the next line whole, without its end, even if it is blank or a comment.
     pub(crate) fn line(&mut self) -> Option<&'a [u8]> {
         let start = self.next_line();
         if start == self.bytes.len() {
@@ -277,12 +277,12 @@ impl<'a> Cursor<'a> {
         }
         let end = line_end(self.bytes, start);
         self.line += 1;
-        // On the line feed, so that the next line is the one after it.
+        // The cursor stays on the line feed, so that the next line is the one after it.
         self.at = end - usize::from(self.bytes[..end].ends_with(b"\n"));
         Some(self.bytes[start..end].trim_ascii_end())
     }
 
-    /// The rest of the row, without blanks around it.
+    /// Takes the rest of the row, without the blanks around it.
     pub(crate) fn rest(&mut self) -> &'a [u8] {
         let end = self.row_end(self.at);
         let rest = self.bytes[self.at..end].trim_ascii();
@@ -295,7 +295,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.skip_blanks(self.at)).is_some_and(u8::is_ascii_alphabetic)
     }
 
-    /// Where the next token of the row starts.
+    /// Returns the offset of the row's next token.
     pub(crate) fn at(&self) -> usize {
         self.skip_blanks(self.at)
     }
@@ -307,18 +307,18 @@ impl<'a> Cursor<'a> {
         self.is_word_end(at)
     }
 
-    /// Whether the row at hand has words left.
+    /// Whether the current row has words left.
     fn is_within_row(&self) -> bool {
         self.line > 0 && !self.is_at_end()
     }
 
-    /// Whether the items that follow may be read row by row, as far as that goes.
+    /// Whether the items that follow may be read row by row.
     pub(crate) fn is_between_rows(&self) -> bool {
         self.syntax.items != Items::Words || !self.is_within_row()
     }
 
-    /// Reads an item that starts here: on this row or, if that cannot be and the syntax allows it, on those that follow too.
-    /// In a list of words the error of the row is then kept, as a number may be missing there.
+    /// Reads an item that starts here. If it does not fit on the row and the syntax allows it, the item continues on
+    /// later rows. In a list of words, `missing` then keeps the error of the row, as a number may be missing there.
     pub(crate) fn item<T>(
         &mut self,
         mut read: impl FnMut(&mut Cursor<'a>) -> Result<T, ReadError>,
@@ -344,13 +344,13 @@ impl<'a> Cursor<'a> {
         read
     }
 
-    /// Moves before the next token of the file, on this row or a later one. False when there is none.
+    /// Moves before the next token of the file, on this row or a later one. Returns false if there is none.
     #[inline]
     pub(crate) fn next_word(&mut self) -> bool {
         self.is_within_row() || self.next_row()
     }
 
-    /// The next token of the row, or none at its end.
+    /// Takes the next token of the row. `None` at the end of the row.
     #[inline]
     pub(crate) fn token(&mut self) -> Option<&'a [u8]> {
         let bytes = self.bytes;
@@ -364,7 +364,7 @@ impl<'a> Cursor<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// The next tokens of the row, as many as there are up to `count`, with what stands between them.
+    /// Takes up to `count` tokens of the row, with what stands between them.
     pub(crate) fn tokens(&mut self, count: u64) -> &'a [u8] {
         let bytes = self.bytes;
         let start = self.skip_blanks(self.at);
@@ -383,13 +383,14 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.skip_blanks(self.at)) == Some(&byte)
     }
 
-    /// How many of `count` rows to reserve space for: not more than what follows can hold, as the count may be wrong.
+    /// Returns for how many of `count` rows to reserve memory: no more than the rest of the file can hold, as the count
+    /// may be wrong.
     pub(crate) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
         let possible = (self.bytes.len() - self.at) / bytes_per_row;
         usize::try_from(count).map_or(possible, |count| count.min(possible))
     }
 
-    /// An error on the current line.
+    /// Makes an error at the current location.
     #[cold]
     pub(crate) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
         self.source.error_at(self.location(), problem, remedy)
@@ -410,7 +411,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// On the first row.
+    /// Returns a cursor on the first row.
     pub(crate) fn row_of(source: &Source) -> Cursor<'_> {
         let mut cursor = Cursor::new(source);
         cursor.next_row();

@@ -1,4 +1,4 @@
-//! Numbers of a text file.
+//! Reads the numbers of a text file.
 
 use crate::error::ReadError;
 use crate::file::heights::NO_HEIGHT;
@@ -11,7 +11,7 @@ const WHOLE: &str = "a whole number from 0 to 2^64-1";
 const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
 
 impl<'a> Cursor<'a> {
-    /// Reads a number from zero up, called `what` in messages.
+    /// Reads an unsigned whole number, called `what` in messages.
     #[inline]
     pub(crate) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
         let bytes = self.bytes;
@@ -22,7 +22,7 @@ impl<'a> Cursor<'a> {
             number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
             at += 1;
         }
-        // So many digits cannot overflow. The rest is rare.
+        // This many digits cannot overflow. Other numbers are rare.
         if (1..=19).contains(&(at - start)) && self.is_word_end(at) {
             self.at = at;
             return Ok(number);
@@ -31,7 +31,7 @@ impl<'a> Cursor<'a> {
         token.and_then(integer).ok_or_else(|| self.unusable(token, what, WHOLE))
     }
 
-    /// Reads a number that may be negative, called `what` in messages.
+    /// Reads a signed whole number, called `what` in messages.
     #[inline]
     pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
         let bytes = self.bytes;
@@ -43,7 +43,7 @@ impl<'a> Cursor<'a> {
             number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
             at += 1;
         }
-        // So many digits cannot overflow. The rest is rare.
+        // This many digits cannot overflow. Other numbers are rare.
         if (1..=18).contains(&(at - first)) && self.is_word_end(at) {
             self.at = at;
             return Ok(if first > start { -number } else { number });
@@ -53,7 +53,8 @@ impl<'a> Cursor<'a> {
         number.ok_or_else(|| self.unusable(token, what, SIGNED))
     }
 
-    /// Reads the whole number that the next token starts with, if that is all of it or `stop` follows. Else it stays before it.
+    /// Reads the whole number at the start of the next token, if it is the whole token or `stop` follows. Otherwise the
+    /// cursor does not move.
     #[inline]
     pub(crate) fn signed_up_to(&mut self, stop: u8) -> Option<i64> {
         let bytes = self.bytes;
@@ -66,14 +67,14 @@ impl<'a> Cursor<'a> {
             at += 1;
         }
         let ends = self.is_word_end(at) || bytes[at] == stop;
-        // So many digits cannot overflow.
+        // This many digits cannot overflow.
         ((1..=18).contains(&(at - first)) && ends).then(|| {
             self.at = self.word_end(at);
             if first > start { -number } else { number }
         })
     }
 
-    /// Like [`integer`](Self::integer), but `absent` stands for a missing token.
+    /// Reads a number as [`integer`](Self::integer) does. Returns `absent` if the row has no token left.
     pub(crate) fn integer_or(&mut self, absent: u64, what: &str) -> Result<u64, ReadError> {
         match self.token() {
             None => Ok(absent),
@@ -81,14 +82,14 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Reads how many vertices there are.
+    /// Reads the number of vertices, which must fit 32-bit indices.
     pub(crate) fn vertex_count(&mut self) -> Result<u64, ReadError> {
         let count = self.integer("the number of vertices")?;
         self.check_vertex_count(count)?;
         Ok(count)
     }
 
-    /// Fails where there are more vertices than 32-bit indices can tell apart.
+    /// Returns an error if there are more vertices than 32-bit indices can number.
     pub(crate) fn check_vertex_count(&self, count: u64) -> Result<(), ReadError> {
         if count > u64::from(u32::MAX) {
             let problem = format!("{count} vertices are announced, but at most {} fit", u32::MAX);
@@ -97,7 +98,7 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Reads one coordinate, `axis` of `owner` in messages.
+    /// Reads a finite coordinate, called the `axis` of `owner` in messages.
     #[inline]
     pub(crate) fn coordinate(&mut self, axis: char, owner: impl Display) -> Result<f64, ReadError> {
         if let Some(value) = self.short_number() {
@@ -121,7 +122,7 @@ impl<'a> Cursor<'a> {
         value.ok_or_else(|| self.unusable(token, what, "a number"))
     }
 
-    /// Reads a number as most are. If the next token is none of these, it stays before it.
+    /// Reads a number in the usual form. If the next token is not one, the cursor does not move.
     #[inline]
     fn short_number(&mut self) -> Option<f64> {
         let (value, end) = short_float(self.bytes, self.skip_blanks(self.at))?;
@@ -131,7 +132,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// The number that a token is. Fortran writes exponents in more ways than others.
+    /// Returns the number that a token stands for. Fortran has more ways to write exponents.
     fn float(&self, token: &[u8]) -> Option<f64> {
         let of_fortran = || match self.syntax.commas {
             Commas::Blanks => fortran_float(token),
@@ -140,19 +141,19 @@ impl<'a> Cursor<'a> {
         float(token).or_else(of_fortran)
     }
 
-    /// Reads z, which need not be finite: programs write NaN where they know no depth. Returns where it stands, and z.
+    /// Reads z, which need not be finite, as programs write NaN for an unknown depth. Returns the offset of z, and z.
     #[inline]
     pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         Ok((self.at(), self.real(format_args!("z of {owner}"))?))
     }
 
-    /// Reads z if the row has more than x and y.
+    /// Reads z if the row has more than x and y. Otherwise returns [`NO_HEIGHT`].
     #[inline]
     pub(crate) fn height_if_any(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         if self.is_at_end() { Ok(NO_HEIGHT) } else { self.height(owner) }
     }
 
-    /// Reads x and y. Returns where x stands, and both.
+    /// Reads x and y. Returns the offset of x, and both coordinates.
     #[inline]
     pub(crate) fn point(
         &mut self,

@@ -7,13 +7,12 @@ pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
 }
 
-/// A token made fit for a message of one line: shortened, with control characters escaped.
+/// Shortens a token and escapes its control characters, for a message of one line.
 pub(crate) fn quoted(token: &[u8]) -> String {
     on_one_line(token, 40)
 }
 
-/// A text that may quote any part of a file, made fit for a message of one line: so many characters of it, with control
-/// characters escaped.
+/// Shortens a text to `most` characters and escapes its control characters, for a message of one line.
 fn on_one_line(text: &[u8], most: usize) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(4 * most)]);
     let mut shown: String = text.chars().take(most).flat_map(char::escape_debug).collect();
@@ -23,7 +22,7 @@ fn on_one_line(text: &[u8], most: usize) -> String {
     shown
 }
 
-/// What the parser of XML says of a file that is none. It may quote a tag, of any length and of several lines.
+/// Words the error of the XML parser. It may quote a tag, of any length and over several lines.
 pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
     format!("it is no XML: {}", on_one_line(error.to_string().as_bytes(), 120))
 }
@@ -48,7 +47,7 @@ pub(crate) fn skip_to_number(bytes: &[u8], mut at: usize) -> usize {
     }
 }
 
-/// Where the number ends that starts at `at`: before the first byte that is part of none.
+/// Returns the end of the number that starts at `at`: the first byte that cannot be part of it.
 #[inline]
 pub(crate) fn number_end(bytes: &[u8], mut at: usize) -> usize {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'+' | b'-');
@@ -64,7 +63,7 @@ pub(crate) fn integer(token: &[u8]) -> Option<u64> {
     if digits.is_empty() {
         return None;
     }
-    // So many digits cannot overflow.
+    // This many digits cannot overflow.
     if digits.len() < 20 && digits.iter().all(u8::is_ascii_digit) {
         let append = |number: u64, &byte: &u8| 10 * number + u64::from(byte - b'0');
         return Some(digits.iter().fold(0, append));
@@ -87,15 +86,15 @@ pub(crate) fn float(token: &[u8]) -> Option<f64> {
     }
     let text = str::from_utf8(token).ok()?;
     text.parse().ok().or_else(|| {
-        // Fortran marks the exponents of double precision so.
+        // Fortran writes `D` before the exponents of double precision.
         let (mantissa, exponent) = text.split_once(['d', 'D'])?;
         format!("{mantissa}e{exponent}").parse().ok()
     })
 }
 
-/// The number that starts at `at`, and where it ends, if it is an integer of at most 53 bits by a power of ten that is a `f64`: then
-/// a single operation rounds it rightly (Clinger, How to read floating point numbers accurately, 1990). Most numbers of up to 16
-/// digits are, and it takes a third of the time.
+/// Reads the number at `at`, if it is a whole number of at most 53 bits times or divided by a power of ten up to 1e22.
+/// Then a single operation rounds it correctly (Clinger, How to read floating point numbers accurately, 1990). Returns
+/// the number and its end. Most numbers of up to 16 digits qualify, and take a third of the time.
 #[inline]
 pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     const POWERS: [f64; 23] = [
@@ -120,7 +119,7 @@ pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
         power = point as i32 + 1 - end as i32;
         count += end - point - 1;
     }
-    // So many digits, leading zeros among them, cannot overflow.
+    // This many digits, with leading zeros, cannot overflow.
     if !(1..=19).contains(&count) || number > 1 << 53 {
         return None;
     }
@@ -149,8 +148,8 @@ pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     Some((if is_negative { -number } else { number }, end))
 }
 
-/// The number if it is one as only Fortran writes and reads it: in quadruple precision, or with an exponent of three digits, for
-/// which it leaves the letter out.
+/// Reads a number in a form that only Fortran knows: of quadruple precision (`Q`), or with a three-digit exponent
+/// without a letter.
 #[cold]
 pub(crate) fn fortran_float(token: &[u8]) -> Option<f64> {
     let text = str::from_utf8(token).ok()?;
@@ -159,7 +158,7 @@ pub(crate) fn fortran_float(token: &[u8]) -> Option<f64> {
         Some(parts) => parts,
         None => text.split_at((1..text.len()).rfind(is_sign)?),
     };
-    // Else a letter would be left out twice.
+    // With a letter in either part, the token would have two exponents.
     let is_plain = |part: &str| part.bytes().all(|b| !b.is_ascii_alphabetic());
     (is_plain(mantissa) && is_plain(exponent))
         .then(|| format!("{mantissa}e{exponent}").parse().ok())
@@ -223,7 +222,7 @@ mod tests {
         assert_eq!(skip_to_number(b"1 , # 2, 3\n\t4", 1), 12);
     }
 
-    /// Against the standard library, on numbers as they are written and on what may look like one.
+    /// The results must be those of the standard library, for usual numbers and for texts that look like numbers.
     #[test]
     fn short_floats_are_those_of_the_standard_library() {
         let mut state = 3_u64;

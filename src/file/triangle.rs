@@ -1,7 +1,7 @@
-//! Triangle's `.node` and `.ele`, with the segments of a `.poly` beside them.
+//! Triangle's `.node` and `.ele`, with the segments of a `.poly` if there is one.
 //!
-//! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this ignores
-//! what follows the announced rows and columns.
+//! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
+//! announced rows and columns.
 
 use crate::error::{Location, ReadError};
 use crate::file::curves::Curves;
@@ -16,9 +16,9 @@ use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::{float, integer};
 use crate::mesh::Mesh;
 
-/// Stands before the first row of one of the files.
+/// Returns a cursor before the first row of one of the files.
 pub(crate) fn rows(source: &Source) -> Cursor<'_> {
-    // Triangle looks for the next number behind blanks, and so passes over a comma before them.
+    // Triangle skips a comma before the blanks that precede a number.
     Cursor::new(source).of(Syntax::TRAILING)
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn parse(
     })
 }
 
-/// Line and number of the vertices whose x stand at some offsets, ascending.
+/// Returns line and number of the vertices whose x have these offsets, which are ascending.
 pub(crate) fn vertex_places(
     node: &Source,
     x_at: impl Iterator<Item = usize>,
@@ -71,7 +71,8 @@ pub(crate) fn vertex_places(
     x_at.map(place).collect()
 }
 
-/// Line and number of the triangles with these indices, ascending, in a file that was read before.
+/// Returns line and number of the triangles with these indices, which are ascending. The file must have been read
+/// before.
 pub(crate) fn triangle_places(ele: &Source, indices: &[usize]) -> Vec<(Location, u64)> {
     let mut cursor = rows(ele);
     // The header comes before the triangles.
@@ -87,14 +88,14 @@ pub(crate) fn triangle_places(ele: &Source, indices: &[usize]) -> Vec<(Location,
     indices.iter().map(place).collect()
 }
 
-/// How the vertices of a file are numbered: `count` of them from `first` on.
+/// The numbering of a file's vertices: `count` of them from `first` on.
 pub(crate) struct Numbers {
     pub(crate) first: u64,
     pub(crate) count: u64,
 }
 
 impl Numbers {
-    /// The zero-based index of the vertex that `owner` names.
+    /// Reads a vertex of `owner`. Returns its zero-based index.
     #[inline]
     pub(crate) fn index(
         &self,
@@ -126,7 +127,7 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     if numbers.count == 0 {
         return Err(cursor.error("no vertices are announced", "Write the mesh again"));
     }
-    // A header that says it wrongly keeps no one from reading the vertices.
+    // A wrong number in the header must not prevent the vertices from being read.
     let attributes = cursor.integer_or(0, "the number of attributes per vertex").unwrap_or(0);
     let data = attribute_names(cursor.capacity(attributes, 1) as u64).collect();
     let capacity = cursor.capacity(numbers.count, "1 0 0\n".len());
@@ -156,7 +157,7 @@ fn vertices(node: &Source) -> Result<Vertices, ReadError> {
     Ok((numbers, points, x_at, data))
 }
 
-/// The names of the attributes that vertices have.
+/// Returns the names of the attributes of vertices.
 pub(crate) fn attribute_names(attributes: u64) -> impl Iterator<Item = String> {
     (1..=attributes).map(move |number| match attributes {
         1 => "attribute".to_owned(),
@@ -164,7 +165,7 @@ pub(crate) fn attribute_names(attributes: u64) -> impl Iterator<Item = String> {
     })
 }
 
-/// Reads the number of vertices, and checks that they are in the plane.
+/// Reads the number of vertices, and checks that these have two coordinates.
 pub(crate) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     header(cursor, "vertices")?;
     let count = cursor.vertex_count()?;
@@ -178,7 +179,7 @@ pub(crate) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
     }
 }
 
-/// Reads the number that opens a vertex's row. The first one says where numbering starts.
+/// Reads the number at the start of a vertex's row. The first one tells where numbering starts.
 pub(crate) fn vertex_number(
     cursor: &mut Cursor<'_>,
     row: u64,
@@ -202,7 +203,7 @@ pub(crate) fn vertex_number(
 
 type Triangles = (Vec<[u32; 3]>, Option<Vec<u32>>);
 
-/// Reads the triangles, and the region of each if there are several.
+/// Reads the triangles, and the region of each if there are several regions.
 fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles, ReadError> {
     let cursor = &mut rows(ele);
     header(cursor, "triangles")?;
@@ -239,11 +240,11 @@ fn triangles(ele: &Source, node: &Source, numbers: &Numbers) -> Result<Triangles
     Ok((triangles, regions.finish()))
 }
 
-/// Makes a region of the triangles that have the same attributes.
+/// Numbers the regions: triangles with the same attributes are of one region.
 #[derive(Default)]
 struct Attributes<'a> {
     texts: Numbering<&'a [u8]>,
-    /// The region of each text.
+    /// The region of each text of attributes.
     regions: Vec<u32>,
     names: Numbering<String>,
 }
@@ -259,19 +260,19 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// A text that is the same for all ways to write the same numbers.
+/// Normalizes the text of attributes, so that equal numbers have equal texts.
 fn normalized(attributes: &[u8]) -> String {
     let is_between = |&byte: &u8| byte <= b' ' || byte == b',';
     let tokens = attributes.split(is_between).filter(|token| !token.is_empty());
     let normalized = tokens.map(|token| match float(token) {
-        // Adding zero takes the sign off a negative zero.
+        // Adding zero makes a negative zero positive.
         Some(number) => format!("{:?} ", number + 0.0),
         None => format!("{} ", String::from_utf8_lossy(token)),
     });
     normalized.collect()
 }
 
-/// Reads a triangle's row: its corners, and the text of its attributes, of which there are so many columns.
+/// Reads a triangle's row: its corners, and the text of its attributes, which are `columns` tokens.
 #[inline]
 fn triangle<'a>(
     cursor: &mut Cursor<'a>,
@@ -293,8 +294,8 @@ fn triangle<'a>(
     Ok((corners, cursor.tokens(columns)))
 }
 
-/// Adds the vertices that a `.poly` lists and its segments to `curves`. Returns the number of
-/// segments. Its holes and regions are of use to mesh generators only.
+/// Adds the segments of a `.poly`, and the vertices it lists, to `curves`. Returns the number of segments. Holes and
+/// regions matter only to mesh generators.
 fn segments(
     poly: &Source,
     node: &Source,
@@ -309,13 +310,13 @@ fn segments(
     Ok(segments.count)
 }
 
-/// The segments of a `.poly`, read row by row.
+/// Reads the segments of a `.poly` row by row.
 pub(crate) struct Segments<'s> {
-    /// In the row of the number of segments, after that number; then in the row of a segment, after its vertices.
+    /// Stands after the number of segments at first, then after the vertices of the last segment.
     pub(crate) cursor: Cursor<'s>,
-    /// How many segments there are.
+    /// The number of segments.
     pub(crate) count: u64,
-    /// How many vertices the `.poly` lists itself: the first ones of the mesh.
+    /// How many vertices the `.poly` lists itself. They are the first ones of the mesh.
     listed: u64,
     node: &'s Source,
     ends: Numbers,
@@ -329,7 +330,7 @@ impl<'s> Segments<'s> {
     ) -> Result<Self, ReadError> {
         let mut cursor = rows(poly);
         let listed = vertex_header(&mut cursor)?;
-        // It may number its vertices from another number on than the mesh.
+        // The `.poly` may number its vertices from another number on than the mesh.
         let mut own = Numbers { first: numbers.first, count: listed };
         for row in 0..listed {
             vertex_number(&mut cursor, row, &mut own)?;
@@ -345,7 +346,7 @@ impl<'s> Segments<'s> {
         Ok(Self { cursor, count, listed, node, ends })
     }
 
-    /// The next segment, in this row of the list: its number, and the zero-based indices of its vertices.
+    /// Reads the segment in row `row` of the list. Returns its number, and the zero-based indices of its vertices.
     pub(crate) fn segment(&mut self, row: u64) -> Result<(u64, [u32; 2]), ReadError> {
         let Self { cursor, count, node, ends, .. } = self;
         cursor.row(row, *count, "segments")?;
@@ -358,7 +359,7 @@ impl<'s> Segments<'s> {
     }
 }
 
-/// Moves to the row that tells how long a list is.
+/// Moves to the header of a list, the row with its length.
 pub(crate) fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadError> {
     if cursor.next_row() {
         return Ok(());

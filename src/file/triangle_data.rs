@@ -8,13 +8,13 @@ use crate::file::source::Source;
 use crate::file::triangle::{attribute_names, rows, vertex_header};
 use crate::mesh::Precision;
 
-/// The wanted attributes of the vertices of a file that was read before.
+/// Reads the wanted attributes of vertices. The file must have been read before.
 pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
     let cursor = &mut rows(node);
     let count = vertex_header(cursor)?;
     let attributes = cursor.integer_or(0, "the number of attributes per vertex")?;
     let mut data = PointData::default();
-    // More than a row can hold are no attributes.
+    // A row cannot hold more attributes than this.
     let most = cursor.capacity(attributes, 1) as u64;
     for (column, name) in attribute_names(most).enumerate() {
         let is_wanted = match wanted {

@@ -1,5 +1,4 @@
-//! What can be named in the files of the mesh generator Triangle: attributes of triangles, and the markers of vertices and
-//! segments.
+//! Groups in the files of the mesh generator Triangle: attributes of triangles, and markers of vertices and segments.
 
 use crate::error::ReadError;
 use crate::file::group_table::GroupTable;
@@ -9,7 +8,7 @@ use crate::file::source::Source;
 use crate::file::token::float;
 use crate::file::triangle::{Numbers, Segments, header, rows, vertex_header, vertex_number};
 
-/// The groups of a mesh whose files were read before.
+/// Gathers the groups of a mesh whose files were read before.
 pub(crate) fn groups(
     node: &Source,
     ele: &Source,
@@ -24,7 +23,7 @@ pub(crate) fn groups(
     Ok(table)
 }
 
-/// The label by a column of a row. Zero stands for no label where that is said.
+/// Returns the label that a token stands for. If `zero_is_none`, zero stands for no label.
 fn label(token: &[u8], zero_is_none: bool) -> Option<Label> {
     match float(token) {
         Some(0.0) if zero_is_none => None,
@@ -43,7 +42,7 @@ fn attributes(ele: &Source, table: &mut GroupTable) -> Result<(), ReadError> {
         1 => "attribute".to_owned(),
         _ => format!("attribute{}", column + 1),
     };
-    // The last label of each column and its group: mostly the next one is the same.
+    // The last token of each column and its group, as the next token is mostly the same.
     let mut last: Vec<(&[u8], usize)> = Vec::new();
     for row in 0..count {
         cursor.row(row, count, "triangles")?;
@@ -63,7 +62,7 @@ fn attributes(ele: &Source, table: &mut GroupTable) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// Finds the markers of vertices. Returns how they are numbered.
+/// Gathers the markers of vertices. Returns how vertices are numbered.
 fn markers(node: &Source, table: &mut GroupTable) -> Result<Numbers, ReadError> {
     let cursor = &mut rows(node);
     let mut numbers = Numbers { first: 0, count: vertex_header(cursor)? };
@@ -72,7 +71,7 @@ fn markers(node: &Source, table: &mut GroupTable) -> Result<Numbers, ReadError> 
     for row in 0..numbers.count {
         vertex_number(cursor, row, &mut numbers)?;
         if !marked {
-            // The first number says how all are numbered.
+            // The first number tells how all are numbered.
             break;
         }
         cursor.tokens(attributes.saturating_add(2));

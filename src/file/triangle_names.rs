@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// The names of a mesh's files.
+/// The names of a Triangle mesh's files.
 pub(crate) struct Names {
     pub(crate) node: PathBuf,
     pub(crate) ele: PathBuf,
@@ -10,13 +10,13 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// The files of the mesh that `path` names by its `.node`, by its `.ele`, or without either ending.
+    /// Returns the files of the mesh that `path` names by its `.node`, by its `.ele`, or without an ending.
     pub(crate) fn of(path: &Path) -> Names {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let is = |name: &str| ending.eq_ignore_ascii_case(name);
         let stem = if is("node") || is("ele") { path.with_extension("") } else { path.to_owned() };
         let with = |name: &str| match is(name) {
-            // As it was given, whatever its letters.
+            // The given path keeps its spelling.
             true => path.to_owned(),
             false => appended(&stem, &format!(".{}", like(&ending, name))),
         };
@@ -24,7 +24,7 @@ impl Names {
     }
 }
 
-/// The name of an ending in letters as those of another ending: capitals, a capital and small ones, or small ones.
+/// Spells an ending as another one is spelled: in capitals, with a capital first, or in small letters.
 fn like(other: &str, name: &str) -> String {
     let (first, rest) = name.split_at(1);
     match other.as_bytes() {
@@ -34,7 +34,7 @@ fn like(other: &str, name: &str) -> String {
     }
 }
 
-/// The path with `ending` appended. Unlike `with_extension`, it leaves the 1 of `la.1` alone.
+/// Appends `ending` to a path. Unlike `with_extension`, this keeps the 1 of `la.1`.
 pub(crate) fn appended(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);

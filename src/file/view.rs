@@ -1,4 +1,4 @@
-//! Background fields as gmsh writes them: a view of scalars on triangles, as text (`.pos`).
+//! Background fields that gmsh writes as text (`.pos`): a view of scalars on triangles.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::file::source::Source;
 use crate::file::token::quoted;
 use crate::mesh::Mesh;
 
-/// A number on each vertex of a mesh that it brings along, such as the sizes wanted there.
+/// A mesh with a number on each vertex, such as the size wanted there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     mesh: Mesh,
@@ -18,9 +18,9 @@ pub struct View {
 const SAVE: &str = "Save the view from gmsh as text (.pos), of scalars on triangles (ST)";
 
 impl View {
-    /// Reads the first view of a `.pos` file of gmsh, whose elements are scalar triangles, `ST(x, y, z, ...){value, ...};`. Corners at
-    /// the same place are one vertex, with the value that is given there first; of several time steps the first is taken. Third
-    /// coordinates are left out.
+    /// Reads the first view of a `.pos` file of gmsh. Its elements must be scalar triangles, `ST(x, y, z, ...){value,
+    /// ...};`. Corners at the same place become one vertex, with the value given there first. Of several time steps,
+    /// the first is read. Third coordinates are ignored.
     ///
     /// # Errors
     /// [`ReadError`] if the file cannot be read, or has no such view.
@@ -45,7 +45,7 @@ impl View {
             parser.skip(b';');
             let mut corners = [0; 3];
             for (k, corner) in corners.iter_mut().enumerate() {
-                // Zeros of both signs are one place.
+                // Adding zero makes a negative zero positive, so both are one place.
                 let place = [places[3 * k] + 0.0, places[3 * k + 1] + 0.0];
                 *corner = *vertices.entry(place.map(f64::to_bits)).or_insert_with(|| {
                     view.mesh.points.push(place);
@@ -61,12 +61,12 @@ impl View {
         }
     }
 
-    /// The triangles of the view.
+    /// Returns the triangles of the view as a mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The number of each vertex.
+    /// Returns the number on each vertex, in the order of the mesh's points.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -83,7 +83,7 @@ impl<'s> Parser<'s> {
         self.source.error_at(Location::Line(self.source.line_of(at)), problem, remedy)
     }
 
-    /// What is left, after white space and comments.
+    /// Skips white space and comments, and returns the rest of the text.
     fn rest(&mut self) -> &'s [u8] {
         let bytes = &self.source.bytes;
         loop {
@@ -98,14 +98,14 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// Goes beyond a sign if it is next.
+    /// Skips a sign. Returns whether it was next.
     fn skip(&mut self, sign: u8) -> bool {
         let is_next = self.rest().first() == Some(&sign);
         self.at += usize::from(is_next);
         is_next
     }
 
-    /// The start of a view: `View "name" {`.
+    /// Reads the start of a view: `View "name" {`.
     fn header(&mut self) -> Result<(), ReadError> {
         if !self.rest().starts_with(b"View") {
             return Err(self.error("no view begins here", SAVE));
@@ -120,7 +120,7 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// The kind of the next element; `None` at the end of the view.
+    /// Reads the kind of the next element; `None` at the end of the view.
     fn kind(&mut self) -> Result<Option<&'s [u8]>, ReadError> {
         let rest = self.rest();
         if rest.is_empty() {
@@ -138,7 +138,7 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// Numbers between two signs, `least` or more.
+    /// Reads at least `least` numbers between two signs.
     fn list(&mut self, [open, close]: [u8; 2], least: usize) -> Result<Vec<f64>, ReadError> {
         let remedy = "Correct the line, or save the view again";
         if !self.skip(open) {

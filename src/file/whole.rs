@@ -1,4 +1,4 @@
-//! Lists of whole numbers, kept as they stand in a binary file.
+//! Lists of whole numbers, kept as they are in a binary file.
 
 use crate::file::binary::Order;
 use crate::file::records::Field;
@@ -6,24 +6,24 @@ use crate::parallel::map_ranges;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// How many numbers one thread compares at a time.
+/// Numbers that one thread compares at a time.
 const CHUNK: usize = 1 << 14;
 
-/// Whole numbers without signs. Those that were text take as little memory as those that were not.
+/// A list of unsigned whole numbers. Numbers from text are kept in as little memory as binary ones.
 pub(crate) struct Whole<'a> {
     bytes: Cow<'a, [u8]>,
-    /// How many bytes a number has.
+    /// The bytes of a number.
     size: usize,
     order: Order,
 }
 
 impl<'a> Whole<'a> {
-    /// Numbers in binary, of so many bytes each. What is left at the end is no number.
+    /// Makes a list of binary numbers, of `size` bytes each. Bytes that are left at the end are ignored.
     pub(crate) fn binary(bytes: Cow<'a, [u8]>, size: usize, order: Order) -> Whole<'a> {
         Whole { bytes, size, order }
     }
 
-    /// An empty list with room for so many numbers.
+    /// Makes an empty list with room for `count` numbers.
     pub(crate) fn with_capacity(count: usize) -> Whole<'a> {
         Whole { bytes: Cow::Owned(Vec::with_capacity(4 * count)), size: 4, order: Order::Little }
     }
@@ -53,13 +53,13 @@ impl<'a> Whole<'a> {
         self.len() == 0
     }
 
-    /// The number at this place. There has to be one.
+    /// Returns the number with this index, which must exist.
     #[inline]
     pub(crate) fn at(&self, index: usize) -> u64 {
         self.order.whole(&self.bytes[index * self.size..][..self.size])
     }
 
-    /// The numbers at some places. There have to be so many.
+    /// Returns the numbers with these indices, which must exist.
     pub(crate) fn range(&self, places: Range<usize>) -> impl Iterator<Item = u64> {
         let bytes = &self.bytes[places.start * self.size..places.end * self.size];
         bytes.chunks_exact(self.size).map(|number| self.order.whole(number))
@@ -71,7 +71,7 @@ impl<'a> Whole<'a> {
         map_ranges(pairs, CHUNK, each).into_iter().all(|is| is)
     }
 
-    /// One number of every `step`, from this place on, as those of records.
+    /// Returns every `step`-th number from index `from` on, as a field of records.
     pub(crate) fn field(&self, from: usize, step: usize) -> Field<'_> {
         let bytes = from.checked_mul(self.size).and_then(|at| self.bytes.get(at..));
         Field::new(bytes, (step * self.size, self.size), self.order)

@@ -1,4 +1,4 @@
-//! `gpu-smooth adapters`: what there is to run on.
+//! `gpu-smooth adapters`: lists the GPU adapters and whether each can be used.
 
 use gpu_smooth::GpuError;
 use gpu_smooth::gpu::AdapterSummary;
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), String> {
     Ok(())
 }
 
-/// An adapter, and whether it can be used.
+/// Describes an adapter in one line, with the error if it cannot be used.
 fn line(adapter: &AdapterSummary, usable: Result<(), GpuError>) -> String {
     let state = match usable {
         Ok(()) if adapter.is_software() => {

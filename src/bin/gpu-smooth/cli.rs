@@ -1,4 +1,4 @@
-//! The command line.
+//! The command line: its commands and options.
 
 #[cfg(any(test, fuzzing))]
 #[path = "cli_checks.rs"]
@@ -103,7 +103,7 @@ pub(crate) enum Command {
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
-    /// Writes a mesh in another format, and says before what that does not hold
+    /// Writes a mesh in another format, and first lists what that format does not hold
     Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters(AdaptersArgs),
@@ -128,7 +128,7 @@ pub(crate) enum Command {
 pub(crate) struct GroupsArgs {
     /// The mesh
     pub(crate) mesh: PathBuf,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
@@ -141,7 +141,7 @@ pub(crate) struct CompareArgs {
     pub(crate) before: PathBuf,
     /// The mesh after
     pub(crate) after: PathBuf,
-    /// What may have moved: the options of the run
+    /// What may have moved: give the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
@@ -160,7 +160,7 @@ pub(crate) struct ConvertArgs {
     pub(crate) input: PathBuf,
     /// Where to write it; its ending tells the format. - for the standard output, with --to
     pub(crate) output: PathBuf,
-    /// The format to write, where the ending does not tell it: .msh is gmsh 4.1 without it
+    /// The format to write, where the ending of OUT does not tell it: .msh alone stands for gmsh 4.1
     #[arg(long, value_name = "FORMAT", value_parser = targets())]
     pub(crate) to: Option<Format>,
     /// Write the mesh even if the format does not hold all of it
@@ -170,7 +170,7 @@ pub(crate) struct ConvertArgs {
     pub(crate) reading: ReadArgs,
 }
 
-/// The formats that meshes are converted to, by their short names.
+/// Parses a format that meshes are converted to, by its short name.
 fn targets() -> impl TypedValueParser<Value = Format> {
     let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
     PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
@@ -191,20 +191,21 @@ pub(crate) struct CompletionsArgs {
 
 #[derive(Args)]
 pub(crate) struct ManArgs {
-    /// Where to write a page for the program and one for each command [default: the page of the program is printed]
+    /// Directory for a page of the program and one of each command [default: the page of the program is printed]
     pub(crate) directory: Option<PathBuf>,
 }
 
 impl Cli {
-    /// The command line of this process, or the end of it with what is wrong with it.
+    /// Reads the command line of this process. If it is wrong, or asks for help, prints that and ends the process.
     pub(crate) fn read() -> Self {
         Self::checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
     }
 
-    /// A command line, the name of the program first, of which each option has a value it may have and none contradicts another.
+    /// Parses a command line, which begins with the name of the program. Checks the values of options, and that no
+    /// options contradict each other.
     ///
     /// # Errors
-    /// What is wrong with it, or the help or version that it asks for.
+    /// An error says what is wrong with it, or holds the help or version that it asks for.
     pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
         let matches = Self::command().try_get_matches_from(words)?;
         let refused = |kind, text: String| Err(Self::command().error(kind, text));
@@ -226,7 +227,7 @@ impl Cli {
     }
 }
 
-/// The error if a command comes after arguments of a run.
+/// Returns the error if a command comes after arguments of a run.
 fn misplaced(matches: &ArgMatches) -> Option<String> {
     let name = matches.subcommand_name()?;
     let command = Cli::command();

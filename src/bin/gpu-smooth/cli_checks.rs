@@ -1,5 +1,5 @@
-//! What has to hold of any command line, taken apart without a process: nothing panics, what is refused is told, and what is not can be
-//! carried out. The unit tests choose words at random, and the fuzzer by the bytes it tries.
+//! Checks that hold for any command line, parsed without a process: nothing panics, what is refused has a message, and
+//! what is accepted can be carried out. Unit tests choose the words at random, the fuzzer by the bytes it tries.
 
 use std::ffi::OsString;
 
@@ -9,13 +9,13 @@ use gpu_smooth::{Backend, Desired, Mesh, Precision, SmoothError, Smoother};
 
 use super::Cli;
 
-/// Where choices come from.
+/// A source of choices: random numbers, or bytes of the fuzzer.
 pub(crate) trait Choices {
-    /// A number below `n`, which is not 0.
+    /// Returns a number below `n`, which must not be 0.
     fn below(&mut self, n: usize) -> usize;
 }
 
-/// Values that some options take and others do not.
+/// Values that some options accept and others refuse.
 const VALUES: [&str; 34] = [
     "in.msh",
     "out.msh",
@@ -53,7 +53,8 @@ const VALUES: [&str; 34] = [
     "é\u{301}\u{7f}",
 ];
 
-/// A command line by choice: options of the program with values, in half of the cases after IN and OUT, and at times words that belong nowhere.
+/// Makes a command line of random options with values, half of the time after IN and OUT, and at times of words that
+/// belong nowhere.
 fn line(program: &Command, choices: &mut impl Choices) -> Vec<OsString> {
     let mut words = vec!["gpu-smooth".to_owned()];
     let mut command = program;
@@ -98,7 +99,7 @@ fn line(program: &Command, choices: &mut impl Choices) -> Vec<OsString> {
     words
 }
 
-/// Six triangles around a vertex.
+/// Returns a mesh of six triangles around a vertex.
 fn small_mesh() -> Mesh {
     let mut points = vec![[0.1, 0.2]];
     points.extend((0..6).map(|k| f64::from(k).to_radians() * 60.0).map(|a| [a.cos(), a.sin()]));
@@ -106,7 +107,7 @@ fn small_mesh() -> Mesh {
     Mesh { points, triangles, fixed: Vec::new() }
 }
 
-/// Takes command lines apart as the program does.
+/// Parses command lines as the program does.
 pub(crate) struct Checker {
     program: Command,
     smoother: Smoother<'static>,
@@ -119,11 +120,11 @@ impl Checker {
         Self { program, smoother: Smoother::new(&small_mesh()).unwrap().into_owned() }
     }
 
-    /// Checks the line that was chosen, and says what became of it. A run is one of three sweeps.
+    /// Makes a command line by `choices`, checks it, and returns how it ended. Runs are limited to three sweeps.
     ///
     /// # Panics
     ///
-    /// Where something does not hold.
+    /// Panics if a check fails.
     pub(crate) fn check(&self, choices: &mut impl Choices) -> &'static str {
         let words = line(&self.program, choices);
         match Cli::checked(words.clone()) {
@@ -132,7 +133,7 @@ impl Checker {
                 assert!(cli.smooth.input.is_some(), "{words:?}");
                 let mut options = cli.smooth.options(Precision::Double);
                 options.max_sweeps = options.max_sweeps.min(3);
-                // To look for the optimum would take most of the time.
+                // Looking for the optimum would take most of the time.
                 if let Some(goal) =
                     options.goal.as_mut().filter(|goal| goal.desired == Desired::Auto)
                 {
@@ -162,7 +163,7 @@ impl Checker {
     }
 }
 
-/// Checks the command line that bytes choose, a byte a choice, and the first choice where there are no more.
+/// Checks the command line that bytes choose, one byte for each choice. After the last byte the first choice is taken.
 #[cfg(fuzzing)]
 pub(crate) fn any_line(bytes: &[u8]) {
     struct Bytes<'a>(std::slice::Iter<'a, u8>);

@@ -1,4 +1,4 @@
-//! Random command lines. `FUZZ_ROUNDS`, a factor, makes more of them.
+//! Random command lines. The environment variable `FUZZ_ROUNDS` multiplies their number.
 
 #[allow(dead_code, unreachable_pub)]
 #[path = "../../../tests/support/rng.rs"]

@@ -1,26 +1,26 @@
-//! Text in columns, of a terminal or of CSV.
+//! Text in columns, for a terminal or as CSV.
 
 use std::io::IsTerminal;
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// The columns of the terminal that standard output is, if it is one.
+/// Returns the number of columns of the terminal, if standard output is one.
 pub(crate) fn of_terminal() -> Option<usize> {
     let size = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
     size.map(|(width, _)| usize::from(width.0))
 }
 
-/// A text and spaces after it, together as many columns wide as `width` says.
+/// Pads a text with spaces after it to `width` columns.
 pub(crate) fn left(text: &str, width: usize) -> String {
     format!("{text}{}", " ".repeat(width.saturating_sub(text.width())))
 }
 
-/// A text and spaces before it, together as many columns wide as `width` says.
+/// Pads a text with spaces before it to `width` columns.
 pub(crate) fn right(text: &str, width: usize) -> String {
     format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
 }
 
-/// The end of a name that is wider than `most` columns.
+/// Shortens a name that is wider than `most` columns to its end, after two dots.
 pub(crate) fn shortened(name: &str, most: usize) -> String {
     if name.width() <= most {
         return name.to_owned();
@@ -36,7 +36,7 @@ pub(crate) fn shortened(name: &str, most: usize) -> String {
     format!("..{}", &name[start..])
 }
 
-/// A field of CSV, in quotes if it needs them.
+/// Quotes a field of CSV if it needs quotes.
 pub(crate) fn quoted(field: &str) -> String {
     match field.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", field.replace('"', "\"\"")),

@@ -1,4 +1,4 @@
-//! `gpu-smooth compare BEFORE AFTER`.
+//! `gpu-smooth compare BEFORE AFTER`: proves that only vertices which may move have moved.
 
 use gpu_smooth::MeshFile;
 
@@ -8,10 +8,10 @@ use crate::proof::{self, FileHash, Proof};
 use crate::streams::read;
 use crate::tell;
 
-/// How many vertices or triangles of a kind are listed.
+/// How many vertices, or triangles, are listed at most.
 const LISTED: usize = 10;
 
-/// Compares two files. An error if more than vertices that may move is different.
+/// Compares two files. Returns an error if they differ in anything but vertices that may move.
 pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let mut before = read(&args.before, args.reading)?;
     let mut after = read(&args.after, args.reading)?;
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     Ok(())
 }
 
-/// What moved, in a line or two.
+/// Says in a line or two which vertices moved.
 fn summary(
     after: &MeshFile,
     old: &[[f64; 2]],

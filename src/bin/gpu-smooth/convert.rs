@@ -1,4 +1,4 @@
-//! `gpu-smooth convert IN OUT`.
+//! `gpu-smooth convert IN OUT`: writes a mesh in another format.
 
 use std::io::Write;
 
@@ -8,7 +8,8 @@ use crate::cli::{ConvertArgs, OutputArgs};
 use crate::streams::{is_standard, read};
 use crate::tell;
 
-/// Writes a mesh in another format. An error if that does not hold all of it, unless it is to be written all the same.
+/// Writes a mesh in another format. Returns an error if the format does not hold all of the mesh, unless `--lossy` is
+/// given.
 pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     let format = format(args)?;
     let file = read(&args.input, args.reading)?;
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     Ok(())
 }
 
-/// The format to write.
+/// Returns the format to write: that of `--to`, or that of the ending of OUT.
 fn format(args: &ConvertArgs) -> Result<Format, String> {
     let by_ending = || Conversion::target_of(&args.output);
     args.to.or_else(by_ending).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Which engine a run gets.
+//! Chooses and opens the engine that a run computes on.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -10,12 +10,12 @@ use crate::trial::{self, Tried};
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
-/// An engine, and why it was taken if the command line left that open.
+/// An engine, and the reason for it if the command line left the choice open.
 #[derive(Clone)]
 pub(crate) struct Taken {
     pub(crate) backend: Arc<Backend>,
     pub(crate) reason: Option<String>,
-    /// Held during a run, where other runs wait for the same device.
+    /// Locked during a run, if other runs wait for the same device.
     turn: Option<Arc<Mutex<()>>>,
 }
 
@@ -24,7 +24,7 @@ impl Taken {
         Self { backend: Arc::new(backend), reason, turn: None }
     }
 
-    /// Waits until no other run uses the device.
+    /// Waits until no other run uses the device. The device is taken as long as the returned guard lives.
     pub(crate) fn turn(&self) -> Option<MutexGuard<'_, ()>> {
         self.turn.as_ref().map(|turn| turn.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -52,7 +52,7 @@ pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
     Taken::new(backend, Some(worded(&reason)))
 }
 
-/// The engine that a run was left on, if the command line leaves the choice open.
+/// Opens the engine that a run was left on, or the CPU if that engine does not open.
 pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     let Some(name) = checkpoint.adapter() else {
         return Taken::new(Backend::Cpu, Some("where the run was left".into()));
@@ -66,7 +66,7 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     }
 }
 
-/// The reason of a choice, and the option that makes another.
+/// Words the reason of a choice, with the option that makes another.
 fn worded(reason: &Reason) -> String {
     match reason {
         Reason::GpuFails(_) => reason.to_string(),
@@ -78,24 +78,24 @@ fn worded(reason: &Reason) -> String {
 /// The engines of many runs. A device is opened once, and runs take turns on it.
 pub(crate) struct Engines<'a> {
     args: &'a SmoothArgs,
-    /// The engine that the command line asks for.
+    /// The engine that the command line asks for, if it asks for one.
     asked: Option<Taken>,
     found: Mutex<Found>,
 }
 
-/// What the choices so far have found.
+/// The engines that earlier choices found.
 #[derive(Default)]
 struct Found {
-    /// A device, and from how many vertices it is taken.
+    /// A device, and the least number of vertices for which it is taken.
     gpu: Option<(Taken, usize)>,
-    /// The CPU, and up to how many vertices it is taken because no GPU is faster.
+    /// The CPU, and the most vertices for which it is taken because no GPU is faster.
     small: Option<(Taken, usize)>,
-    /// The CPU, and from how many vertices it is taken because there is no GPU.
+    /// The CPU, and the least number of vertices for which it is taken because there is no GPU.
     large: Option<(Taken, usize)>,
 }
 
 impl<'a> Engines<'a> {
-    /// Opens the engine that the command line asks for, if it does.
+    /// Opens the engine that the command line asks for, if it asks for one.
     pub(crate) fn new(args: &'a SmoothArgs) -> Result<Self, String> {
         let asked = match is_open(args) {
             true => None,
@@ -104,7 +104,8 @@ impl<'a> Engines<'a> {
         Ok(Self { args, asked, found: Mutex::default() })
     }
 
-    /// The engine for a mesh of this size. Not to be called from a thread of a rayon pool: the choice counts the threads.
+    /// Returns the engine for a mesh of this size. Must not be called from a thread of a rayon pool, as the choice
+    /// counts the threads.
     pub(crate) fn take(&self, size: MeshSize) -> Taken {
         if let Some(asked) = &self.asked {
             return asked.clone();
@@ -135,14 +136,14 @@ impl<'a> Engines<'a> {
             | Reason::GpuFails(GpuError::NoAdapter { .. } | GpuError::Crashed(_)) => {
                 *large = Some(known);
             }
-            // Another mesh may fit.
+            // The GPU may have room for a smaller mesh, so nothing is remembered.
             _ => {}
         }
         taken
     }
 }
 
-/// An engine that several runs share.
+/// Makes runs take turns on an engine that they share.
 fn in_turns(taken: Taken) -> Taken {
     match &*taken.backend {
         Backend::Cpu => taken,
@@ -155,17 +156,18 @@ pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, String> {
     tried_and_opened(name).map_err(refusal)
 }
 
-/// Opens an adapter once it was tried in a process of its own: a driver that crashes would end this one without a word.
+/// Opens an adapter after it was tried in a process of its own, as a driver that crashes would end this one without a
+/// message.
 fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
     trial::drivers(Tried::Adapter(name)).and_then(|()| Gpu::open(name))
 }
 
-/// Tries the adapter that comes first.
+/// Tries the adapter that would be taken by default, in a process of its own.
 fn try_best() -> Result<(), GpuError> {
     trial::drivers(Tried::Adapter(None))
 }
 
-/// Why there is no adapter, and what to do.
+/// Words why there is no adapter, and what to do.
 pub(crate) fn refusal(error: GpuError) -> String {
     match error {
         GpuError::NoAdapter { wanted: Some(name), available } if !available.is_empty() => {
@@ -173,12 +175,12 @@ pub(crate) fn refusal(error: GpuError) -> String {
         }
         GpuError::NoAdapter { .. } => format!("no GPU adapter was found. {INSTALL}"),
         GpuError::Arithmetic { .. } => error.to_string(),
-        // There is a driver, and it fails.
+        // There is a driver, but it fails.
         error => format!("{error}. Use --engine cpu, or another driver"),
     }
 }
 
-/// Whether the GPU cannot hold the mesh.
+/// Whether a run failed because the GPU cannot hold the mesh.
 pub(crate) fn is_too_large(error: &SmoothError) -> bool {
     matches!(error, SmoothError::Gpu(error) if is_too_large_for_device(error))
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, in the terms of its file.
+//! Words what is wrong with a mesh in the terms of its file.
 
 use gpu_smooth::{BadTriangle, Format, Location, MeshError, MeshFile, Place};
 use serde::Serialize;
@@ -15,28 +15,28 @@ pub(crate) struct BadTriangleReport {
     file: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<usize>,
-    /// Only in a binary file, which has no lines.
+    /// Offset of the triangle in a binary file, which has no lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     byte: Option<usize>,
     /// The file's numbers or tags for the triangle's vertices, in the order of the file.
     vertices: [u64; 3],
-    /// inverted or flat.
+    /// `inverted` or `flat`.
     problem: &'static str,
     #[serde(skip)]
     place: Place,
 }
 
 impl BadTriangleReport {
-    /// The triangle, its vertices and what it is, without the place.
+    /// Names the triangle, its vertices and its problem, without its place in the file.
     fn statement(&self) -> String {
         let Self { triangle, vertices: [a, b, c], problem, .. } = self;
         format!("triangle {triangle} (vertices {a}, {b}, {c}) is {problem}")
     }
 }
 
-/// Finds bad triangles in their file, all of them at once.
+/// Finds all of these bad triangles in their file at once.
 pub(crate) fn bad_triangles(file: &MeshFile, bad: &[BadTriangle]) -> Vec<BadTriangleReport> {
-    // As the file lists them; the library may have turned them over.
+    // The order of the file: the library may have reversed windings.
     let corners = |bad: &BadTriangle| file.mesh().triangles[bad.triangle];
     let places = file.triangle_places(bad.iter().map(|bad| bad.triangle));
     let names = file.vertex_places(bad.iter().flat_map(corners));
@@ -58,7 +58,8 @@ pub(crate) fn bad_triangles(file: &MeshFile, bad: &[BadTriangle]) -> Vec<BadTria
     bad.iter().zip(places.into_values()).map(one).collect()
 }
 
-/// A line each for the first of some bad triangles, and one for the rest of `count`; `all` says how to see them.
+/// Lists the first bad triangles, one a line. The last line counts the rest of `count`; `all` names the option that
+/// lists them.
 pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> String {
     let line = |bad: &BadTriangleReport| format!("\n  {}: {}", bad.place, bad.statement());
     let mut text: String = first.iter().take(TOLD).map(line).collect();
@@ -81,7 +82,8 @@ pub(crate) fn are_across(file: &MeshFile, bad: &[BadTriangle]) -> bool {
         && bad.iter().any(is_far)
 }
 
-/// The coordinate that is the same at all vertices, if one is: the mesh then stands upright on the plane of x and y.
+/// Returns the coordinate that is the same at all vertices, and its value, if there is one. The mesh then stands
+/// upright on the plane of x and y.
 fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
     let first = points.first()?;
     let is_constant = |k: usize| points.iter().all(|point| point[k] == first[k]);
@@ -201,7 +203,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         MeshError::OutOfRange { .. } => {
             format!("{}: {error}. Write the mesh in another unit", file.path().display())
         }
-        // The readers do not let these pass, and the command does not ask for them.
+        // The readers refuse such meshes, and the command does not ask for such runs.
         MeshError::Empty
         | MeshError::TooLarge { .. }
         | MeshError::IndexOutOfRange { .. }

@@ -1,19 +1,19 @@
-//! Who follows a mesh through its run.
+//! A trait to be told of each step in the life of a mesh, from reading to writing.
 
 use gpu_smooth::{MeshFile, Progress};
 
 use crate::progress::Stage;
 
-/// Who follows a mesh through its run.
+/// Is told how far a mesh is on its way from file to file.
 pub(crate) trait Follow {
-    /// A stage of the run begins.
+    /// Is told that a stage begins.
     fn stage(&mut self, stage: Stage);
-    /// The mesh has been read. An error ends the run before any work is done.
+    /// Is told that the mesh has been read. An error ends the run before any work is done.
     fn has_read(&mut self, file: &MeshFile) -> Result<(), String>;
-    /// Something about the mesh is worth telling.
+    /// Takes a remark on the mesh for the user.
     fn remark(&mut self, text: &str);
-    /// Some sweeps were done.
+    /// Is told that sweeps were done.
     fn sweep(&mut self, progress: &Progress);
-    /// The sweeps are over. An error leaves the mesh as it was.
+    /// Is told that the sweeps are over. An error keeps the mesh from being written.
     fn has_smoothed(&mut self) -> Result<(), String>;
 }

@@ -1,4 +1,4 @@
-//! `gpu-smooth groups MESH`.
+//! `gpu-smooth groups MESH`: lists what can be named in a mesh.
 
 use gpu_smooth::{Group, Groups};
 use serde_json::json;
@@ -9,7 +9,7 @@ use crate::columns::{left, right};
 use crate::streams::read;
 use crate::tell;
 
-/// Prints what can be named in a mesh, and how.
+/// Prints what can be named in a mesh, and the name that options take.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
     let file = read(&args.mesh, args.reading)?;
     let groups = file.groups().map_err(|error| error.to_string())?;
@@ -53,7 +53,7 @@ fn as_json((group, spelling): (&Group, &String)) -> serde_json::Value {
     })
 }
 
-/// A row for each group, under what each column is. Columns without a number but zero are left out.
+/// Makes a table with a row for each group. Columns that hold only zeros are left out.
 fn table(groups: &Groups) -> String {
     let texts = |group: &Group, spelling: &String| {
         let tag = group.tag.map_or_else(|| "-".to_owned(), |tag| tag.to_string());
@@ -78,7 +78,7 @@ fn table(groups: &Groups) -> String {
     let widths: Vec<usize> = (0..rows[0].len()).filter_map(width).collect();
     let line = |row: &Vec<String>| {
         let cell = |(column, text): (usize, &String)| match column {
-            // Words to the left, numbers to the right.
+            // Words are aligned left, numbers right.
             0 | 1 => left(text, widths[column]),
             _ => right(text, widths[column]),
         };

@@ -1,4 +1,4 @@
-//! Ctrl-C, and what else asks a run to end: SIGINT and SIGTERM.
+//! The signals that ask a run to end: SIGINT (Ctrl-C) and SIGTERM.
 //!
 //! Before there is a smoothed state, a signal ends the process at once. After that, the first signal ends the run at the
 //! next sweep, and the best mesh so far is written; a second one ends the process at once. No half-written file is left.
@@ -13,7 +13,7 @@ use signal_hook::{flag, low_level};
 
 use crate::tell;
 
-/// How often signals are looked for. A thread that waits for them would need different code on each system.
+/// How often signals are looked for. A thread that waits for signals would need different code on each system.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Whether there is a smoothed state to write.
@@ -23,17 +23,17 @@ static REQUESTED: AtomicI32 = AtomicI32::new(0);
 /// Held while a file other than the mesh is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// From now on a write beyond the file size that the user may have (`ulimit -f`) is an error like that of a full disk, where it would end
-/// the process at once and leave a temporary file.
+/// Makes a write beyond the user's limit on file sizes (`ulimit -f`) an error, like that of a full disk. Otherwise it
+/// would end the process at once and leave a temporary file.
 pub(crate) fn survive_large_files() {
     #[cfg(unix)]
     {
-        // Where the system does not let it, the process ends as usual.
+        // If the system does not allow that, such a write ends the process as usual.
         let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     }
 }
 
-/// Handles the signals from now on. Where the system does not let it, they end the process as usual.
+/// Handles the signals from now on. If the system does not allow that, they end the process as usual.
 pub(crate) fn watch(quiet: bool) {
     let register = |signal| {
         let arrived = Arc::new(AtomicBool::new(false));
@@ -51,7 +51,7 @@ pub(crate) fn watch(quiet: bool) {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// Asks the run to end at the first signal while there is a result, else ends the process.
+/// Handles a signal: the first one asks the run to end if there is a result. Otherwise the process ends.
 fn received(signal: i32, quiet: bool) {
     let has_result = HAS_RESULT.load(Ordering::SeqCst);
     let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);
@@ -67,26 +67,26 @@ fn received(signal: i32, quiet: bool) {
         "interrupted: nothing was written"
     };
     tell::note(quiet, text);
-    // Not `std::process::exit`: a driver would clean up while its threads still run.
+    // `std::process::exit` would let a driver clean up while its threads still run.
     low_level::exit(exit_status(signal).into());
 }
 
-/// From now on the first signal is left to the run.
+/// Leaves the first signal to the run from now on, as there is a result.
 pub(crate) fn has_result() {
     HAS_RESULT.store(true, Ordering::SeqCst);
 }
 
-/// Whether the run is to end.
+/// Whether a signal has asked the run to end.
 pub(crate) fn is_requested() -> bool {
     REQUESTED.load(Ordering::SeqCst) != 0
 }
 
-/// No signal ends the process as long as the returned value lives.
+/// Keeps signals from ending the process as long as the returned guard lives.
 pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The exit code of a command that did what it could: 0 unless it was interrupted.
+/// Returns the exit code of a command that succeeded: 0 unless it was interrupted.
 pub(crate) fn exit_code() -> ExitCode {
     match REQUESTED.load(Ordering::SeqCst) {
         0 => ExitCode::SUCCESS,
@@ -94,7 +94,7 @@ pub(crate) fn exit_code() -> ExitCode {
     }
 }
 
-/// 130 or 143, as shells tell the end by a signal.
+/// Returns the exit status by which shells tell the end by a signal: 130 or 143.
 fn exit_status(signal: i32) -> u8 {
     128 + signal as u8
 }

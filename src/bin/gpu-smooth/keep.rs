@@ -1,4 +1,4 @@
-//! Long runs: checkpoints, the time limit, and devices that fail.
+//! Keeps what a long run needs to go on: checkpoints, and another engine if a device fails.
 
 use std::cell::{Cell, RefCell};
 use std::fs::{self, File};
@@ -12,12 +12,14 @@ use crate::engine;
 use crate::follow::Follow;
 use crate::run_args::SmoothArgs;
 
-/// The file that checkpoints of the run are saved to, if there is one: that of --checkpoint, or else of --continue.
+/// Returns the file that checkpoints are saved to: that of `--checkpoint`, else that of `--continue`, if either is
+/// given.
 pub(crate) fn file(args: &SmoothArgs) -> Option<&Path> {
     args.checkpoint.as_deref().or(args.continued.as_deref())
 }
 
-/// Refuses a file for checkpoints that cannot be written, or would replace one of these or a checkpoint of another run.
+/// Refuses a file for checkpoints that cannot be written, or that would replace one of the other files or the
+/// checkpoint of another run.
 pub(crate) fn check<'p>(
     args: &SmoothArgs,
     mut others: impl Iterator<Item = &'p Path>,
@@ -54,7 +56,7 @@ fn begins(path: &Path) -> Option<bool> {
     Some(read.is_ok() && start == *Checkpoint::MAGIC)
 }
 
-/// The checkpoint to go on from, if the command line names one.
+/// Reads the checkpoint to go on from, if the command line names one.
 pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
     let Some(path) = &args.continued else { return Ok(None) };
     let name = path.display();
@@ -72,7 +74,7 @@ pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
     Checkpoint::from_bytes(&bytes).map(Some).ok_or_else(refused)
 }
 
-/// What is kept of a run, as the command line asks for.
+/// Keeps the state of a run as the command line asks.
 pub(crate) struct Kept<'a, 'f> {
     args: &'a SmoothArgs,
     follow: &'a RefCell<&'f mut dyn Follow>,
@@ -89,7 +91,7 @@ impl<'a, 'f> Kept<'a, 'f> {
         Self { args, follow, due, saved: Cell::new(false), told_of_fault: false }
     }
 
-    /// Says how to go on with a run that was left.
+    /// Tells the user how to go on with a run that was left.
     pub(crate) fn left(&self) {
         if let (true, Some(path)) = (self.saved.get(), file(self.args)) {
             let text =
@@ -118,7 +120,8 @@ impl Keeper for Kept<'_, '_> {
     }
 
     fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
-        // Before anything is done, the mesh is smoothed on the CPU if the choice was left open, and refused if not.
+        // Before the first sweep there is nothing to go on with. The caller then takes the CPU if the choice of engine
+        // was left open, or refuses the mesh.
         if from == 0 && engine::is_too_large_for_device(error) {
             return false;
         }
@@ -135,7 +138,7 @@ impl Keeper for Kept<'_, '_> {
 pub(crate) fn clear(args: &SmoothArgs, stop: Stop) {
     let Some(path) = file(args) else { return };
     if stop != Stop::Cancelled && begins(path) == Some(true) {
-        // It does no harm.
+        // A checkpoint that is left does no harm.
         let _ = fs::remove_file(path);
     }
 }
@@ -148,7 +151,7 @@ mod tests {
     use clap::Parser;
     use gpu_smooth::{MeshFile, Progress};
 
-    /// Keeps what is remarked.
+    /// Collects remarks.
     #[derive(Default)]
     struct Remarks(Vec<String>);
 

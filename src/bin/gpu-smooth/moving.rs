@@ -10,30 +10,30 @@ use crate::numbers::six;
 
 const HEADING: &str = "What may move";
 
-/// What may move.
+/// The options that choose what may move.
 #[derive(Args)]
 pub(crate) struct MoveArgs {
     /// Let vertices between regions move: gmsh's physical groups and entities, attributes of an .ele, references,
     /// materials. Without it they stay where they are
     #[arg(long, help_heading = HEADING)]
     pub(crate) free_interfaces: bool,
-    /// Keep the vertices of all elements of these groups where they are; `gpu-smooth groups` lists what a mesh has. Options
-    /// that fix may be given several times
+    /// Keep the vertices of all elements of these groups where they are; `gpu-smooth groups` lists what a mesh has. All
+    /// options that fix vertices may be given several times
     #[arg(long, value_name = "NAME|TAG,...", help_heading = HEADING, value_parser = names, allow_hyphen_values = true)]
     fix: Vec<String>,
-    /// Keep the vertices where they are that FILE lists by the mesh file's own numbers; # starts a comment
+    /// Keep the vertices that FILE lists where they are, by the mesh file's own numbers; # starts a comment
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     fix_vertices: Vec<PathBuf>,
-    /// Keep vertices where they are whose number in this array of point data is not zero (VTK, PLY)
+    /// Keep the vertices where they are that have a number other than zero in this array of point data (VTK, PLY)
     #[arg(long, value_name = "NAME", help_heading = HEADING)]
     fix_array: Vec<String>,
     /// Keep vertices in this box where they are
     #[arg(long, value_name = "X0,Y0,X1,Y1", help_heading = HEADING, value_parser = corners, allow_hyphen_values = true)]
     fix_box: Vec<[[f64; 2]; 2]>,
-    /// Let only vertices move all of whose triangles belong to these groups
+    /// Let only those vertices move whose triangles all belong to these groups
     #[arg(long, value_name = "NAME|TAG,...", help_heading = HEADING, value_parser = names, allow_hyphen_values = true)]
     only: Vec<String>,
-    /// Let only vertices move that are near a triangle with an inverse mean ratio above Q
+    /// Let only those vertices move that are near a triangle with an inverse mean ratio above Q
     #[arg(long, value_name = "Q", help_heading = HEADING, value_parser = ratio, allow_negative_numbers = true)]
     only_bad: Option<f64>,
     /// How many rings of triangles around those of --only-bad are near
@@ -41,19 +41,19 @@ pub(crate) struct MoveArgs {
     rings: u32,
 }
 
-/// What the options did.
+/// The effect of the options on a mesh.
 #[derive(Default)]
 pub(crate) struct Choice {
     /// What each option holds or lets move, one line each.
     pub(crate) notes: Vec<String>,
-    /// How many vertices would be free without the options, if any is given.
+    /// How many vertices would be free without the options; 0 if none is given.
     free_without: usize,
-    /// Why there is nothing to smooth, if no triangle is as bad as the options ask for. The mesh is then left as it was.
+    /// Why there is nothing to smooth: no triangle is as bad as the options ask for. The mesh is then left as it was.
     pub(crate) nothing_to_do: Option<String>,
 }
 
 fn names(text: &str) -> Result<String, String> {
-    // An option whose value was forgotten takes the next one for it. A tag may be negative.
+    // If the value was forgotten, the next option is taken for it. A tag may be negative.
     let is_option = text.starts_with('-') && !text[1..].starts_with(|c: char| c.is_ascii_digit());
     match is_option || text.trim().is_empty() {
         true => Err("the name or the tag of a group is needed".into()),
@@ -77,7 +77,7 @@ fn ratio(text: &str) -> Result<f64, String> {
 }
 
 impl MoveArgs {
-    /// Whether any of the options but that for interfaces is given.
+    /// Whether any option that fixes vertices is given.
     fn restricts(&self) -> bool {
         let Self { fix, fix_vertices, fix_array, fix_box, only, only_bad, .. } = self;
         !fix.is_empty()
@@ -111,7 +111,7 @@ impl MoveArgs {
 }
 
 impl Choice {
-    /// The error of a mesh in which the options leave nothing to move.
+    /// Words the error if the options leave nothing to move.
     pub(crate) fn nothing_free(&self, file: &MeshFile, error: &MeshError) -> Option<String> {
         let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
         let path = file.path().display();
@@ -137,12 +137,12 @@ impl<'f> Chooser<'f> {
         Ok(Self { file, topology })
     }
 
-    /// How many of these would move if no option were given.
+    /// Counts how many of these vertices would be free without the options.
     fn free_among(&self, vertices: &[u32]) -> usize {
         vertices.iter().filter(|&&vertex| self.topology.free()[vertex as usize]).count()
     }
 
-    /// What the options hold.
+    /// Finds the vertices that the options keep fixed.
     fn fixed(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<u32>, String> {
         let file = self.file;
         let mut fixed = Vec::new();
@@ -181,7 +181,8 @@ impl<'f> Chooser<'f> {
         Ok(fixed)
     }
 
-    /// What the options let move, in as many lists as there are options: what is in all of them may.
+    /// Finds the vertices that the options let move, one list for each kind of option. A vertex may move if all lists
+    /// have it.
     fn movers(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<Vec<u32>>, String> {
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
@@ -231,14 +232,14 @@ impl<'f> Chooser<'f> {
         self.file.groups().map_err(|error| error.to_string())
     }
 
-    /// The groups that a text names: one, or several with commas between them; each with its own part of the text.
+    /// Finds the groups that a text names: one, or several with commas between. Each comes with its part of the text.
     fn named<'t, 'g>(
         &self,
         groups: &'g Groups,
         option: &str,
         text: &'t str,
     ) -> Result<Vec<(&'t str, &'g Group)>, String> {
-        // A name may have commas itself.
+        // A name may contain commas.
         let ends = |name: &str| name.contains(',') && text.ends_with(name);
         if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
             && let Ok(group) = groups.find(text)
@@ -258,12 +259,12 @@ impl<'f> Chooser<'f> {
     }
 }
 
-/// How many there are of something.
+/// Counts things: `1 ring`, `2 rings`.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// What an option holds, of which so many would move without it.
+/// Says how many vertices an option keeps fixed, and how many of these would be free without it.
 fn held(count: usize, free: usize) -> String {
     match (count, free) {
         (0, _) => "it names no vertex".into(),

@@ -1,6 +1,6 @@
-//! Numbers as they are written and read.
+//! Formats and parses numbers.
 
-/// A number with about six significant digits.
+/// Formats a number with about six significant digits.
 pub(crate) fn six(x: f64) -> String {
     match x.abs() {
         a if !a.is_finite() => "infinite".into(),
@@ -12,12 +12,12 @@ pub(crate) fn six(x: f64) -> String {
     }
 }
 
-/// A share in percent, rounded down so that no goal seems reached before it is.
+/// Formats a share in percent, rounded down so that no goal seems reached before it is.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.2}", (share * 1e4).floor() / 1e2)
 }
 
-/// A number with four or five significant digits, in at most eight characters.
+/// Formats a number with four or five significant digits, in at most eight characters.
 pub(crate) fn five(x: f64) -> String {
     match x.abs() {
         a if !a.is_finite() => "infinite".into(),
@@ -30,7 +30,7 @@ pub(crate) fn five(x: f64) -> String {
     }
 }
 
-/// Parses a number and refuses those for which `fits` does not hold.
+/// Parses a number, and refuses it if `fits` does not hold. `range` describes the numbers that fit.
 pub(crate) fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("not a number; it must be {range}"))?;
     if fits(value) { Ok(value) } else { Err(format!("it must be {range}")) }

@@ -1,5 +1,6 @@
-//! Panics of wgpu, by which it tells of some failures of drivers. The library makes errors of them, so they are not printed. One that it
-//! does not see, as while a device is dropped, ends the process with a message like any other error.
+//! Panics of wgpu, which it uses to report some failures of drivers. The library turns them into errors, so they are
+//! not printed. A panic that the library does not see, as while a device is dropped, ends the process with an error
+//! message.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -12,7 +13,7 @@ thread_local! {
     static OF_WGPU: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does the work of the process. A panic of wgpu that nothing has caught is an error.
+/// Does the work of the process. Reports a panic of wgpu that nothing has caught as an error.
 pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {

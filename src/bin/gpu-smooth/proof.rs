@@ -1,4 +1,4 @@
-//! What two files of a mesh prove: that one is the other with vertices moved.
+//! Compares two files of a mesh to prove that one is the other with vertices moved.
 
 use gpu_smooth::{BadTriangle, Difference, MeshError, MeshFile, Slide, Topology};
 use serde::Serialize;
@@ -7,24 +7,25 @@ use std::collections::BTreeSet;
 
 use crate::riding::Riding;
 
-/// What is found when two files of a mesh are compared. Nothing of it rests on what a run says it did.
+/// What a comparison of two mesh files finds. It does not rest on anything that a run says it did.
 pub(crate) struct Proof {
-    /// The first difference that is not in coordinates, or in data that may change.
+    /// The first difference that is neither in coordinates nor in data that may change.
     pub(crate) difference: Option<Difference>,
-    /// Vertices that have other bits, ascending.
+    /// Vertices whose coordinates have other bits, ascending.
     pub(crate) moved: Vec<u32>,
-    /// Those of them that must not.
+    /// Vertices that moved and must not, ascending.
     pub(crate) held: Vec<u32>,
-    /// How many of those that may not move freely slid along their lines.
+    /// How many vertices on lines slid along their line.
     pub(crate) slid: usize,
-    /// How many periodic pairs of them slid together.
+    /// How many periodic pairs of vertices slid together.
     pub(crate) pairs: usize,
     /// Triangles that are inverted or flat in the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
 }
 
 impl Proof {
-    /// Compares two files, of which the first says what may move, and `slide` what may slide. `riding` is the data of both that may change.
+    /// Compares two files. The first says which vertices may move, `slide` which may slide. The data that may change
+    /// are given for both files.
     pub(crate) fn of(
         [before, after]: [&MeshFile; 2],
         [mine, theirs]: [&Riding; 2],
@@ -53,7 +54,7 @@ impl Proof {
         Ok(Self { difference, moved, held, slid, pairs, bad })
     }
 
-    /// What is wrong, in a sentence; `None` if nothing is.
+    /// Words what is wrong, in a sentence; `None` if nothing is.
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(Difference { place, other_place, what }) = &self.difference {
             return Some(format!(
@@ -75,7 +76,7 @@ impl Proof {
     }
 }
 
-/// How many periodic pairs there are among these vertices, ascending.
+/// Counts the periodic pairs whose two vertices are both among these, which are ascending.
 fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
     let has = |v: &u32| vertices.binary_search(v).is_ok();
     let all = slide.periodic.iter().flat_map(|periodic| &periodic.pairs);
@@ -83,14 +84,14 @@ fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
     among.map(|&[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len()
 }
 
-/// A file, and the hash of its bytes as `sha256sum` prints it.
+/// A file, and the SHA-256 hash of its bytes as `sha256sum` prints it.
 #[derive(Serialize)]
 pub(crate) struct FileHash {
     pub(crate) path: String,
     pub(crate) sha256: String,
 }
 
-/// The hash of each file of a mesh, as it was read.
+/// Hashes each file of a mesh, as it was read.
 pub(crate) fn hashes(file: &MeshFile) -> Vec<FileHash> {
     let hash = |(path, bytes): (&std::path::Path, &[u8])| {
         let hex = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -99,18 +100,18 @@ pub(crate) fn hashes(file: &MeshFile) -> Vec<FileHash> {
     file.contents().map(hash).collect()
 }
 
-/// What the report states of the files alone, after the mesh that was written has been read again.
+/// What the report says after the written mesh was read again. It rests on the files alone.
 #[derive(Serialize)]
 pub(crate) struct Certificate {
-    /// Whether nothing but coordinates, and data that were interpolated, is different.
+    /// Whether the files differ in nothing but coordinates and interpolated data.
     pub(crate) connectivity_identical: bool,
-    /// Vertices with other bits.
+    /// Vertices whose coordinates have other bits.
     pub(crate) moved: usize,
-    /// Vertices with other bits that must not move.
+    /// Vertices whose coordinates have other bits though they must not move.
     pub(crate) fixed_moved: usize,
     /// Triangles that are inverted or flat, by exact predicates.
     pub(crate) inverted: usize,
-    /// The objective by the first metric, of the mesh as it was read again.
+    /// The objective by the first metric, of the mesh that was read again.
     pub(crate) f: f64,
     pub(crate) input: Vec<FileHash>,
     pub(crate) output: Vec<FileHash>,

@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-/// How meshes are read, whatever the command.
+/// The options of reading, which all commands share.
 #[derive(Args, Clone, Copy)]
 pub(crate) struct ReadArgs {
-    /// Join corners of triangles at the same place, without which an STL has no vertices. Of no effect on other formats
+    /// Join corners of triangles at the same place: an STL has no vertices without. No effect on other formats
     #[arg(long)]
     pub(crate) weld: bool,
 }

@@ -1,4 +1,4 @@
-//! What a run did, as the JSON of `--report` holds it.
+//! The report of a run, as `--report` writes it in JSON.
 
 use std::collections::BTreeMap;
 
@@ -14,59 +14,59 @@ use crate::worst_args::ImprovedReport;
 pub(crate) struct Report {
     pub(crate) engine: EngineReport,
     pub(crate) mesh: MeshReport,
-    /// How the mesh was untangled before the run, if it had to be.
+    /// How the mesh was untangled before the run, if it had inverted or flat triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
-    /// What elements were to look like, if not equilateral in the plane.
+    /// The target of the elements, if it is not equilateral in the plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<TargetReport>,
     pub(crate) sweeps: u32,
-    /// Corrections from coarser levels, each after a sweep.
+    /// How many sweeps were corrected from coarser levels.
     pub(crate) corrections: u32,
-    /// The first sweeps, if they were done in double precision on the CPU because triangles were too flat or too small for
-    /// the GPU.
+    /// How many of the first sweeps were done in double precision on the CPU, because triangles were too flat or too
+    /// small for the GPU.
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
-    /// The sweep whose state was written.
+    /// The sweep whose mesh was written.
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
     /// reached, converged, stalled, held-back, max-sweeps, cancelled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
-    /// The sweep after which the run was left before, if it goes on from a checkpoint.
+    /// The sweep after which the run was left, if it was continued from a checkpoint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) continued_from: Option<u32>,
-    /// Why there was nothing to do.
+    /// Why there was nothing to do, if that is so.
     #[serde(skip)]
     pub(crate) nothing_to_do: Option<String>,
-    /// What the options hold or let move, a line each.
+    /// What each option fixes or lets move, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) choices: Vec<String>,
-    /// What data of vertices were taken to the new places.
+    /// Which data of vertices were interpolated at the new positions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interpolated: Option<String>,
-    /// Vertices that the guard keeps from moving on at the end of a run that converged otherwise.
+    /// Vertices that the guard kept from moving at the end of a run that converged otherwise.
     pub(crate) held_back: usize,
-    /// The share of the gain in f that is lost as coordinates are rounded to the digits they have.
+    /// The share of the gain in f that is lost by rounding coordinates to the digits of the file.
     pub(crate) lost: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) goal: Option<GoalReport>,
     /// Vertices put back because rounding had inverted a triangle.
     pub(crate) returned: usize,
-    /// How far vertices might move, in lengths of an edge, if there was a bound.
+    /// The most that vertices might move, in lengths of an edge, if there was a bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
-    /// What slid along lines, if vertices might.
+    /// How vertices slid along lines, if they might.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) slid: Option<SlideReport>,
     /// What improving the worst triangles did, if it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) improved: Option<ImprovedReport>,
-    /// What the files alone say, where the mesh was written to a file and a report is written.
+    /// What was proved from the files alone, if the mesh was written to a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certificate: Option<Certificate>,
     pub(crate) history: Vec<SweepReport>,
@@ -84,20 +84,20 @@ pub(crate) struct Refusal {
 
 #[derive(Serialize)]
 pub(crate) struct EngineReport {
-    /// gpu or cpu.
+    /// `gpu` or `cpu`.
     pub(crate) kind: &'static str,
     pub(crate) adapter: Option<String>,
     pub(crate) driver: Option<String>,
     /// Why this engine was taken, if the command line left that open.
     pub(crate) reason: Option<String>,
-    /// The fault of the GPU after which the run went on on the CPU.
+    /// The fault of the GPU after which the run continued on the CPU.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<FaultReport>,
 }
 
 #[derive(Serialize)]
 pub(crate) struct FaultReport {
-    /// The last sweep on the GPU that was kept.
+    /// The last sweep on the GPU whose result was kept.
     pub(crate) sweep: u32,
     pub(crate) error: String,
 }
@@ -111,14 +111,14 @@ pub(crate) struct MeshReport {
     pub(crate) colors: usize,
 }
 
-/// What elements were to look like, if not equilateral in the plane.
+/// The target of the elements, if it is not equilateral in the plane.
 #[derive(Serialize)]
 pub(crate) struct TargetReport {
-    /// equilateral, keep-size, keep-shape, size=SOURCE or metric=SOURCE.
+    /// `equilateral`, `keep-size`, `keep-shape`, `size=SOURCE` or `metric=SOURCE`.
     pub(crate) kind: String,
-    /// vertex, if vertices take their targets along, or place.
+    /// `vertex` if targets move with the vertices, or `place`.
     pub(crate) of: &'static str,
-    /// plane or sphere.
+    /// `plane` or `sphere`.
     pub(crate) surface: &'static str,
     /// Over how many rings of neighbors sizes and shapes were averaged, if those of the mesh were to be kept.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -130,18 +130,18 @@ pub(crate) struct TargetReport {
 /// How far vertices moved, and how the sizes of elements at them changed.
 #[derive(Serialize)]
 pub(crate) struct ChangeReport {
-    /// In lengths of an edge at the vertex.
+    /// Distances in lengths of an edge at the vertex.
     pub(crate) moved: SpreadReport,
-    /// Factors, up or down.
+    /// Factors by which sizes grew or shrank, at least 1.
     pub(crate) size: SpreadReport,
-    /// The least altitude of a triangle, before and after.
+    /// The least altitude of a triangle in the unit of the mesh, before and after.
     pub(crate) least_altitude: [f64; 2],
 }
 
 #[derive(Serialize)]
 pub(crate) struct SpreadReport {
     pub(crate) median: f64,
-    /// Of twenty vertices nineteen have no more.
+    /// The 95th percentile: nineteen of twenty vertices have no larger value.
     pub(crate) most_of_twenty: f64,
     pub(crate) most: f64,
 }
@@ -159,20 +159,20 @@ impl From<Change> for ChangeReport {
     }
 }
 
-/// What slid along lines.
+/// How vertices slid along lines.
 #[derive(Serialize)]
 pub(crate) struct SlideReport {
     /// Vertices that might slide.
     pub(crate) vertices: usize,
-    /// Those that did.
+    /// How many of these vertices slid.
     pub(crate) moved: usize,
-    /// Periodic pairs among those that might slide, of which both vertices move together.
+    /// Periodic pairs among these vertices. Both vertices of a pair slide together.
     pub(crate) pairs: usize,
     /// Rounds of sweeps, each followed by sweeps along the lines.
     pub(crate) rounds: u32,
-    /// How far the lines are from those before, in the unit of the mesh.
+    /// How far the lines are from those of the input, in the unit of the mesh.
     pub(crate) off: f64,
-    /// The change of the area of the mesh, as a share of it.
+    /// The change of the mesh's area, as a share of the area.
     pub(crate) area_change: f64,
 }
 
@@ -182,13 +182,13 @@ impl From<Slid> for SlideReport {
     }
 }
 
-/// What untangling did.
+/// The result of untangling.
 #[derive(Serialize)]
 pub(crate) struct UntangleReport {
-    /// Triangles that were inverted or flat.
+    /// How many triangles were inverted or flat.
     pub(crate) bad_before: usize,
     pub(crate) sweeps: u32,
-    /// Vertices that it moved.
+    /// How many vertices were moved.
     pub(crate) moved: usize,
 }
 
@@ -203,7 +203,7 @@ pub(crate) struct GoalReport {
 
 #[derive(Serialize)]
 pub(crate) struct QualityReport {
-    /// The objective by each metric.
+    /// The objective by each metric, by the metric's name.
     pub(crate) f: BTreeMap<&'static str, f64>,
     pub(crate) min_angle: f64,
     pub(crate) max_angle: f64,
@@ -216,7 +216,7 @@ pub(crate) struct QualityReport {
 #[derive(Serialize)]
 pub(crate) struct SweepReport {
     pub(crate) sweep: u32,
-    /// The metric this sweep minimized; none before the first.
+    /// The metric that this sweep minimized; none before the first sweep.
     pub(crate) metric: Option<&'static str>,
     /// The base metric's objective after the sweep.
     pub(crate) f: f64,
@@ -247,7 +247,7 @@ impl From<&Quality> for QualityReport {
     }
 }
 
-/// The history of a run, sweep by sweep.
+/// Makes the history of a run, sweep by sweep.
 pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
     let metric = |sweep| match sweep <= outcome.alternated {
         true => scheme.metric(sweep),

@@ -1,24 +1,24 @@
-//! The option that takes data of vertices along: depths, third coordinates, point data.
+//! The option `--interpolate`, which keeps data of vertices up to date: depths, third coordinates, point data.
 
 use clap::Args;
 use gpu_smooth::{Interpolation, MeshFile, PointField, Topology};
 
-/// Which data are taken along.
+/// The option that names the data to interpolate.
 #[derive(Args)]
 pub(crate) struct RidingArgs {
-    /// Data given at vertices that are taken to the new places, linear in the triangles of IN: depth, z, variables, point
-    /// data, or all of real numbers. Without it data stay as they are
+    /// Data of vertices to interpolate at the new places, linearly in the triangles of IN: depth, z, variables, point
+    /// data, or all real numbers (all). Data that are not named stay as they are
     #[arg(long, value_name = "NAME,...|all", help_heading = "What may move", value_parser = name)]
     interpolate: Vec<String>,
 }
 
-/// Data that are taken along.
+/// Data of vertices that are interpolated at the new places.
 pub(crate) struct Riding {
-    /// The data, and after them parameters of vertices on surfaces of a model.
+    /// The data that the user named, followed by parameters of vertices on surfaces of a model.
     fields: Vec<PointField>,
-    /// How many of them are data.
+    /// How many of the fields the user named.
     data: usize,
-    /// Whether any were asked for.
+    /// Whether the user asked for any data.
     asked: bool,
 }
 
@@ -30,12 +30,12 @@ fn name(text: &str) -> Result<String, String> {
 }
 
 impl RidingArgs {
-    /// Finds the data in a file.
+    /// Finds the data that the user named in a file.
     pub(crate) fn choose(&self, file: &MeshFile) -> Result<Riding, String> {
         if self.interpolate.is_empty() {
             return Ok(Riding { fields: Vec::new(), data: 0, asked: false });
         }
-        // A name may have commas itself.
+        // A name may contain commas.
         let split = |text: &String| match file.data_names().contains(text) {
             true => vec![text.clone()],
             false => text.split(',').map(|name| name.trim().to_owned()).collect(),
@@ -45,7 +45,7 @@ impl RidingArgs {
         let fields = file.point_fields(if all { None } else { Some(&names) });
         let mut fields = fields.map_err(|error| format!("{error} (--interpolate)"))?;
         if all {
-            // Third coordinates that are all the same stay so.
+            // Third coordinates that are all the same need no interpolation.
             fields.retain(|field| {
                 let first = field.values().first();
                 field.values().iter().any(|value| Some(value) != first)
@@ -60,12 +60,12 @@ impl Riding {
         &self.fields
     }
 
-    /// The data without parameters.
+    /// Returns the fields without the parameters.
     fn data(&self) -> &[PointField] {
         &self.fields[..self.data]
     }
 
-    /// The names of the data, each once.
+    /// Returns the names of the data, each once.
     fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for field in self.data() {
@@ -76,7 +76,7 @@ impl Riding {
         names
     }
 
-    /// The remark on data that stay as they are.
+    /// Words the remark on data that stay as they are.
     pub(crate) fn left_behind(&self, file: &MeshFile) -> Option<String> {
         let taken = self.names();
         let left: Vec<_> =
@@ -94,7 +94,7 @@ impl Riding {
         ))
     }
 
-    /// Fails if data are to be taken from a mesh that has to be untangled.
+    /// Returns an error if data are to be interpolated from a mesh that has to be untangled.
     pub(crate) fn check_untangled(&self) -> Result<(), String> {
         match self.data().is_empty() {
             true => Ok(()),
@@ -104,8 +104,8 @@ impl Riding {
         }
     }
 
-    /// Adds the parameters of vertices on surfaces of a model, as they are at new places. Returns what was done, if there are
-    /// any.
+    /// Adds the parameters of vertices on plane surfaces of a model, as they are at new points. Returns a remark if
+    /// there are other surfaces.
     pub(crate) fn add_parameters(
         &mut self,
         file: &MeshFile,
@@ -123,7 +123,7 @@ impl Riding {
         }))
     }
 
-    /// Takes the data to the new places. Returns what was done, if anything.
+    /// Interpolates the data at the new points. Returns a remark on what was done, if anything was asked for.
     pub(crate) fn carry(
         &mut self,
         file: &MeshFile,
@@ -161,12 +161,12 @@ impl Riding {
 }
 
 impl Riding {
-    /// What is wrong with data that another file has in place of these: at vertices that are not among the moved ones, which
-    /// are ascending, they have to have the same bits, and nowhere may they be beyond the least and the greatest there were.
+    /// Lists what is implausible in the data of another file. Vertices that have not moved must have the same bits, and
+    /// no value may lie beyond the least and the greatest of these data. `moved` is ascending.
     pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
-            problems.push("it has not the same data".to_owned());
+            problems.push("it does not have the same data".to_owned());
         }
         for (old, new) in self.data().iter().zip(other.data()) {
             let (name, each) = (old.name(), old.components().max(1));
@@ -201,7 +201,7 @@ impl Riding {
         problems
     }
 
-    /// What holds of data that are not implausible.
+    /// Words what was checked of data that are not implausible.
     pub(crate) fn compared(&self) -> Option<String> {
         let names = self.names();
         let (verb, it) = match names.len() {
@@ -216,7 +216,7 @@ impl Riding {
     }
 }
 
-/// The first names of a list, and how many more there are.
+/// Lists the first names, and counts the rest.
 fn listed<'n>(names: impl ExactSizeIterator<Item = &'n str>) -> String {
     const TOLD: usize = 6;
     let more = names.len().saturating_sub(TOLD);

@@ -20,11 +20,12 @@ use crate::worst_args::WorstArgs;
 #[derive(Args)]
 #[command(group = ArgGroup::new("kept").args(["checkpoint", "continued"]).multiple(true))]
 pub(crate) struct SmoothArgs {
-    /// The mesh to read; its format is told by its content. It may be compressed by gzip or zstd, or - for the standard input
+    /// The mesh to read; its content tells the format. It may be compressed by gzip or zstd; - stands for the standard
+    /// input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
-    /// Where to write the smoothed mesh, in the format of IN; may be IN itself, or - for the standard output.
-    /// A name that ends in .gz or .zst gets a compressed file
+    /// Where to write the smoothed mesh, in the format of IN; may be IN itself. The file is compressed if its name ends
+    /// in .gz or .zst; - stands for the standard output
     #[arg(required_unless_present = "out_dir", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Further meshes, with --out-dir
@@ -219,23 +220,23 @@ pub(crate) enum History {
 }
 
 impl SmoothArgs {
-    /// The meshes for --out-dir.
+    /// Returns the meshes for `--out-dir`.
     pub(crate) fn meshes(&self) -> impl Iterator<Item = &PathBuf> {
         self.input.iter().chain(&self.output).chain(&self.more)
     }
 
-    /// The metrics of the sweeps.
+    /// Returns the scheme: the metrics of the sweeps.
     pub(crate) fn scheme(&self) -> Scheme {
         self.scheme.clone().unwrap_or_else(|| self.target.default_metric().into())
     }
 
-    /// The share of f within which the run ends, if it has no other goal.
+    /// Returns the share of f within which the run ends, if it has no other goal.
     pub(crate) fn estimated_end(&self) -> Option<f64> {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         (!has_goal).then_some(self.tolerance)
     }
 
-    /// What is wrong with options that contradict each other.
+    /// Words what is wrong with options that contradict each other.
     pub(crate) fn contradiction(&self) -> Option<String> {
         if self.target.is_of_sizes() && !self.scheme().metrics().iter().any(sees_sizes) {
             let (scheme, target) = (self.scheme(), self.target.kind());
@@ -302,7 +303,7 @@ impl SmoothArgs {
         Some(format!("{kept} leaves nothing for {dropped} to choose: drop one of them"))
     }
 
-    /// The options of a run on a mesh that is stored with so many digits.
+    /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
     pub(crate) fn options(&self, stored: Precision) -> Options {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         let options = Options {

@@ -1,4 +1,5 @@
-//! `gpu-smooth completions` and `gpu-smooth man`: what a shell and a manual take from the definitions of the options.
+//! `gpu-smooth completions` and `gpu-smooth man`: make completions and manual pages from the definitions of the
+//! options.
 
 use std::fs;
 use std::path::Path;
@@ -41,7 +42,7 @@ fn write(directory: &Path, name: &str, command: Command) -> Result<(), String> {
     output::replace(&path, &page(command)?).map_err(|error| error.to_string())
 }
 
-/// A page in the language of manuals.
+/// Returns a page in roff, the language of manuals.
 fn page(command: Command) -> Result<Vec<u8>, String> {
     let mut page = Vec::new();
     Man::new(command).render(&mut page).map_err(|error| error.to_string())?;

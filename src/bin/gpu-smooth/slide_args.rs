@@ -8,14 +8,14 @@ use crate::numbers::number;
 
 const HEADING: &str = "What may move";
 
-/// What slides.
+/// The options that choose what slides.
 #[derive(Args)]
 pub(crate) struct SlideArgs {
     /// Let vertices of the boundary, between regions and on lines slide along them, from corner to corner. What is straight stays
     /// straight; elsewhere they follow a cubic through the vertices of IN
     #[arg(long, help_heading = HEADING)]
     pub(crate) slide: bool,
-    /// A vertex where a line turns by more degrees is a corner, and stays
+    /// A vertex where a line turns by more than this angle is a corner, and stays where it is
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0, requires = "slide", help_heading = HEADING, value_parser = angle, allow_negative_numbers = true)]
     corner_angle: f64,
     /// How far lines may leave those of IN, in the unit of the mesh [default: a tenth of the edge there]
@@ -35,7 +35,7 @@ fn distance(text: &str) -> Result<f64, String> {
     number(text, |length| length > 0.0 && length.is_finite(), "a length above 0")
 }
 
-/// The names of two groups, with a comma between them.
+/// Parses the names of two groups with a comma between them.
 fn two_names(text: &str) -> Result<[String; 2], String> {
     match text.split_once(',').map(|(a, b)| [a.trim(), b.trim()]) {
         Some([a, b]) if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
@@ -44,7 +44,7 @@ fn two_names(text: &str) -> Result<[String; 2], String> {
 }
 
 impl SlideArgs {
-    /// What slides in a mesh, if anything is to.
+    /// Chooses what slides in a mesh, if anything may.
     pub(crate) fn slide(&self, file: &MeshFile) -> Result<Option<Slide>, String> {
         if !self.slide {
             return Ok(None);
@@ -69,7 +69,7 @@ impl SlideArgs {
         Ok(Some(slide))
     }
 
-    /// Adds the pairs of `--periodic`.
+    /// Adds the pairs of vertices that `--periodic` asks for.
     fn pair(
         &self,
         file: &MeshFile,
@@ -99,7 +99,7 @@ impl SlideArgs {
         Ok(())
     }
 
-    /// Lets vertices of a mesh slide. Returns a remark on it.
+    /// Lets vertices of a mesh slide. Returns a remark on how many may.
     pub(crate) fn set(
         &self,
         file: &MeshFile,
@@ -135,7 +135,7 @@ impl SlideArgs {
     }
 }
 
-/// Whether a file is periodic and no pairs of it are known.
+/// Whether the file says that its model is periodic, but no pair of vertices is known.
 fn has_lost_pairs(file: &MeshFile, slide: &Slide) -> bool {
     let has_some = file.has_unknown_pairs() || !file.periodic_motions().is_empty();
     has_some && slide.periodic.is_empty()

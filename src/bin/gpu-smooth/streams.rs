@@ -1,4 +1,4 @@
-//! Meshes from files or the standard input, and to files or the standard output, both of which are named `-`.
+//! Reads and writes meshes. The name `-` stands for the standard input or output.
 
 use std::io::Read;
 use std::path::Path;
@@ -8,7 +8,7 @@ use gpu_smooth::{MeshFile, PointField};
 use crate::read_args::ReadArgs;
 use crate::tell;
 
-/// Reads a mesh, from the standard input if its name is `-`.
+/// Reads a mesh from a file, or from the standard input if its name is `-`.
 pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
     if !is_standard(path) {
         let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
@@ -25,7 +25,7 @@ pub(crate) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Writes a mesh with these data, to the standard output if its name is `-`.
+/// Writes a mesh with these data to a file, or to the standard output if its name is `-`.
 pub(crate) fn write(
     file: &MeshFile,
     out: &Path,
@@ -42,7 +42,7 @@ pub(crate) fn write(
     written.map_err(|error| error.to_string())
 }
 
-/// Prints what a run tells: to standard error where the standard output is the mesh.
+/// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.
 pub(crate) fn say_beside(out: &Path, text: &str) {
     match is_standard(out) {
         true => tell::aside(text),

@@ -1,4 +1,4 @@
-//! The summary of a run for a terminal, and the sentences of its report that pages show too.
+//! The summary of a run for a terminal, and sentences of it that pages show too.
 
 use std::fmt::Write;
 
@@ -10,23 +10,24 @@ use crate::report::{
     UntangleReport,
 };
 
-/// How a run ends that should not.
+/// The message of a run that a number which is not finite has ended.
 const NOT_FINITE: &str = "undone: a sweep made a number that is not finite, which is a mistake of this program; the mesh is of the last good state";
 
-/// Changes of size by more than this factor at one vertex in twenty are worth a word.
+/// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
+/// keep-size`.
 const LARGE_CHANGE: f64 = 1.25;
-/// In a mesh whose f by imr is below this, sizes are likely to be meant.
+/// If f by imr is below this, the sizes of elements are likely to be intended.
 const SOUND: f64 = 2.0;
 /// Shares of a smaller f are told of this, as `Outcome::remaining` has them.
 const LEAST_SCALE: f64 = 1e-6;
 
 impl Report {
-    /// The metric that judges.
+    /// Returns the metric that judges convergence: the first of the scheme.
     pub(crate) fn base(&self) -> &str {
         self.scheme.split('+').next().unwrap_or("imr")
     }
 
-    /// The summary for the terminal: what was done, before and after, and where the time went.
+    /// Writes the summary for the terminal: what was done, before and after, and the times.
     pub(crate) fn summary(&self) -> String {
         let mut text = self.subject() + "\n\n";
         let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
@@ -52,7 +53,7 @@ impl Report {
         text
     }
 
-    /// What was smoothed, where and by what.
+    /// Writes what was smoothed, on which engine and by which scheme.
     pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
@@ -83,7 +84,7 @@ impl Report {
         text.trim_end().to_owned()
     }
 
-    /// What changed: a name, and the values before and after.
+    /// Returns the rows of the table before and after: a name, and both values.
     pub(crate) fn rows(&self) -> Vec<[String; 3]> {
         let base = self.base();
         let mut rows = Vec::new();
@@ -113,7 +114,7 @@ impl Report {
         rows
     }
 
-    /// A remark on the worst element if it is worse than before by a hundredth or more.
+    /// Warns if the worst element is worse than before by a hundredth or more.
     pub(crate) fn warning(&self) -> Option<String> {
         let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
         if after <= 1.01 * before {
@@ -131,7 +132,7 @@ impl Report {
         Some(format!("worst imr rose from {before} to {after}: {remedy}"))
     }
 
-    /// How far vertices moved and how much sizes changed, in a sentence.
+    /// Writes in a sentence how far vertices moved and how much sizes changed.
     pub(crate) fn moves(&self) -> String {
         let ChangeReport { moved, size, .. } = &self.change;
         if moved.most == 0.0 {
@@ -158,7 +159,7 @@ impl Report {
         )
     }
 
-    /// What slid and what that did to the domain, in a sentence.
+    /// Writes in a sentence how many vertices slid, and what that did to the domain.
     pub(crate) fn slides(&self) -> Option<String> {
         let SlideReport { vertices, moved, pairs, off, area_change, .. } = self.slid.as_ref()?;
         let pairs = match pairs {
@@ -176,7 +177,7 @@ impl Report {
         ))
     }
 
-    /// How far the run is from the limit of f, as far as that can be told.
+    /// Writes how far the run is from the limit of f, if that is known.
     fn left(&self) -> String {
         let f = self.target.as_ref().map_or(self.after.f[self.base()], |target| target.f[1]);
         match self.remaining {
@@ -189,7 +190,7 @@ impl Report {
         }
     }
 
-    /// Why the run ended, if it neither converged nor reached its goal.
+    /// Says why the run ended, if it neither converged nor reached its goal.
     pub(crate) fn fell_short(&self) -> Option<String> {
         let is_done = match &self.goal {
             Some(goal) => goal.reached,
@@ -198,7 +199,7 @@ impl Report {
         (!is_done).then(|| self.ending())
     }
 
-    /// Why the run ended, in a sentence.
+    /// Says in a sentence why the run ended.
     pub(crate) fn ending(&self) -> String {
         if let Some(reason) = &self.nothing_to_do {
             return format!("nothing to do: {reason}; the mesh is written as it was");

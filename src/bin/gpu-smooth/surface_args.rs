@@ -1,15 +1,15 @@
-//! The option that says what coordinates are.
+//! The option `--surface`, which says what coordinates mean.
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{Chart, MeshFile, Surface};
 
 use crate::explain;
 
-/// What the coordinates are.
+/// The option that says what coordinates mean.
 #[derive(Args)]
 pub(crate) struct SurfaceArgs {
-    /// What the coordinates are: lengths in the plane, or longitude and latitude in degrees on a sphere, which go on across the line
-    /// where longitudes start again
+    /// What coordinates are: lengths in the plane, or longitude and latitude in degrees on a sphere, which are
+    /// continued across the line where longitudes start again
     #[arg(
         long,
         value_enum,
@@ -34,7 +34,7 @@ impl SurfaceArgs {
         }
     }
 
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     pub(crate) fn name(&self) -> &'static str {
         match self.surface {
             OnSurface::Plane => "plane",
@@ -42,7 +42,7 @@ impl SurfaceArgs {
         }
     }
 
-    /// Lays a mesh out on the surface. Returns remarks on it.
+    /// Lays a mesh out on the surface. Returns remarks on what was done.
     pub(crate) fn lay_out(&self, file: &mut MeshFile) -> Result<Vec<String>, String> {
         if self.surface == OnSurface::Plane {
             return Ok(Vec::new());
@@ -54,7 +54,7 @@ impl SurfaceArgs {
     }
 }
 
-/// What was done to lay a mesh out.
+/// Words what was done to lay a mesh out on the sphere.
 fn remarks(chart: &Chart) -> Vec<String> {
     let mut remarks = Vec::new();
     let count = |n: usize, one: &str, many: &str| match n {

@@ -1,4 +1,4 @@
-//! The options that say what elements are to look like.
+//! The options that say what elements should look like.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::surface_args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
 
-/// What elements are to look like.
+/// The options that say what elements should look like.
 #[derive(Args)]
 pub(crate) struct TargetArgs {
     /// What elements are to look like: equilateral, of any size that their neighbors leave them; equilateral, of the sizes
@@ -62,17 +62,17 @@ fn target(text: &str) -> Result<Target, String> {
         ("keep-shape", _) => Ok(Target::KeepShape),
         (_, Some(("size", name))) => Ok(Target::Size { source: source(name)? }),
         (_, Some(("metric", name))) => Ok(Target::Metric { source: source(name)? }),
-        _ => Err("there are equilateral, keep-size, keep-shape, size=SOURCE, metric=SOURCE".into()),
+        _ => Err("give equilateral, keep-size, keep-shape, size=SOURCE or metric=SOURCE".into()),
     }
 }
 
 impl TargetArgs {
-    /// The metric where none is chosen.
+    /// Returns the metric if the user chose none.
     pub(crate) fn default_metric(&self) -> Metric {
         if self.is_of_sizes() { Metric::SoftSize } else { Metric::Imr }
     }
 
-    /// Whether a metric that sees no sizes would leave the target without effect.
+    /// Whether the target is only of sizes, so that a metric that sees no sizes would ignore it.
     pub(crate) fn is_of_sizes(&self) -> bool {
         matches!(self.target, Target::KeepSize | Target::Size { .. })
     }
@@ -82,12 +82,13 @@ impl TargetArgs {
         self.surface() == Surface::Plane
     }
 
-    /// What the coordinates are.
+    /// Returns what the coordinates are: lengths in the plane or degrees on the sphere.
     pub(crate) fn surface(&self) -> Surface {
         self.surface.surface()
     }
 
-    /// What there is to report of targets, with f of them before and after.
+    /// Returns the report on targets, with the objective of targets before and after, unless elements were to be
+    /// equilateral in the plane.
     pub(crate) fn report(
         &self,
         before: f64,
@@ -133,14 +134,15 @@ impl TargetArgs {
         (self.target_of.is_some() && is_uniform).then_some(("--target-of", "another --target"))
     }
 
-    /// Whether targets belong to places.
+    /// Whether targets belong to places, not to vertices.
     pub(crate) fn is_of_places(&self) -> bool {
         let is_uniform = matches!(self.target, Target::Equilateral);
         let default = if self.background().is_some() { Owner::Place } else { Owner::Vertex };
         !is_uniform && self.target_of.unwrap_or(default) == Owner::Place
     }
 
-    /// The mesh that carries the target, and what in it, if it is not that which is smoothed.
+    /// Returns the background mesh and the name of its data, if the target is given on one. The name is empty for a
+    /// view of gmsh.
     fn background(&self) -> Option<(&Path, &str)> {
         let (Target::Size { source } | Target::Metric { source }) = &self.target else {
             return None;
@@ -153,7 +155,7 @@ impl TargetArgs {
         (!is_file && Path::new(mesh).exists()).then_some((Path::new(mesh), data))
     }
 
-    /// Sets the targets of a mesh with its vertices at `points`. Returns a remark on them.
+    /// Sets the targets of a mesh whose vertices are at `points`. Returns a remark on vertices outside of a background.
     pub(crate) fn set(
         &self,
         file: &MeshFile,
@@ -187,7 +189,7 @@ impl TargetArgs {
         smoother.set_target_field(field).map(|_| None).map_err(told)
     }
 
-    /// The targets on a mesh of their own.
+    /// Reads the targets that a background mesh carries.
     fn field(&self, path: &Path, data: &str) -> Result<TargetField, String> {
         if data.is_empty() {
             return self.field_of_view(path);
@@ -206,7 +208,7 @@ impl TargetArgs {
             .map_err(|error| explain::mesh_error(&background, &error))
     }
 
-    /// The sizes of a view.
+    /// Reads the sizes in a view of gmsh.
     fn field_of_view(&self, path: &Path) -> Result<TargetField, String> {
         let told = |problem: String| format!("the background of --target: {problem}");
         let view = View::read(path).map_err(|error| told(error.to_string()))?;
@@ -230,7 +232,8 @@ impl TargetArgs {
             .map_err(told_of)
     }
 
-    /// The targets of the vertices, and the surface in whose lengths they are, if they are not in its coordinates.
+    /// Returns the targets of the vertices, and the surface in whose lengths they are given. `None` for equilateral in
+    /// the plane.
     fn targets(
         &self,
         file: &MeshFile,
@@ -246,7 +249,7 @@ impl TargetArgs {
             Target::Equilateral => Ok((Targets::equilateral(points.len()), surface)),
             Target::KeepSize => Targets::keep_size(topology, points, surface, rings)
                 .map(|targets| (targets, surface)),
-            // Shapes are those that the coordinates have.
+            // Shapes are kept as they are in the coordinates, also on the sphere.
             Target::KeepShape => Targets::keep_shape(topology, points, rings).map(in_coordinates),
             Target::Size { source } => {
                 Targets::sizes(&given(file, source, 1)?).map(|targets| (targets, surface))
@@ -260,13 +263,13 @@ impl TargetArgs {
     }
 }
 
-/// Whether a source is the file of a view of gmsh.
+/// Whether a source is an existing `.pos` file, a view of gmsh.
 fn is_view(source: &str) -> bool {
     let path = Path::new(source);
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pos")) && path.exists()
 }
 
-/// What there is to say of vertices outside of a background.
+/// Words the remark on vertices outside of a background.
 fn remark(background: &Path, outside: Outside) -> Option<String> {
     let Outside { count, most } = outside;
     let vertices = match count {
@@ -281,7 +284,7 @@ fn remark(background: &Path, outside: Outside) -> Option<String> {
     ))
 }
 
-/// The numbers of each vertex that a file beside the mesh has, or point data of the mesh.
+/// Reads `components` numbers for each vertex, from a file beside the mesh or from point data of the mesh.
 fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, String> {
     let (found, values) = match Path::new(source).exists() {
         true => {

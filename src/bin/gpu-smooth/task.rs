@@ -1,4 +1,4 @@
-//! A mesh from file to file, for a run by itself and for one of many.
+//! Takes a mesh from file to file, in a run by itself or as one of many.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -34,7 +34,7 @@ pub(crate) struct Task<'a> {
     pub(crate) show: &'a OutputArgs,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
-    /// The checkpoint that the run goes on from.
+    /// The checkpoint that the run continues from, if there is one.
     pub(crate) resumed: Option<&'a Checkpoint>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct Done<'a> {
     pub(crate) file: &'a MeshFile,
     pub(crate) smoother: &'a Smoother<'a>,
     pub(crate) outcome: &'a Outcome,
-    /// Sweeps, and after how many seconds of the run they were done, where that is known.
+    /// How many sweeps were done, and after how many seconds of the run, where that is known.
     pub(crate) times: Vec<(u32, f64)>,
     pub(crate) report: Report,
 }
@@ -51,7 +51,8 @@ pub(crate) struct Done<'a> {
 /// Why a mesh was not smoothed.
 pub(crate) struct Failure {
     pub(crate) message: String,
-    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for.
+    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for;
+    /// else empty.
     pub(crate) triangles: Vec<BadTriangleReport>,
 }
 
@@ -65,7 +66,7 @@ fn told(error: impl std::error::Error) -> String {
     error.to_string()
 }
 
-/// Reads a mesh, smooths it on the engine that `engine` gives for its size, and writes it. `finish` is called after that.
+/// Reads a mesh, smooths it on the engine that `engine` returns for its size, and writes it. Then calls `finish`.
 pub(crate) fn carry_out<T>(
     task: &Task<'_>,
     engine: impl FnOnce(MeshSize) -> Result<Taken, String> + Send,
@@ -217,7 +218,7 @@ pub(crate) fn carry_out<T>(
     Ok(finish(done)?)
 }
 
-/// Reads the mesh again that was written, and proves from the files alone that it is what it should be.
+/// Reads the written mesh again, and proves from the files alone that only vertices which may move have moved.
 fn certificate(
     args: &SmoothArgs,
     file: &MeshFile,
@@ -249,13 +250,13 @@ fn certificate(
     })
 }
 
-/// A mesh that can be smoothed, or that was made so.
+/// A mesh that can be smoothed: as it was read, or after it was untangled.
 enum Prepared<'a> {
     Ready(Box<Smoother<'a>>),
     Mended(untangle::Mended),
 }
 
-/// The options of the run; of one without sweeps if there is nothing to do.
+/// Returns the options of the run. If there is nothing to do, the run has no sweeps.
 fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
     let options = args.options(stored);
     match choice.nothing_to_do {
@@ -264,17 +265,17 @@ fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
     }
 }
 
-/// A run, the engine that did it, and after how many seconds how many sweeps were done.
+/// A finished run, its engine, and the times in seconds after which sweeps were done.
 struct Ran {
     outcome: Outcome,
     taken: Taken,
     times: Vec<(u32, f64)>,
-    /// Whether the time limit ended it.
+    /// Whether the time limit ended the run.
     out_of_time: bool,
 }
 
-/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice, or if the GPU fails. The time limit
-/// counts from `began`.
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice of engine open, or if
+/// the GPU fails. The time limit counts from `began`.
 fn smooth(
     task: &Task<'_>,
     options: &Options,
@@ -339,7 +340,7 @@ fn smooth(
     })
 }
 
-/// Why a mesh is not smoothed.
+/// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.
 fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshError) -> Failure {
     if let Some(message) = choice.nothing_free(file, error) {
         return message.into();

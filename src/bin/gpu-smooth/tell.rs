@@ -1,4 +1,4 @@
-//! Everything that is printed, and the commands that only print.
+//! Prints everything that the program prints, and carries out commands that only print.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -11,17 +11,17 @@ use gpu_smooth::{Format, MeshFile, Metric};
 
 use serde_json::{Value, json};
 
-/// Whether what goes to standard error is JSON, and when the process began.
+/// Whether standard error gets JSON, and when the process began.
 static JSON: AtomicBool = AtomicBool::new(false);
 static START: OnceLock<Instant> = OnceLock::new();
 
-/// From now on everything that goes to standard error is an object of JSON on a line of its own.
+/// Makes every line on standard error an object of JSON from now on.
 pub(crate) fn log_json() {
     START.get_or_init(Instant::now);
     JSON.store(true, Ordering::Relaxed);
 }
 
-/// Whether what goes to standard error is JSON.
+/// Whether standard error gets JSON.
 pub(crate) fn is_json() -> bool {
     JSON.load(Ordering::Relaxed)
 }
@@ -32,8 +32,8 @@ pub(crate) fn event(mut event: Value) {
     eprintln!("{event}");
 }
 
-/// Prints what the user asked for. A reader that went away, as `head` does, is no error; a disk that
-/// is full ends the process.
+/// Prints a result to the standard output. It is no error if the reader has gone, as `head` does; a full disk ends the
+/// process.
 pub(crate) fn say(text: &str) {
     match writeln!(std::io::stdout(), "{text}") {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
@@ -44,12 +44,12 @@ pub(crate) fn say(text: &str) {
     }
 }
 
-/// Prints to standard error what else goes to standard output.
+/// Prints a result to the standard error, where the standard output is the mesh.
 pub(crate) fn aside(text: &str) {
     eprintln!("{text}");
 }
 
-/// Prints a remark to standard error, unless the user wants none.
+/// Prints a remark to the standard error, unless `quiet`.
 pub(crate) fn note(quiet: bool, text: &str) {
     match () {
         () if quiet => {}
@@ -58,8 +58,8 @@ pub(crate) fn note(quiet: bool, text: &str) {
     }
 }
 
-/// A message without the control characters that names of files may have, but for the ends of its own lines: a terminal would obey
-/// them.
+/// Escapes the control characters in a message, except for line ends. Names of files may have such characters, and a
+/// terminal would obey them.
 fn printable(text: &str) -> String {
     let shown = |c: char| match c.is_control() && c != '\n' {
         true => c.escape_default().to_string(),
@@ -68,7 +68,7 @@ fn printable(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Goes to a line of its own where a bar may stand on the last one.
+/// Ends the last line of a terminal, where a bar may stand.
 pub(crate) fn leave_bar() {
     if std::io::stderr().is_terminal() && !is_json() {
         eprintln!();
@@ -84,8 +84,8 @@ pub(crate) fn error(text: &str) {
     }
 }
 
-/// Whether standard error is to be colored: on a terminal that can, unless `NO_COLOR` (<https://no-color.org>) is set; anywhere
-/// if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is.
+/// Whether standard error is colored: on a terminal with colors, unless `NO_COLOR` (<https://no-color.org>) is set;
+/// anywhere if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is set.
 fn is_colored() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let forced = set("CLICOLOR_FORCE");
@@ -93,7 +93,7 @@ fn is_colored() -> bool {
     !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
 }
 
-/// Remarks on a mesh besides its size, one line each. Where vertices slide, those between regions do not stay.
+/// Lists the remarks on a mesh, one line each. If vertices slide, those between regions are not said to stay fixed.
 pub(crate) fn remarks(file: &MeshFile, slides: bool) -> Vec<String> {
     let mut remarks = file.notes().to_vec();
     match file.interface_vertices().len() {
@@ -109,8 +109,8 @@ pub(crate) fn remarks(file: &MeshFile, slides: bool) -> Vec<String> {
     remarks
 }
 
-/// A remark on a mesh of a format of ocean models that seems to be given in longitude and latitude, at latitudes where
-/// degrees of longitude are shorter by more than a few percent.
+/// Words a remark if an ADCIRC, SCHISM or 2dm mesh seems to be in longitude and latitude, at latitudes where a degree
+/// of longitude is shorter by more than a few percent.
 pub(crate) fn degrees(file: &MeshFile) -> Option<String> {
     let is_of_oceans = matches!(file.format(), Format::Adcirc | Format::Sms2dm);
     let points = &file.mesh().points;
@@ -122,13 +122,13 @@ pub(crate) fn degrees(file: &MeshFile) -> Option<String> {
     })
 }
 
-/// What an adapter is and what drives it.
+/// Describes an adapter: its kind, backend and driver.
 pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
     let software = if adapter.is_software() { ": software" } else { "" };
     format!("({}{software}, {}; {})", adapter.kind, adapter.backend, adapter.driver)
 }
 
-/// `gpu-smooth metrics`.
+/// Prints the properties of all metrics, for `gpu-smooth metrics`.
 pub(crate) fn metrics() -> Result<(), String> {
     for metric in Metric::ALL {
         let row = metric.properties();

@@ -1,4 +1,4 @@
-//! Tries the drivers of GPUs in a process of its own, which one that crashes ends instead of this one.
+//! Tries the drivers of GPUs in a process of its own. A driver that crashes ends that process, not this one.
 
 use std::collections::BTreeMap;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -7,24 +7,25 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::GpuError;
 
-/// How long drivers may take to start and to answer. Slow ones were seen to take five seconds, to compile their first kernel.
+/// How long drivers may take to start and answer. Slow ones have taken five seconds to compile their first kernel.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// How often the process is looked at.
+/// How often the process is checked for its end.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// Set for a process that tries drivers, which must not start another one to do so.
+/// Environment variable that marks a trial process, which must not start another one.
 const MARK: &str = "GPU_SMOOTH_IS_TRIAL";
 
-/// What is tried.
+/// The drivers that are tried.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tried<'a> {
-    /// All adapters there are.
+    /// The drivers of all adapters.
     All,
-    /// The adapter that [`gpu_smooth::Gpu::open`] takes for this name.
+    /// The driver of the adapter that [`gpu_smooth::Gpu::open`] takes for this name.
     Adapter(Option<&'a str>),
 }
 
-/// Whether the driver of an adapter, or of all, starts, opens it and computes, as `gpu-smooth adapters` makes it do. Each is found out once.
+/// Tries whether the driver of an adapter, or of all adapters, starts, opens the adapter and computes. Each driver is
+/// tried once.
 ///
 /// # Errors
 /// [`GpuError::Crashed`] if the driver ended the process, or did not answer.
@@ -36,7 +37,7 @@ pub(crate) fn drivers(tried: Tried<'_>) -> Result<(), GpuError> {
     }
     let name = match tried {
         Tried::All => None,
-        // Every adapter has the empty text in its name.
+        // Every name contains the empty text, so this stands for the first adapter.
         Tried::Adapter(name) => Some(name.unwrap_or_default().to_owned()),
     };
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -51,10 +52,10 @@ fn outcome(name: Option<&str>) -> Result<(), String> {
     let mut command = Command::new(program);
     command.arg("adapters").args(name.map(|name| ["--", name]).into_iter().flatten());
     command.env(MARK, "1").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    // Where there can be no second process, nothing is known.
+    // If no second process can be started, the driver counts as working.
     let Ok(mut child) = command.spawn() else { return Ok(()) };
     match ended(&mut child) {
-        // 0: they were listed. 1: an error that will be told when a device is opened here.
+        // 0: the adapters were listed. 1: an error that will be reported when a device is opened here.
         Some(status) if matches!(status.code(), Some(0 | 1)) => Ok(()),
         Some(status) => Err(status.to_string()),
         None => {
@@ -65,7 +66,7 @@ fn outcome(name: Option<&str>) -> Result<(), String> {
     }
 }
 
-/// How the process ended; `None` if it has not after a while.
+/// Waits for the process to end. `None` if it does not end in time.
 fn ended(child: &mut Child) -> Option<ExitStatus> {
     let start = Instant::now();
     while start.elapsed() < PATIENCE {

@@ -1,4 +1,4 @@
-//! `gpu-smooth --untangle`: what is done with a mesh that has inverted or flat triangles.
+//! `--untangle`: untangles a mesh that has inverted or flat triangles.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::interrupt;
 use crate::run_args::SmoothArgs;
 use crate::streams;
 
-/// A mesh that was untangled, and how.
+/// A mesh that was untangled, with the work that this took.
 pub(crate) struct Mended {
     pub(crate) mesh: Mesh,
     pub(crate) bad_before: usize,
@@ -19,9 +19,9 @@ pub(crate) struct Mended {
     pub(crate) moved: usize,
 }
 
-/// Untangles a mesh that cannot be smoothed as it is, if the user wants that.
+/// Untangles a mesh that cannot be smoothed as it is.
 ///
-/// If triangles stay inverted, the error lists them; with `--keep-going` the best mesh is written before.
+/// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before.
 pub(crate) fn mend(
     args: &SmoothArgs,
     show: &OutputArgs,
@@ -60,7 +60,7 @@ pub(crate) fn mend(
     }
 }
 
-/// Why a mesh could not be untangled, with the first triangles that stay inverted.
+/// Words why a mesh could not be untangled, with the first triangles that stay inverted.
 fn still_tangled(
     file: &MeshFile,
     left: &[BadTriangle],
@@ -94,7 +94,7 @@ fn still_tangled(
     )
 }
 
-/// Whether untangling may mend what a mesh was refused for.
+/// Whether a mesh was refused for inverted or flat triangles, which untangling may mend.
 pub(crate) fn can_mend(error: &MeshError) -> bool {
     matches!(error, MeshError::Infeasible { .. })
 }

@@ -1,4 +1,4 @@
-//! The option that improves the worst triangles, and what came of it.
+//! The option that improves the worst triangles, and its report.
 
 use clap::{Args, ValueEnum};
 use gpu_smooth::{Improved, WorstBy};
@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use crate::numbers::six;
 
-/// Whether the worst triangles are improved.
+/// The option that improves the worst triangles.
 #[derive(Args)]
 pub(crate) struct WorstArgs {
-    /// Make the worst triangles better after the last sweep, at a small cost in f: vertices around the worst thousandth of them move until the
-    /// largest imr is as small, or the least angle or altitude as large, as it can be made
+    /// Improve the worst triangles after the last sweep, at a small cost in f: move vertices around the worst
+    /// thousandth of them until the largest imr is as small, or the least angle or altitude as large, as it can be made
     #[arg(
         long,
         value_enum,
@@ -31,7 +31,7 @@ enum WorstChoice {
 }
 
 impl WorstArgs {
-    /// The measure of the worst triangles, if they are to be improved.
+    /// Returns the measure of the worst triangles, if they are to be improved.
     pub(crate) fn measure(&self) -> Option<WorstBy> {
         self.improve_worst.map(|choice| match choice {
             WorstChoice::Imr => WorstBy::Imr,
@@ -41,19 +41,19 @@ impl WorstArgs {
     }
 }
 
-/// A smaller change of the worst triangle, as a share, is none.
+/// A change of the worst triangle by less than this share does not count.
 const TO_SPEAK_OF: f64 = 1e-3;
 
-/// What improving the worst triangles did.
+/// The result of improving the worst triangles.
 #[derive(Serialize)]
 pub(crate) struct ImprovedReport {
-    /// imr, min-angle (in degrees) or altitude (in the unit of the mesh).
+    /// `imr`, `min-angle` (in degrees) or `altitude` (in the unit of the mesh).
     measure: &'static str,
-    /// Vertices that it moved.
+    /// How many vertices were moved.
     vertices: usize,
-    /// The worst triangle with a free vertex, before and after.
+    /// The worst value of a triangle with a free vertex, before and after.
     worst: [f64; 2],
-    /// Triangles without a free vertex that are worse than that.
+    /// How many triangles without a free vertex are worse than the worst one with a free vertex.
     stuck: usize,
     /// The base metric's objective, before and after.
     f: [f64; 2],
@@ -66,7 +66,7 @@ impl From<Improved> for ImprovedReport {
 }
 
 impl ImprovedReport {
-    /// What was improved and what that cost, in a sentence.
+    /// Says in a sentence what was improved, and what that cost.
     pub(crate) fn told(&self) -> String {
         let Self { measure, vertices, worst: [before, after], stuck, f } = self;
         let worst = match *measure {

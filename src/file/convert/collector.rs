@@ -16,27 +16,27 @@ pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadE
     Ok(collector.finish())
 }
 
-/// Takes all that a reader hands on.
+/// Collects all that a reader hands on.
 #[derive(Default)]
 pub(crate) struct Collector {
     content: Content,
     map: Option<TagMap>,
     columns: Vec<Column>,
-    /// What each group is that elements stand within, its label, and its dimension where it is not theirs.
+    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
     numbers: HashMap<(String, u8, Label), u32>,
     sets: HashMap<Vec<u32>, u32>,
-    /// The set that cells of a dimension and a region had last, under the groups that they still stand within.
+    /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
     last: HashMap<(u8, [i64; 2]), u32>,
     names: HashMap<(String, Option<u8>, i64), String>,
     vertex_numbers: HashMap<(String, i64), usize>,
-    /// What the array is that was announced last.
+    /// The array that was announced last.
     announced: Option<Announced>,
-    /// How many data of a name there are, if more than one.
+    /// How many data have the same name, for names with more than one.
     steps: HashMap<String, usize>,
-    /// The vertex at which a line ended that may go on.
+    /// The last vertex of a line that may be continued.
     open_end: Option<u32>,
-    /// Data of cells by the tags of their elements.
+    /// Data of cells, with the tags of their elements.
     by_tag: Vec<(Data, Option<Vec<u64>>)>,
 }
 
@@ -50,7 +50,7 @@ struct Announced {
     is_height: bool,
 }
 
-/// What groups are called, made the same for formats that mean the same.
+/// Returns the common name for a kind of group, which formats call differently.
 fn common(what: &str) -> String {
     let small = what.to_ascii_lowercase();
     let common = match small.as_str() {
@@ -64,7 +64,7 @@ fn common(what: &str) -> String {
 }
 
 impl Collector {
-    /// The description, once all was handed on.
+    /// Returns the description after all was handed on.
     pub(crate) fn finish(self) -> Content {
         let Self { mut content, names, by_tag, .. } = self;
         for group in &mut content.groups {
@@ -91,7 +91,7 @@ impl Collector {
             }
             fits
         });
-        // Some cells have become several, and data may be of some cells only.
+        // An element may have become several cells, and data may be given for some cells only.
         for (data, tags) in by_tag.into_iter().filter(|(data, _)| data.components > 0) {
             let rows: HashMap<u64, usize> = match tags {
                 Some(tags) => tags.into_iter().zip(0..).collect(),
@@ -107,7 +107,7 @@ impl Collector {
             }
             content.cell_data.push(Data { values, ..data });
         }
-        // What tells regions is kept as groups.
+        // Data that tell regions are kept as groups.
         let groups = &content.groups;
         let is_group = |data: &Data| groups.iter().any(|group| group.what == common(&data.name));
         content.cell_data.retain(|data| !is_group(data));
@@ -124,7 +124,7 @@ impl Collector {
         number
     }
 
-    /// The number of the set of groups of an element.
+    /// Returns the number of the set of groups that an element belongs to.
     fn set(&mut self, dimension: u8, region: [i64; 2]) -> u32 {
         if let Some(&set) = self.last.get(&(dimension, region)) {
             return set;
@@ -134,7 +134,7 @@ impl Collector {
             let label = (column.label)(number).filter(|_| dimension >= column.from_dimension)?;
             Some((column.what.clone(), dimension, label))
         });
-        // Each dimension has its own groups here, even where a format has not.
+        // Each dimension has groups of its own here, even if the format has not.
         let within = self.within.iter();
         let within = within.map(|(what, label, _)| (what.clone(), dimension, label.clone()));
         for (what, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
@@ -169,7 +169,7 @@ impl Sink for Collector {
     }
 
     fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
-        // There is no error to tell: the file was read before without one.
+        // There is no error to report, as the file was read before without one.
         self.map = TagMap::new(&self.content.labels).ok();
         Ok(())
     }
@@ -178,7 +178,7 @@ impl Sink for Collector {
         let &Element { tag, kind, region, nodes } = element;
         self.open_end = None;
         if kind == Kind::Corner {
-            // Vertices of triangles that are listed a second time.
+            // The corners of required triangles, which are listed a second time.
             self.leaves_out("the list of required triangles");
             return Ok(());
         }
@@ -235,7 +235,7 @@ impl Sink for Collector {
         let owned =
             |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
         let within: Vec<_> = groups.iter().map(owned).collect();
-        // A line goes on only within the same group, from one call to the next but for one without groups.
+        // A line is continued only within the same group. Calls without groups in between do not end it.
         if !within.is_empty() && within != self.within {
             let same = self.content.cells.sets.last().is_some_and(|&set| {
                 let set = &self.content.sets[set as usize];
@@ -282,7 +282,7 @@ impl Sink for Collector {
 
     fn height_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true);
-        // Depths are counted downwards: they are no third coordinates.
+        // Depths are positive downwards, so they are not third coordinates.
         self.announced.iter_mut().for_each(|array| array.is_height = name == b"z");
         true
     }
@@ -313,7 +313,7 @@ impl Sink for Collector {
                 values
             }
         };
-        // The parts of a mesh may have data each.
+        // Each part of a mesh may have its own values.
         let same = |data: &&mut Data| data.name == name && data.components == components;
         if let Some(data) = self.content.point_data.iter_mut().find(same)
             && data.values.len() == values.len()
@@ -343,7 +343,7 @@ impl Sink for Collector {
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
         if let Some(Announced { name, components, is_real, .. }) = self.announced.take() {
-            // The parts of a mesh may have data each.
+            // Each part of a mesh may have its own values.
             let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
             if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
                 && data.components == components

@@ -1,4 +1,4 @@
-//! A mesh in memory with all that its file says of it, in terms that no format has for itself.
+//! A mesh in memory with all that its file says of it, independent of any format.
 
 use crate::file::label::Label;
 use crate::file::sink::Kind;
@@ -11,38 +11,38 @@ pub(crate) struct Content {
     /// The third coordinate of each vertex; empty if all are the same, which is then `height`.
     pub(crate) heights: Vec<f64>,
     pub(crate) height: f64,
-    /// The file's own number of each vertex.
+    /// The file's number or tag of each vertex.
     pub(crate) labels: Vec<u64>,
     pub(crate) cells: Cells,
     pub(crate) groups: Vec<Group>,
-    /// The groups of cells: those of the same groups have the same number in [`Cells::sets`].
+    /// Sets of groups. Cells that belong to the same groups have the same index, in [`Cells::sets`].
     pub(crate) sets: Vec<Vec<u32>>,
-    /// Groups of vertices, each by its vertices.
+    /// Groups of vertices, each with its vertices.
     pub(crate) vertex_groups: Vec<(Group, Vec<u32>)>,
     pub(crate) point_data: Vec<Data>,
     pub(crate) cell_data: Vec<Data>,
-    /// What the file has besides, a few words each.
+    /// Other things that the file has, in a few words each.
     pub(crate) left_out: Vec<String>,
 }
 
 /// Elements of all kinds in the order of the file.
 #[derive(Default)]
 pub(crate) struct Cells {
-    /// [`Kind::Corner`] stands for a polygon of more than four corners.
+    /// The kind of each cell. [`Kind::Corner`] stands for a polygon of more than four corners.
     pub(crate) kinds: Vec<Kind>,
-    /// Where the vertices of each cell end in `vertices`.
+    /// The end of each cell's vertices in `vertices`.
     pub(crate) ends: Vec<usize>,
     pub(crate) vertices: Vec<u32>,
-    /// For each cell its place in [`Content::sets`].
+    /// The index of each cell's groups in [`Content::sets`].
     pub(crate) sets: Vec<u32>,
-    /// The file's own number of each cell, where cell data are by these.
+    /// The tag of each cell's element, by which cell data are given.
     pub(crate) tags: Vec<u64>,
 }
 
 /// A group of cells or vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Group {
-    /// What the format calls such groups, made the same for formats that mean the same.
+    /// The kind of group, such as `physical`. It is the same for formats that mean the same.
     pub(crate) what: String,
     pub(crate) dimension: u8,
     pub(crate) label: Label,
@@ -50,7 +50,7 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// What the group is called, if it has a name.
+    /// Returns the group's name, if it has one.
     pub(crate) fn name(&self) -> Option<&str> {
         match (&self.name, &self.label) {
             (Some(name), _) | (None, Label::Name(name)) => Some(name),
@@ -63,9 +63,9 @@ impl Group {
 pub(crate) struct Data {
     pub(crate) name: String,
     pub(crate) components: usize,
-    /// Whether they are real numbers, not whole ones.
+    /// Whether the values are real numbers, not whole ones.
     pub(crate) is_real: bool,
-    /// NaN for what the file gives none.
+    /// `components` values for each vertex or cell, NaN if the file gives none.
     pub(crate) values: Vec<f64>,
 }
 
@@ -74,7 +74,7 @@ impl Cells {
         self.kinds.len()
     }
 
-    /// The vertices of a cell.
+    /// Returns the vertices of a cell.
     pub(crate) fn of(&self, cell: usize) -> &[u32] {
         let start = if cell == 0 { 0 } else { self.ends[cell - 1] };
         &self.vertices[start..self.ends[cell]]
@@ -88,26 +88,26 @@ impl Cells {
         self.tags.push(tag);
     }
 
-    /// The cells of a kind, in their order.
+    /// Lists the cells of a kind, in the order of the file.
     pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
         (0..self.len()).filter(move |&cell| self.kinds[cell] == kind)
     }
 }
 
 impl Content {
-    /// The third coordinate of a vertex.
+    /// Returns the third coordinate of a vertex.
     pub(crate) fn z(&self, vertex: usize) -> f64 {
         self.heights.get(vertex).copied().unwrap_or(self.height)
     }
 
-    /// The number of the first vertex, if the others follow it one by one.
+    /// Returns the number of the first vertex, if the vertices are numbered consecutively.
     pub(crate) fn first_label(&self) -> Option<u64> {
         let first = *self.labels.first()?;
         let follow = self.labels.iter().zip(first..).all(|(&label, expected)| label == expected);
         follow.then_some(first)
     }
 
-    /// The group of what is called so that each cell belongs to: the first of them if there are several.
+    /// Returns for each cell its first group of this kind, if it has one.
     pub(crate) fn column(&self, what: &str) -> Vec<Option<u32>> {
         let of_set = |set: &Vec<u32>| {
             set.iter().copied().find(|&group| self.groups[group as usize].what == what)
@@ -116,7 +116,7 @@ impl Content {
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
     }
 
-    /// What groups of a dimension are called, those first that matter most.
+    /// Lists the kinds of groups of a dimension, the most important first.
     pub(crate) fn whats(&self, dimension: u8) -> Vec<&str> {
         // What users give names to comes before what programs number.
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];

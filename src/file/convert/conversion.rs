@@ -1,4 +1,4 @@
-//! Writing a mesh in another format than it was read in.
+//! Writes a mesh in another format than it was read in.
 
 use super::collector;
 use super::content::Content;
@@ -37,24 +37,24 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// The formats that meshes are converted to, with a short name for each. Of those whose files end the same way, the
-    /// usual one comes first.
+    /// Lists the formats that meshes are converted to, each with a short name. Of formats whose files end the same way,
+    /// the usual one comes first.
     pub fn targets() -> impl Iterator<Item = (&'static str, Format)> {
         TARGETS.iter().map(|target| (target.name, target.format))
     }
 
-    /// The format that a mesh is converted to if its file is called so: by its ending, without that of compression. None if
-    /// no format of [`targets`](Self::targets) ends so.
+    /// Returns the format of [`targets`](Self::targets) whose files end as this path does. An ending of compressed
+    /// files is ignored. `None` if no format ends so.
     pub fn target_of(path: &Path) -> Option<Format> {
         let ends_so = |target: &&Target| Family::of(target.format).has_ending_of(path);
         TARGETS.iter().find(ends_so).map(|target| target.format)
     }
 
-    /// Makes a mesh ready to be written in another format. The file's content is searched again for elements of all kinds,
-    /// groups and data. None if meshes are not converted to this format.
+    /// Makes a mesh ready to be written in another format. The file's content is searched again for elements of all
+    /// kinds, groups and data. `None` if meshes are not converted to this format.
     ///
     /// # Errors
-    /// [`ReadError`] if what names groups is damaged, which reading the mesh does not need.
+    /// [`ReadError`] if the names of groups, or other parts that reading the mesh does not need, are damaged.
     pub fn new(file: &MeshFile, to: Format) -> Result<Option<Conversion>, ReadError> {
         let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
             return Ok(None);
@@ -64,20 +64,21 @@ impl Conversion {
             Some(reader) => collector::content(reader, &sources[0])?,
             None => triangle_source::content(&sources[0], &sources[1], sources.get(2))?,
         };
-        // As they are read, in the digits of the file.
+        // The points as they were read, rounded to the precision of the file.
         content.points.clone_from(&file.mesh().points);
         grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
         Ok(Some(Conversion { content, target, lost }))
     }
 
-    /// What the format does not hold of the mesh, one line each. Nothing is said of comments and titles, nor of the numbers of
-    /// elements: they are numbered anew.
+    /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
+    /// always lost, and not listed.
     pub fn lost(&self) -> &[String] {
         &self.lost
     }
 
-    /// The files that [`write`](Self::write) to `path` writes.
+    /// Lists the files that [`write`](Self::write) to `path` writes. A Triangle mesh without lines has no `.poly`,
+    /// which is listed all the same.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         match self.target.write {
             Write::One(_) | Write::Binary(_) => vec![path.to_owned()],
@@ -88,7 +89,7 @@ impl Conversion {
         }
     }
 
-    /// Writes the mesh, compressed if the name of its file ends in `.gz` or `.zst`. Files are replaced once all is written.
+    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced once all is written.
     ///
     /// # Errors
     /// [`WriteError`] if the system refuses, if the ending is that of another format, or if several files are to be written
@@ -128,7 +129,8 @@ impl Conversion {
         replace::replace_all(&jobs)
     }
 
-    /// The content of the file, if it is text; none for a Triangle mesh, which is of several files.
+    /// Returns the content of the file if it is text. `None` for binary formats, and for a Triangle mesh, which has
+    /// several files.
     pub fn text(&self) -> Option<String> {
         match self.target.write {
             Write::One(write) => Some(write(&self.job())),
@@ -136,7 +138,7 @@ impl Conversion {
         }
     }
 
-    /// The content of the file, be it text or not; none for a Triangle mesh, which is of several files.
+    /// Returns the content of the file, text or binary. `None` for a Triangle mesh, which has several files.
     pub fn bytes(&self) -> Option<Vec<u8>> {
         match self.target.write {
             Write::One(_) | Write::Binary(_) => self.contents().pop(),

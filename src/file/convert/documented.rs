@@ -1,4 +1,4 @@
-//! The tables of docs/formats.md, made from the rows of formats and targets, and a test that the document has them so.
+//! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document has them.
 //!
 //! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
 
@@ -9,17 +9,16 @@ use crate::file::packed::Packing;
 use std::fmt::Write;
 use std::path::Path;
 
-/// What the document says of formats that one row is about, beside what the code has: their names, endings, and how they are
-/// called in conversions.
+/// What the document says of the formats of one row, beside names, endings and conversions, which come from the code.
 struct Row {
     formats: &'static [Format],
-    /// What is read and written of them, and so kept.
+    /// Versions and layouts that are read and written.
     layouts: &'static str,
-    /// What stays fixed besides the boundary.
+    /// Vertices that stay fixed besides those on the boundary.
     fixed: &'static str,
-    /// What triangles of a region have in common.
+    /// The property that triangles of a region share.
     region: &'static str,
-    /// What can be named.
+    /// Groups that can be named.
     named: &'static str,
     /// What is not held, or refused.
     limits: &'static str,
@@ -216,7 +215,7 @@ const ROWS: [Row; 20] = [
     ),
 ];
 
-/// The table of formats.
+/// Makes the table of formats.
 fn formats() -> String {
     let mut table = "| format | named by | read and written | stays fixed, besides the boundary | a region has the same | \
                      what can be named | limits | `convert` writes it as |\n|---|---|---|---|---|---|---|---|\n"
@@ -242,14 +241,14 @@ fn formats() -> String {
     table
 }
 
-/// The names of the formats that are known but not read.
+/// Lists the formats that are recognized but not read.
 fn not_read() -> String {
     let unread = FAMILIES.iter().filter(|family| !family.is_read());
     let names: Vec<&str> = unread.map(|family| family.name).collect();
     format!("**Not read,** but known by name: {}.\n", names.join(", "))
 }
 
-/// The document with what stands between two marks replaced.
+/// Replaces the text between two marks of a document.
 fn with(document: &str, mark: &str, content: &str) -> String {
     let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {mark}: {word} -->\n"));
     let start = document.find(&begin).unwrap_or_else(|| panic!("no {begin}")) + begin.len();
@@ -284,7 +283,7 @@ fn every_format_has_one_row() {
     }
 }
 
-/// The README names every format that is read by the ending that its files usually have.
+/// The README must name every format that is read, by the usual ending of its files.
 #[test]
 fn the_readme_names_every_format() {
     let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md"));
@@ -292,7 +291,7 @@ fn the_readme_names_every_format() {
     let start = readme.find("**Formats.**").unwrap();
     let paragraph = readme[start..].split("\n\n").next().unwrap();
     let families = FAMILIES.iter().filter(|family| family.is_read());
-    // Their files are called so without a name before it, or have the name of the format.
+    // Some formats are named by a whole file name, or by their own name.
     let told = |family: &Family| {
         let ending = format!("`{}`", family.endings[0]);
         paragraph.contains(&ending) || paragraph.contains(family.name)

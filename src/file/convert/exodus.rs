@@ -17,14 +17,14 @@ struct Block {
     cells: Vec<usize>,
 }
 
-/// Sides of elements.
+/// The lines of one group, as sides of elements.
 struct SideSet {
     group: u32,
     elements: Vec<i32>,
     sides: Vec<i32>,
 }
 
-/// The name of a type of elements, and how many nodes they have.
+/// Returns the Exodus name of a type of elements, and its number of nodes.
 fn type_of(kind: Kind) -> (&'static str, usize) {
     let name = match kind {
         Kind::Point | Kind::Corner => "SPHERE",
@@ -35,7 +35,7 @@ fn type_of(kind: Kind) -> (&'static str, usize) {
     (name, kind.nodes())
 }
 
-/// The group that tells the block or side set of a cell.
+/// Returns the group that names the block or side set of a cell.
 fn group_of(job: &Job<'_>, cell: usize) -> Option<u32> {
     let of_any = || {
         let set = &job.content.sets[job.content.cells.sets[cell] as usize];
@@ -75,7 +75,8 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
     out.bytes()
 }
 
-/// The blocks in the order in which the file first has an element of each: triangles and quadrilaterals, lines, points.
+/// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
+/// then lines, then points.
 fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
@@ -150,7 +151,7 @@ fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
     out.variable("coor_names", &["num_dim", "len_name"], None, names);
 }
 
-/// Different numbers for groups: their own where no group before has it.
+/// Gives groups distinct numbers. A group keeps its own number unless an earlier group has it.
 fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
     let wanted: Vec<Option<i32>> =
         wanted.map(|own| own.and_then(|own| i32::try_from(own).ok())).collect();
@@ -168,7 +169,7 @@ fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
     wanted.iter().map(number).collect()
 }
 
-/// Adds the state, numbers and names of blocks or sets.
+/// Adds the status, numbers and names of blocks or sets.
 fn named(
     out: &mut NetCdf,
     [count, status, property, names]: [&str; 4],

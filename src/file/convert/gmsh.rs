@@ -6,7 +6,7 @@ use crate::file::sink::Kind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
-/// gmsh's number of a kind.
+/// Returns gmsh's number for a kind of element.
 fn kind_of(kind: Kind) -> u32 {
     match kind {
         Kind::Point => 15,
@@ -45,7 +45,7 @@ pub(crate) fn write_41(job: &Job<'_>) -> String {
     let points = content.points.len();
     let numbers = || (0..points).map(|vertex| job.number(vertex));
     let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
-    // All nodes count as those of a surface: which lie on its curves is told by the lines.
+    // All nodes are written as nodes of a surface. The line elements tell which nodes lie on curves.
     let surface = entities.first_surface();
     put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
     numbers().for_each(|number| put!(out, "{number}\n"));
@@ -68,7 +68,7 @@ pub(crate) fn write_41(job: &Job<'_>) -> String {
     out
 }
 
-/// The physical group of a cell, or zero.
+/// Returns the physical group of a cell, or 0.
 fn physical(job: &Job<'_>, cell: usize) -> i64 {
     match job.group(cell) {
         Some(group) if group.what != "entity" => job.tag(cell),
@@ -102,11 +102,11 @@ fn names(job: &Job<'_>, out: &mut String) {
     }
 }
 
-/// The entities of the model that cells belong to: of each dimension one for each entity that the mesh had, and each of its
-/// physical groups.
+/// The entities of the model that cells belong to. In each dimension there is one for each pair of an entity of the
+/// mesh and a physical group.
 struct Entities {
     column: Vec<Option<u32>>,
-    /// The number of each, by its dimension, the entity it was and its physical group.
+    /// The entity's number by its dimension, the entity of the mesh, and its physical group.
     numbers: HashMap<(u8, Option<u32>, i64), i64>,
 }
 
@@ -125,7 +125,7 @@ impl Entities {
             if numbers.contains_key(&(dimension, entity, physical)) {
                 continue;
             }
-            // Its own number, or that of its physical group.
+            // The entity keeps its own number, or gets that of its physical group.
             let wanted = entity.map_or(physical, |entity| job.tags.number(entity));
             let number = if wanted > 0 && taken.insert((dimension, wanted)) { wanted } else { 0 };
             numbers.insert((dimension, entity, physical), number);
@@ -181,14 +181,14 @@ impl Entities {
                 0 => out.push('0'),
                 physical => put!(out, "1 {physical}"),
             }
-            // What bounds it is not known.
+            // The bounding entities are not known.
             out.push_str(if dimension > 0 { " 0\n" } else { "\n" });
         }
         out.push_str("$EndEntities\n");
     }
 }
 
-/// `$NodeData` and `$ElementData`.
+/// Writes `$NodeData` and `$ElementData`.
 fn data(job: &Job<'_>, out: &mut String) {
     for data in job.point_data() {
         let numbers = (0..job.content.points.len()).map(|vertex| job.number(vertex));
@@ -199,7 +199,7 @@ fn data(job: &Job<'_>, out: &mut String) {
     }
 }
 
-/// The data of the items at these places, which have these numbers.
+/// Writes the data of the items at these places. `numbers` are the items' numbers in the file.
 fn section(
     data: &Data,
     name: &str,
@@ -207,7 +207,7 @@ fn section(
     places: Vec<usize>,
     out: &mut String,
 ) {
-    // gmsh shows one, three or nine numbers.
+    // gmsh shows data of one, three or nine numbers.
     let each = data.components;
     let padded = [1, 3, 9].into_iter().find(|&size| size >= each).unwrap_or(each);
     let of = |place: usize| data.values.get(place * each..(place + 1) * each).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Writes grids of coastal models: SMS's `.2dm`, and those of ADCIRC and SCHISM.
+//! Writes grids of coastal models: SMS's `.2dm`, and the grids of ADCIRC and SCHISM.
 
 use super::content::{Content, Data};
 use super::job::Job;
@@ -7,10 +7,10 @@ use crate::file::sink::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
-/// Makes depths the third coordinates of a `.2dm`, and the other way round. SMS has z upwards, and opens a grid of ADCIRC with minus
-/// its depths as z.
+/// Turns depths into the third coordinates of a `.2dm`, or the reverse. In SMS z is positive upwards, and SMS opens a
+/// grid of ADCIRC with minus its depths as z.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
-    // No zero is negative then.
+    // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
     match (from, to) {
         (Format::Adcirc, Format::Sms2dm) => {
@@ -69,10 +69,10 @@ pub(crate) fn write_sms(job: &Job<'_>) -> String {
     out
 }
 
-/// Lines joined to as long chains as they make, in either direction. The first line of each leads its chain.
+/// Joins lines to chains, as long as possible and in either direction. Chains are in the order of their first lines.
 fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
-    // Taken from the end, so that the first one comes first.
+    // Lines are popped from the end of these lists, so that the first line comes first.
     for (index, &[a, b]) in lines.iter().enumerate().rev() {
         at.entry(a).or_default().push(index);
         at.entry(b).or_default().push(index);
@@ -83,7 +83,7 @@ fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
         if std::mem::replace(&mut used[index], true) {
             continue;
         }
-        // The vertex that a line not used yet leads to.
+        // Returns the vertex that the next unused line leads to.
         let mut next = |vertex: u32| {
             let lines_at = at.get_mut(&vertex)?;
             while let Some(line) = lines_at.pop() {
@@ -119,7 +119,7 @@ pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
     for (cell, element) in elements().zip(1..) {
         put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.numbers(cell));
     }
-    // Boundaries that are called open are so; all others are of land.
+    // Boundaries whose names start with `open` are open; all others are land.
     let strings = strings(job);
     let name = |group: u32| content.groups[group as usize].name().unwrap_or("");
     for (what, is_open) in [("open", true), ("land", false)] {
@@ -140,12 +140,12 @@ pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
     out
 }
 
-/// Whether a line is one of a node string, not an element of a material.
+/// Whether a line belongs to a node string, not to an element of a material.
 fn is_of_string(job: &Job<'_>, line: usize) -> bool {
     job.group(line).is_some_and(|group| group.what != "material")
 }
 
-/// The lines of each group as chains of vertices.
+/// Returns the lines of each group as chains of vertices.
 fn strings(job: &Job<'_>) -> Vec<(u32, Vec<u32>)> {
     let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
     for cell in job.all(Kind::Line).filter(|&cell| is_of_string(job, cell)) {

@@ -1,4 +1,4 @@
-//! What formats hold, and what of a mesh is lost in one of them.
+//! What each format holds, and what of a mesh is lost in it.
 
 use super::content::{Content, Data, Group};
 use super::sides;
@@ -6,7 +6,7 @@ use super::tags::{Tags, decides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 
-/// What a format holds of a mesh.
+/// What a format can hold of a mesh.
 #[derive(Clone, Copy)]
 pub(crate) struct Holds {
     pub(crate) points: Elements,
@@ -14,17 +14,17 @@ pub(crate) struct Holds {
     pub(crate) quadrilaterals: bool,
     pub(crate) polygons: bool,
     pub(crate) heights: bool,
-    /// The vertices' own numbers, whatever they are.
+    /// Whether vertices keep their own numbers, whatever these are.
     pub(crate) labels: bool,
-    /// How many groups an element has: one of each of these kinds of groups.
+    /// Which groups an element can belong to.
     pub(crate) groups: Groups,
-    /// Names of groups of points, lines and surfaces.
+    /// Whether groups of points, lines and surfaces have names.
     pub(crate) names: [bool; 3],
-    /// What the groups are called that the format has names for itself.
+    /// A kind of groups whose names belong to the format itself, such as Medit's lists; empty if there is none.
     pub(crate) own: &'static str,
-    /// Groups of a negative number.
+    /// Whether the numbers of groups may be negative.
     pub(crate) negative: bool,
-    /// A number for each vertex.
+    /// Whether each vertex has the number of a group.
     pub(crate) vertex_groups: bool,
     pub(crate) point_data: Numbers,
     pub(crate) cell_data: Numbers,
@@ -35,7 +35,7 @@ pub(crate) struct Holds {
 pub(crate) enum Elements {
     None,
     All,
-    /// Those of a group.
+    /// Only elements that belong to a group.
     OfGroups,
 }
 
@@ -43,15 +43,15 @@ pub(crate) enum Elements {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Groups {
     None,
-    /// One group an element, of one kind of groups for each dimension.
+    /// One group for each element. All elements of a dimension have the same kind of group.
     One,
-    /// The same, of lines only.
+    /// One group for each line, and none for other elements.
     OneOfLines,
-    /// A physical group, or what else matters most, and an entity of the model.
+    /// A physical group, or the most important kind of group, and an entity of the model.
     PhysicalAndEntity,
-    /// One group of each kind of groups.
+    /// One group of each kind.
     Each,
-    /// A block that it stands in, with all elements of one kind and group; of lines a side set, too.
+    /// A block of elements of one kind and group; for lines also a side set.
     Blocks,
 }
 
@@ -60,16 +60,16 @@ pub(crate) enum Groups {
 pub(crate) enum Numbers {
     None,
     All,
-    /// One number a vertex.
+    /// Data of one number.
     Scalars,
-    /// One number a vertex, without a name.
+    /// Data of one number, without names.
     Unnamed,
-    /// Only what is called so.
+    /// Only data of one number with this name.
     Only(&'static str),
 }
 
 impl Holds {
-    /// Nothing but triangles.
+    /// A format that holds nothing but triangles.
     pub(crate) const TRIANGLES: Holds = Holds {
         points: Elements::None,
         lines: Elements::None,
@@ -86,7 +86,7 @@ impl Holds {
         cell_data: Numbers::None,
     };
 
-    /// What of a mesh is lost, one line each.
+    /// Lists what of a mesh is lost, one line each.
     pub(crate) fn lost(&self, content: &Content) -> Vec<String> {
         let mut lost = Vec::new();
         self.lost_elements(content, &mut lost);
@@ -123,7 +123,7 @@ impl Holds {
         lost
     }
 
-    /// Whether a cell is held.
+    /// Whether the format holds a cell.
     pub(crate) fn holds(&self, content: &Content, tags: &Tags, cell: usize) -> bool {
         let of = |elements: Elements| match elements {
             Elements::None => false,
@@ -202,7 +202,7 @@ impl Holds {
             for what in whats.iter().copied().filter(dropped) {
                 let groups =
                     || content.groups.iter().filter(|g| g.dimension == dimension && g.what == what);
-                // Of one group without a name nothing is lost but its number.
+                // If there is one group without a name, only its number is lost.
                 let keeps_none = match self.groups {
                     Groups::None => true,
                     Groups::OneOfLines => dimension != 1,
@@ -230,7 +230,7 @@ impl Holds {
 }
 
 impl Numbers {
-    /// Whether it holds these data.
+    /// Whether the format holds these data.
     pub(crate) fn holds(self, data: &Data) -> bool {
         match self {
             Numbers::None => false,
@@ -252,7 +252,7 @@ impl Numbers {
             lost.push(format!("{what}: {}", first(&dropped)));
         }
         let mut kept = names(true);
-        // What the format calls them itself.
+        // Names such as `attribute1` are the format's own.
         kept.retain(|name| !name.starts_with("attribute"));
         if self == Numbers::Unnamed && !kept.is_empty() {
             lost.push(format!("names of {what}: {}", first(&kept)));
@@ -260,7 +260,7 @@ impl Numbers {
     }
 }
 
-/// The names or numbers of the first groups.
+/// Lists the names or numbers of the first groups, and counts the rest.
 fn listed<'g>(groups: impl Iterator<Item = &'g Group>) -> String {
     let names: Vec<String> = groups
         .map(|group| match (group.name(), &group.label) {
@@ -274,7 +274,7 @@ fn listed<'g>(groups: impl Iterator<Item = &'g Group>) -> String {
     first(&names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// The first of some names, and how many more there are.
+/// Lists the first names, and counts the rest.
 fn first(names: &[&str]) -> String {
     const TOLD: usize = 8;
     let told = names[..names.len().min(TOLD)].join(", ");

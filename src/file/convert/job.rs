@@ -1,4 +1,4 @@
-//! What a writer is given.
+//! The mesh that a writer is given.
 
 use super::content::{Content, Data, Group};
 use super::holds::Holds;
@@ -6,12 +6,12 @@ use super::tags::Tags;
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 
-/// A mesh to be written, and what of it the format holds.
+/// A mesh to be written, with what the format holds of it.
 pub(crate) struct Job<'a> {
     pub(crate) content: &'a Content,
     pub(crate) holds: Holds,
     pub(crate) tags: Tags,
-    /// The number of each vertex, none of which is zero, for formats that write it.
+    /// The number of each vertex, if none is 0.
     numbers: Option<&'a [u64]>,
 }
 
@@ -21,13 +21,13 @@ impl<'a> Job<'a> {
         Job { content, holds, tags: Tags::new(content, holds.negative), numbers }
     }
 
-    /// The cells that are held, in their order.
+    /// Lists the cells that the format holds, in the order of the file.
     pub(crate) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
         let content = self.content;
         (0..content.cells.len()).filter(|&cell| self.holds.holds(content, &self.tags, cell))
     }
 
-    /// Those of a kind.
+    /// Lists the cells of a kind that the format holds.
     pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
         self.cells().filter(move |&cell| self.content.cells.kinds[cell] == kind)
     }
@@ -36,17 +36,17 @@ impl<'a> Job<'a> {
         self.all(kind).count()
     }
 
-    /// The number that the file has for a vertex, or its place counted from one.
+    /// Returns the file's number of a vertex. If some vertex has number 0, returns its position counted from 1.
     pub(crate) fn number(&self, vertex: usize) -> u64 {
         self.numbers.map_or(vertex as u64 + 1, |numbers| numbers[vertex])
     }
 
-    /// Those of the vertices of a cell, with blanks between.
+    /// Returns the [numbers](Self::number) of a cell's vertices, separated by blanks.
     pub(crate) fn numbers(&self, cell: usize) -> String {
         self.joined(cell, |vertex| self.number(vertex))
     }
 
-    /// The places of the vertices of a cell, counted from `first`, with blanks between.
+    /// Returns the positions of a cell's vertices, counted from `first` and separated by blanks.
     pub(crate) fn places(&self, cell: usize, first: u64) -> String {
         self.joined(cell, |vertex| vertex as u64 + first)
     }
@@ -57,35 +57,35 @@ impl<'a> Job<'a> {
         numbers.join(" ")
     }
 
-    /// x and y of a vertex as text.
+    /// Returns x and y of a vertex as text.
     pub(crate) fn plane(&self, vertex: usize) -> String {
         let [x, y] = self.content.points[vertex];
         format!("{x:?} {y:?}")
     }
 
-    /// x, y and z of a vertex as text.
+    /// Returns x, y and z of a vertex as text.
     pub(crate) fn space(&self, vertex: usize) -> String {
         format!("{} {:?}", self.plane(vertex), self.content.z(vertex))
     }
 
-    /// The number of the group of a cell that matters most, or zero.
+    /// Returns the number of the most important group of a cell, or 0.
     pub(crate) fn tag(&self, cell: usize) -> i64 {
         self.tags.tag(self.content, cell)
     }
 
-    /// That group.
+    /// Returns the most important group of a cell.
     pub(crate) fn group(&self, cell: usize) -> Option<&'a Group> {
         let group = self.tags.group(self.content, cell)?;
         Some(&self.content.groups[group as usize])
     }
 
-    /// The name of that group, or its number, in one word.
+    /// Returns the name of a group, or its number, as one word.
     pub(crate) fn word(&self, group: u32) -> String {
         let name = self.content.groups[group as usize].name().map(one_word);
         name.unwrap_or_else(|| self.tags.number(group).to_string())
     }
 
-    /// For each vertex the number of the group of vertices it belongs to; zero if it is of none.
+    /// Returns for each vertex the number of its group of vertices, or 0.
     pub(crate) fn vertex_tags(&self) -> Vec<i64> {
         let mut tags = vec![0; self.content.points.len()];
         for (group, vertices) in self.content.vertex_groups.iter().rev() {
@@ -96,24 +96,24 @@ impl<'a> Job<'a> {
         tags
     }
 
-    /// The data of vertices that are held.
+    /// Lists the data of vertices that the format holds.
     pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
         self.content.point_data.iter().filter(|data| self.holds.point_data.holds(data))
     }
 
-    /// The data of elements that are held.
+    /// Lists the data of elements that the format holds.
     pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
         self.content.cell_data.iter().filter(|data| self.holds.cell_data.holds(data))
     }
 }
 
-/// A name without blanks.
+/// Replaces the blanks in a name by underscores.
 pub(crate) fn one_word(name: &str) -> String {
     let words: Vec<&str> = name.split_whitespace().collect();
     words.join("_")
 }
 
-/// A number as text: without a fraction if it is a whole one of an array of whole numbers.
+/// Formats a value of some data, without a fraction if the data are whole numbers.
 pub(crate) fn text_of(data: &Data, value: f64) -> String {
     match data.is_real {
         true => format!("{value:?}"),

@@ -4,7 +4,7 @@ use super::job::Job;
 use crate::file::sink::Kind;
 use std::fmt::Write;
 
-/// A list of elements: its name, its keyword in binary, how many numbers each element has, and these.
+/// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.
 struct List {
     name: &'static str,
     keyword: i32,
@@ -12,7 +12,7 @@ struct List {
     numbers: Vec<i64>,
 }
 
-/// What both forms of the format hold.
+/// The content that text and binary files share.
 struct Medit {
     dimension: usize,
     /// The reference of each vertex.
@@ -25,7 +25,7 @@ impl Medit {
         let content = job.content;
         let flat = content.heights.is_empty() && content.height == 0.0;
         let mut references = job.vertex_tags();
-        // Points are told by the references of their vertices, but for those of the format's own lists.
+        // Points are written as references of their vertices, except those of the format's own lists.
         let is_listed = |cell: usize| job.group(cell).is_some_and(|group| group.what == "list");
         for cell in job.all(Kind::Point).filter(|&cell| !is_listed(cell)) {
             references[content.cells.of(cell)[0] as usize] = job.tag(cell);
@@ -74,7 +74,7 @@ pub(crate) fn write_medit(job: &Job<'_>) -> String {
     out
 }
 
-/// The places in files of version 2 have four bytes. Larger ones are of version 3, where they have eight.
+/// Offsets in files of version 2 have 4 bytes. Longer files are written as version 3, with 8 bytes.
 const LARGE: usize = 1 << 31;
 
 pub(crate) fn write_meshb(job: &Job<'_>) -> Vec<u8> {
@@ -89,7 +89,7 @@ fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
         numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
     };
     out.extend(ints(&[1, i64::from(version)]));
-    // A keyword, the place of the next one, and what stands between.
+    // Writes a keyword, the offset of the next one, and the content between.
     let mut chain = |keyword: i32, content: &[u8]| {
         out.extend(keyword.to_le_bytes());
         let width = if version == 2 { 4 } else { 8 };

@@ -1,5 +1,5 @@
-//! A mesh of one format written in another: a reader's walk makes a description ([`mod@content`]) of it, a row of [`targets`] says
-//! what a format holds of that, and a writer writes it.
+//! Writes a mesh of one format in another. A reader's walk makes a description of the mesh ([`mod@content`]), a row of
+//! [`targets`] says what the format holds of it, and a writer writes that.
 
 /// Appends formatted text to a string.
 macro_rules! put {

@@ -1,7 +1,7 @@
 //! Writes netCDF's classic format with 64-bit offsets.
 //!
-//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers have their highest byte
-//! first. Variables of the record dimension come last; there is one record at most.
+//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. Numbers are big-endian.
+//! Variables of the record dimension come last, and there is at most one record.
 
 use std::collections::HashMap;
 
@@ -17,13 +17,13 @@ pub(super) struct NetCdf {
 
 struct Variable {
     name: String,
-    /// The places of its dimensions. That of records is the first of all.
+    /// The indices of the variable's dimensions. The record dimension has index 0.
     dimensions: Vec<usize>,
     attributes: Vec<(&'static str, Values)>,
     values: Values,
 }
 
-/// Numbers or letters.
+/// The values of a variable or an attribute.
 pub(super) enum Values {
     Text(Vec<u8>),
     Whole(Vec<i32>),
@@ -32,7 +32,7 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// Names, each filled up with zeros to so many letters.
+    /// Makes a text of names, each padded with zeros to `width` bytes.
     pub(super) fn names<'n>(names: impl IntoIterator<Item = &'n str>, width: usize) -> Values {
         let mut text = Vec::new();
         for name in names {
@@ -43,7 +43,7 @@ impl Values {
         Values::Text(text)
     }
 
-    /// The number of the type, how many there are, and the bytes.
+    /// Returns the number of the type, how many values there are, and their bytes.
     fn encoded(&self) -> (u32, usize, Vec<u8>) {
         match self {
             Values::Text(text) => (2, text.len(), text.clone()),
@@ -58,7 +58,7 @@ impl Values {
     }
 }
 
-/// The record dimension of every file.
+/// The name of the record dimension, which every file has.
 pub(super) const RECORDS: &str = "time_step";
 
 impl NetCdf {
@@ -79,7 +79,7 @@ impl NetCdf {
         self.dimensions.push((name, length));
     }
 
-    /// Adds a variable of these dimensions, with an attribute of text if it has one.
+    /// Adds a variable of these dimensions. `text` is an attribute of it, if it has one.
     pub(super) fn variable(
         &mut self,
         name: impl Into<String>,
@@ -94,9 +94,9 @@ impl NetCdf {
         self.variables.push(Variable { name: name.into(), dimensions, attributes, values });
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     pub(super) fn bytes(mut self) -> Vec<u8> {
-        // Records stand behind all else.
+        // Variables with records come after all others.
         self.variables.sort_by_key(Variable::is_record);
         let has_records =
             self.variables.iter().any(|v| v.is_record() && !v.values.encoded().2.is_empty());
@@ -107,7 +107,7 @@ impl NetCdf {
         bytes
     }
 
-    /// The header, for contents that start at this byte.
+    /// Returns the header, for contents that start at byte `start`.
     fn header(&self, has_records: bool, contents: &[Vec<u8>], mut start: usize) -> Vec<u8> {
         let mut out = b"CDF\x02".to_vec();
         word(&mut out, usize::from(has_records));
@@ -137,7 +137,7 @@ impl Variable {
         self.dimensions.first() == Some(&0)
     }
 
-    /// Its bytes, filled up to a multiple of four.
+    /// Returns the bytes of the values, padded to a multiple of four.
     fn content(&self) -> Vec<u8> {
         let mut content = self.values.encoded().2;
         content.resize(content.len().next_multiple_of(4), 0);
@@ -145,7 +145,7 @@ impl Variable {
     }
 }
 
-/// Appends a number of four bytes. What is greater is not what readers go by.
+/// Appends a number of 4 bytes. A number that does not fit becomes `u32::MAX`; readers do not rely on such sizes.
 fn word(out: &mut Vec<u8>, number: usize) {
     out.extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_be_bytes());
 }

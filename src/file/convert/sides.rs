@@ -1,16 +1,16 @@
-//! Lines that are sides of elements, and what is lost of a mesh where elements stand in blocks.
+//! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
 
 use super::content::{Content, Data};
 use super::tags::Tags;
 use crate::file::sink::Kind;
 use std::collections::HashSet;
 
-/// The ends of a line, whichever comes first.
+/// Returns the two ends of a line in ascending order.
 pub(super) fn pair(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// The lines of groups that are sides of triangles or quadrilaterals.
+/// Finds the lines with a group that are sides of triangles or quadrilaterals.
 pub(super) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> HashSet<usize> {
     let mut of_elements = HashSet::new();
     for kind in [Kind::Triangle, Kind::Quadrilateral] {
@@ -19,7 +19,7 @@ pub(super) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
             of_elements.extend(corners.iter().zip(next).map(|(&a, &b)| pair(a, b)));
         }
     }
-    // Those of a block of lines stay in it.
+    // Lines that the file has in a block stay in it.
     let is_of_block = |group: u32| content.groups[group as usize].what == "block";
     let is_side = |&line: &usize| match (group(line), content.cells.of(line)) {
         (Some(group), &[a, b]) => !is_of_block(group) && of_elements.contains(&pair(a, b)),
@@ -28,7 +28,7 @@ pub(super) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
     content.cells.all(Kind::Line).filter(is_side).collect()
 }
 
-/// What is lost where elements stand in blocks, one line each.
+/// Lists what is lost if elements stand in blocks, one line each.
 pub(super) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
     let tags = Tags::new(content, false);
     let group = |cell: usize| tags.group(content, cell);

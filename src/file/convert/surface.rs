@@ -22,7 +22,7 @@ pub(crate) fn write_obj(job: &Job<'_>) -> String {
     for cell in job.cells() {
         let group = group_of(cell);
         if group != last {
-            // Without a name it ends the group before.
+            // A group without a name ends the group before.
             let name = group.map(|group| format!(" {}", job.word(group))).unwrap_or_default();
             put!(out, "{keyword}{name}\n");
             last = group;

@@ -1,4 +1,4 @@
-//! The table of conversions for docs/formats.md, from what each target holds.
+//! Makes the table of conversions in docs/formats.md from what each target holds.
 
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::targets::TARGETS;
@@ -6,13 +6,13 @@ use crate::file::families::Family;
 use crate::file::format::Format;
 use std::fmt::Write;
 
-/// What a format is called in conversions, if it is a target.
+/// Returns the name of a format in conversions, if it is a target.
 pub(crate) fn name_of(format: Format) -> Option<String> {
     let target = TARGETS.iter().find(|target| target.format == format);
     target.map(|target| format!("`{}`", target.name))
 }
 
-/// A row for each target.
+/// Makes a row for each target.
 pub(crate) fn targets() -> String {
     let mut table = "| `--to` | ending | elements besides triangles | z | own numbers of vertices | groups of elements | \
                      names of groups of | groups of vertices | data of vertices | data of elements |\n\

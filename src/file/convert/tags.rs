@@ -1,19 +1,19 @@
-//! One number an element for formats that have no more.
+//! One group and number for each element, for formats that hold no more.
 
 use super::content::{Content, Group};
 use crate::file::label::Label;
 use std::collections::{HashMap, HashSet};
 
-/// The group that matters most of each element, and a number for each group.
+/// The most important group of each element, and a number for each group.
 pub(crate) struct Tags {
-    /// For each dimension the group of each cell that matters most.
+    /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],
-    /// The number of each group, none of which is zero but that of a group with this number.
+    /// The number of each group. Only a group that has number 0 itself gets it.
     numbers: Vec<i64>,
 }
 
 impl Tags {
-    /// `negative` says whether numbers may be negative.
+    /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
     pub(crate) fn new(content: &Content, negative: bool) -> Tags {
         let column = |dimension| match content.whats(dimension).first() {
             Some(what) => content.column(what),
@@ -22,25 +22,25 @@ impl Tags {
         Tags { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
     }
 
-    /// The group of a cell that matters most.
+    /// Returns the most important group of a cell.
     pub(crate) fn group(&self, content: &Content, cell: usize) -> Option<u32> {
         let dimension = usize::from(content.cells.kinds[cell].dimension());
         self.columns[dimension].get(cell).copied().flatten()
     }
 
-    /// The number of that group; zero if there is none.
+    /// Returns the number of the most important group of a cell, or 0.
     pub(crate) fn tag(&self, content: &Content, cell: usize) -> i64 {
         self.group(content, cell).map_or(0, |group| self.numbers[group as usize])
     }
 
-    /// The number of a group.
+    /// Returns the number of a group.
     pub(crate) fn number(&self, group: u32) -> i64 {
         self.numbers[group as usize]
     }
 }
 
-/// A number for each group, different from those of others of the same kind and dimension: its own tag, or for a name one that
-/// no tag has.
+/// Gives each group a number that no other group of its kind and dimension has. It is the group's own tag if possible,
+/// else a number that no tag has.
 fn numbers(groups: &[Group], negative: bool) -> Vec<i64> {
     let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
@@ -71,8 +71,8 @@ fn groups_what<'g>(groups: &'g [Group], group: &Group) -> &'g str {
     groups.iter().find(|own| own.what == group.what).map_or("", |own| &own.what)
 }
 
-/// Whether the group of one kind that an element of a dimension belongs to tells that of another kind, so that nothing is lost
-/// with the other one but its number.
+/// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
+/// if `other` is not written.
 pub(crate) fn decides(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
     let named = |group: &Group| group.dimension == dimension && group.name().is_some();
     if content.groups.iter().any(|group| group.what == other && named(group)) {

@@ -1,26 +1,26 @@
-//! The formats that meshes of other formats are written in.
+//! The table of formats that meshes are converted to.
 
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
 use super::{exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
 
-/// A format that meshes of others are written in: a row of [`TARGETS`].
+/// A format that meshes are converted to: a row of [`TARGETS`].
 pub(crate) struct Target {
     pub(crate) format: Format,
-    /// A short name, for those who want another format than the ending of a name stands for.
+    /// A short name, to choose a format that the ending of a file name does not stand for.
     pub(crate) name: &'static str,
     pub(crate) holds: Holds,
     pub(crate) write: Write,
 }
 
-/// How a mesh is written.
+/// How a format is written.
 pub(crate) enum Write {
-    /// To one file of text.
+    /// As one file of text.
     One(fn(&Job<'_>) -> String),
-    /// To one file in binary.
+    /// As one binary file.
     Binary(fn(&Job<'_>) -> Vec<u8>),
-    /// To several files.
+    /// As several files of text.
     Several(fn(&Job<'_>) -> Vec<String>),
 }
 
@@ -61,7 +61,7 @@ const MEDIT: Holds = Holds {
     ..Holds::TRIANGLES
 };
 
-/// Each format, of those that files end the same way for the usual one first.
+/// All targets. Of formats whose files end the same way, the usual one comes first.
 pub(crate) static TARGETS: [Target; 16] = [
     Target {
         format: Format::Gmsh41,

@@ -4,7 +4,7 @@ use super::job::{Job, text_of};
 use crate::file::sink::Kind;
 use std::fmt::Write;
 
-/// The `.node`, the `.ele`, and a `.poly` if there are lines.
+/// Returns the contents of the `.node`, the `.ele`, and the `.poly` if there are lines.
 pub(crate) fn write(job: &Job<'_>) -> Vec<String> {
     let content = job.content;
     let data: Vec<_> = job.point_data().collect();
@@ -22,7 +22,7 @@ pub(crate) fn write(job: &Job<'_>) -> Vec<String> {
     for (cell, number) in job.all(Kind::Triangle).zip(1..) {
         put!(ele, "{number} {}", job.places(cell, 1));
         if grouped {
-            // A fraction is no part of a tag, but may be the name that stands for an attribute.
+            // A fraction cannot be a tag, but it can be the name of a group that stands for an attribute.
             let name =
                 job.group(cell).and_then(|group| group.name()).filter(|name| is_number(name));
             put!(ele, " {}", name.map_or_else(|| job.tag(cell).to_string(), str::to_owned));

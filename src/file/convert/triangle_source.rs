@@ -1,4 +1,4 @@
-//! The description of a mesh in the files of the mesh generator Triangle, which were read before.
+//! Describes a mesh of the mesh generator Triangle, whose files were read before.
 
 use super::collector::Collector;
 use super::content::Content;
@@ -13,7 +13,7 @@ use crate::file::triangle::{
 };
 use crate::mesh::Precision;
 
-/// The description of a mesh.
+/// Reads the description of a mesh from its files.
 pub(super) fn content(
     node: &Source,
     ele: &Source,
@@ -55,7 +55,7 @@ fn vertices(node: &Source, sink: &mut Collector) -> Result<Numbers, ReadError> {
     Ok(numbers)
 }
 
-/// A column of real numbers, by their bits.
+/// Makes a column of real numbers, which are handed on as their bits.
 fn column(what: &str, zero_is_none: bool) -> Column {
     let label: fn(i64) -> Option<Label> = match zero_is_none {
         true => |bits| {
@@ -68,7 +68,7 @@ fn column(what: &str, zero_is_none: bool) -> Column {
 }
 
 fn bits(token: Option<&[u8]>) -> i64 {
-    // Adding zero takes the sign off a negative zero.
+    // Adding zero makes a negative zero positive.
     (token.and_then(float).unwrap_or(0.0) + 0.0).to_bits().cast_signed()
 }
 
@@ -123,7 +123,7 @@ fn segments(
         let element = Element { tag, kind: Kind::Line, region, nodes: [a, b, 0, 0] };
         sink.element(&segments.cursor, &element)?;
     }
-    // Holes and regions are of use to the mesh generator only.
+    // Holes and regions matter only to the mesh generator.
     let cursor = &mut segments.cursor;
     if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {
         sink.leaves_out("holes of the .poly");

@@ -7,7 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
 
-/// VTK's number of a kind.
+/// Returns VTK's number for a kind of element.
 fn kind_of(kind: Kind) -> u8 {
     match kind {
         Kind::Point => 1,
@@ -18,7 +18,7 @@ fn kind_of(kind: Kind) -> u8 {
     }
 }
 
-/// The usual name of an array of groups that are called so.
+/// Returns the name that an array usually has for a kind of group.
 fn array_name(what: &str) -> &str {
     match what {
         "physical" => "gmsh:physical",
@@ -32,7 +32,7 @@ fn array_name(what: &str) -> &str {
     }
 }
 
-/// An array that is written: real numbers or whole ones.
+/// An array to be written, of real or whole numbers.
 pub(super) struct Array {
     pub(super) name: String,
     pub(super) components: usize,
@@ -67,7 +67,7 @@ impl Array {
     }
 }
 
-/// The arrays of the vertices.
+/// Makes the arrays of the vertices.
 pub(super) fn of_points(job: &Job<'_>) -> Vec<Array> {
     let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
     if !job.content.vertex_groups.is_empty() {
@@ -77,7 +77,7 @@ pub(super) fn of_points(job: &Job<'_>) -> Vec<Array> {
     arrays
 }
 
-/// The arrays of the cells: one for each kind of groups, and data.
+/// Makes the arrays of the cells: one for each kind of group, and the data.
 pub(super) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
     let mut whats: Vec<&str> = Vec::new();
     for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
@@ -85,7 +85,7 @@ pub(super) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
             whats.push(what);
         }
     }
-    // The order does not depend on what has which groups.
+    // The order of the usual arrays is always the same.
     const FIRST: [&str; 5] =
         ["gmsh:physical", "gmsh:geometrical", "medit:ref", "MaterialIDs", "region"];
     whats.sort_by_key(|what| {
@@ -147,7 +147,7 @@ pub(crate) fn write_legacy(job: &Job<'_>) -> String {
     out
 }
 
-/// A name in one word, as VTK writes it.
+/// Encodes a name as one word, as VTK does.
 fn encoded(name: &str) -> String {
     let mut encoded = String::new();
     for byte in name.bytes() {

@@ -1,4 +1,4 @@
-//! Writes XDMF with its numbers in the XML.
+//! Writes XDMF with the numbers in the XML.
 
 use super::job::Job;
 use super::vtk::{Array, Numbers, of_cells, of_points};
@@ -33,7 +33,7 @@ pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
     out
 }
 
-/// XDMF's number of the type of a cell, how many vertices it has if the type does not tell, and these.
+/// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
 fn row(job: &Job<'_>, cell: usize) -> String {
     let vertices = job.places(cell, 0);
     match job.content.cells.kinds[cell] {
@@ -56,7 +56,7 @@ fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
         _ => "Matrix",
     };
     let (number, words): (_, Vec<String>) = match numbers {
-        // As readers in C take what is no number.
+        // NaN is written so that readers in C parse it.
         Numbers::Real(numbers) => {
             ("Float", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
         }

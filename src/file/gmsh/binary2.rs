@@ -1,5 +1,5 @@
-//! The sections of version 2.2 in binary: after its count, which is text, one node after the other, and elements in runs
-//! of one kind.
+//! The sections of version 2.2 in binary. The counts are text. After them come the nodes one by one, and the elements
+//! in blocks of one kind.
 
 use super::kind::kind_of;
 use super::text2::columns;
@@ -12,7 +12,7 @@ use crate::file::records::{Expected, Field, NodeRecords, Region, Tags, TriangleR
 use crate::file::sink::{Element, Kind, Sink};
 use crate::file::text::Cursor;
 
-/// Reads `$Nodes` after its first line, or `$ParametricNodes`. Returns their number.
+/// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     (order, parametric): (Order, bool),
@@ -44,7 +44,7 @@ pub(super) fn nodes(
         sink.node(cursor, tag, 2, cursor.taken() + TAG, [x, y]);
         heights.see((cursor.taken() + TAG + 16, z));
         if parametric {
-            // The dimension of its entity, the entity's tag, and a parameter for each dimension.
+            // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;
             let parameters = match entity.int() {
                 1 => 8,
@@ -57,7 +57,7 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Reads `$Elements` after its first line. Returns their number.
+/// Reads `$Elements` after its first line. Returns the number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     order: Order,
@@ -99,7 +99,7 @@ pub(super) fn elements(
             let tag = words.natural(cursor, "an element tag")?;
             let mut region = [0; 2];
             region[..groups.min(2)].fill_with(|| i64::from(words.int()));
-            // Tags of mesh partitions.
+            // The tags after the second one are those of mesh partitions.
             words.skip(4 * groups.saturating_sub(2));
             let mut nodes = [0; 4];
             for node in &mut nodes[..kind.nodes()] {

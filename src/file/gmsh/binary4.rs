@@ -1,4 +1,4 @@
-//! The sections of version 4.1 in binary, and the elements of 4.0: blocks, one per entity of the model.
+//! The sections of version 4.1 in binary, and the elements of 4.0. There is a block for each entity of the model.
 
 use super::kind::kind_of;
 use super::model::Model;
@@ -12,10 +12,10 @@ use crate::file::records::{Expected, Field, NodeRecords, Region, Tags, TriangleR
 use crate::file::sink::{Element, Kind, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 
-/// The bytes of a block's header: three `int` and a `size_t`, or an `unsigned long` in 4.0.
+/// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
 pub(super) const BLOCK_HEADER: usize = 20;
 
-/// Reads `$Nodes` after its first line. Returns their number.
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: Order,
@@ -74,7 +74,7 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Reads `$Elements` of version 4.0 or 4.1 after its first line. Returns their number.
+/// Reads `$Elements` of version 4.0 or 4.1 after its first line. Returns the number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     (version, order): (Version, Order),
@@ -88,7 +88,7 @@ pub(super) fn elements(
     for block in 0..blocks {
         let words =
             &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
-        // The tag of the entity and its dimension, which 4.1 has the other way round.
+        // In 4.0 the entity's tag comes first, in 4.1 its dimension.
         let [first, second] = [words.int(), words.int()];
         let entity = if version == Version::V40 { first } else { second };
         let region = [i64::from(entity), 0];
@@ -134,13 +134,13 @@ pub(super) fn elements(
     Ok(count)
 }
 
-/// How many blocks a section has, and how many nodes or elements are in all of them.
+/// Reads the number of blocks of a section, and the number of nodes or elements in all of them.
 pub(super) fn counts(
     cursor: &mut Cursor<'_>,
     version: Version,
     order: Order,
 ) -> Result<[u64; 2], ReadError> {
-    // In 4.1 the lowest and the highest tag follow.
+    // In 4.1 the least and the greatest tag follow.
     let bytes = if version == Version::V40 { 16 } else { 32 };
     let words = &mut Words::take(cursor, order, bytes, (0, 1, "counts"))?;
     Ok([words.size(), words.size()])

@@ -1,5 +1,5 @@
-//! The nodes of version 4.0 in binary: blocks, one per entity of the model, where each node's tag of four bytes stands before its
-//! coordinates.
+//! The nodes of version 4.0 in binary. There is a block for each entity of the model, and each node has a tag of four
+//! bytes before its coordinates.
 
 use super::binary4::{BLOCK_HEADER, counts};
 use super::words::Words;
@@ -10,10 +10,10 @@ use crate::file::heights::Heights;
 use crate::file::sink::Sink;
 use crate::file::text::Cursor;
 
-/// The bytes of a tag.
+/// The size of a tag in bytes.
 const TAG: usize = 4;
 
-/// Reads `$Nodes` after its first line. Returns their number.
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: Order,
@@ -34,7 +34,7 @@ pub(super) fn nodes(
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
-        // Those of points have none, and those of volumes none either.
+        // Nodes of points and of volumes have no parameters.
         let parameters = if parametric && dimension < 3 { dimension as usize } else { 0 };
         for at in 0..size {
             let progress = (done + at, count, "nodes");

@@ -8,12 +8,12 @@ use crate::file::sink::{PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 use crate::mesh::Precision;
 
-/// Data have to be given at one in so many nodes.
+/// Data of nodes are skipped if fewer than one in this many nodes has them.
 const FEW: u64 = 16;
 
-/// Announces the data of a section after its first line, and reads them if the sink wants them. It leaves the cursor where it
-/// is. `nodes` is how many nodes there are, for data of nodes. Data that are damaged are passed over: the mesh does not depend
-/// on them. So are those of very few nodes, as the numbers of all nodes would take many times the file.
+/// Announces the data of a section after its first line, and reads them if the sink wants them. The cursor does not
+/// move. `nodes` is the number of nodes, for data of nodes. Damaged data are skipped, as the mesh does not depend on
+/// them. So are data of very few nodes, as a number for each node would take many times the memory of the file.
 pub(super) fn read(
     cursor: &Cursor<'_>,
     nodes: Option<u64>,
@@ -43,7 +43,7 @@ pub(super) fn read(
     }
 }
 
-/// Reads the name, how many numbers a node has, and how many nodes.
+/// Reads the name, how many numbers each node or element has, and how many of these have data.
 fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
     let mut name = None;
     for place in 0..count(cursor)? {
@@ -67,7 +67,7 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
         }
     }
     let [_, components, nodes] = integers;
-    // Numbers, vectors and tensors, padded or not.
+    // Scalars, vectors and tensors, padded or not.
     (1..=9).contains(&components).then_some((name?, components, nodes))
 }
 

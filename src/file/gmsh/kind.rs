@@ -1,10 +1,10 @@
-//! Which of gmsh's element types can be read.
+//! The element types of gmsh that can be read.
 
 use crate::error::ReadError;
 use crate::file::sink::Kind;
 use crate::file::text::Cursor;
 
-/// The kind that has this number in gmsh, or an error on the current line.
+/// Returns the kind of an element by its number in gmsh, or an error on the current line.
 pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
     match number {
         15 => Ok(Kind::Point),
@@ -33,7 +33,7 @@ fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
     }
 }
 
-/// Reads the node tags at the end of an element's row, as many as the kind has. The rest are zeros.
+/// Reads the node tags at the end of an element's row, as many as the kind has. The other places of the array are 0.
 #[inline]
 pub(super) fn node_tags(
     cursor: &mut Cursor<'_>,

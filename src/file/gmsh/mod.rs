@@ -1,9 +1,9 @@
 //! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary.
 //!
-//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh only `$MeshFormat`, `$Nodes`
-//! and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical groups of each
-//! entity, are read where groups are asked for; regions are told apart without them, as triangles of one entity are all of
-//! the same groups.
+//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh, only `$MeshFormat`,
+//! `$Nodes` and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical
+//! groups of each entity, are read only for groups. Regions do not need them, as all triangles of an entity have the
+//! same groups.
 
 mod binary2;
 mod binary4;
@@ -31,11 +31,11 @@ use crate::file::token::quoted;
 use crate::mesh::Precision;
 use model::Model;
 
-/// A remark for the user.
+/// A remark for the user on parameters that cannot be updated.
 const PARAMETRIC: &str =
     "nodes have parameters on surfaces of the model, which stay as they are where nodes move";
 
-/// How the sections are laid out.
+/// The version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Version {
     V2,
@@ -43,15 +43,15 @@ enum Version {
     V4,
 }
 
-/// What `$MeshFormat` says.
+/// The version and byte order that `$MeshFormat` gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Encoding {
     version: Version,
-    /// The byte order of the numbers, if they are not text.
+    /// The byte order of binary numbers; `None` for text.
     order: Option<Order>,
 }
 
-/// gmsh's `.msh`.
+/// The reader of gmsh's `.msh`.
 pub(crate) struct Gmsh;
 
 impl Walk for Gmsh {
@@ -75,7 +75,7 @@ impl Walk for Gmsh {
     }
 }
 
-/// Feeds a file's nodes and elements to the sink.
+/// Hands a file's nodes and elements to the sink.
 fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
@@ -83,7 +83,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
     let mut node_count = 0;
     let mut model = Model::default();
     while cursor.next_row() {
-        // Like gmsh, ignore what stands between sections.
+        // Like gmsh, ignore all text between sections.
         let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
             continue;
         };
@@ -181,14 +181,14 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
     }
 }
 
-/// Has the rest of a section of so many rows read by these or, as gmsh reads it, by words.
+/// Chooses how the rest of a section is read: by rows if it has this many rows, else by words as gmsh does.
 fn lay_out(cursor: &mut Cursor<'_>, rows: u64) {
     let (bytes, at) = (&cursor.source.bytes, cursor.at());
     let end = memchr::memmem::find(&bytes[at..], b"$End").map_or(bytes.len(), |end| at + end);
     cursor.syntax = of_rows_or_words(cursor, end, rows);
 }
 
-/// Has a list of which each item has a row, with parameters at its end, read by rows.
+/// Reads a list by rows if `is_so`: each item then has a row of its own, with parameters at its end.
 fn by_rows<'a, T>(
     cursor: &mut Cursor<'a>,
     is_so: bool,
@@ -206,7 +206,7 @@ fn by_rows<'a, T>(
     Ok(list)
 }
 
-/// How a number stands in the file.
+/// Returns how a number is stored in the file.
 fn form(order: Option<Order>) -> Form {
     match order {
         None => Form::Text(Precision::Double),
@@ -244,13 +244,13 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     }
 }
 
-/// Remarks that nodes have parameters.
+/// Tells the sink that nodes have parameters, which stay as they are.
 fn note_parameters(sink: &mut dyn Sink) {
     sink.note(PARAMETRIC);
     sink.leaves_out("parameters of nodes on surfaces");
 }
 
-/// Announces that nodes have parameters on a surface. Whether these are wanted.
+/// Announces that nodes have parameters on a surface. Returns whether the sink wants them.
 fn has_parameters(sink: &mut dyn Sink, surface: i64) -> bool {
     sink.leaves_out("parameters of nodes on surfaces");
     sink.parameters(surface)
@@ -269,7 +269,8 @@ fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadErro
     Ok(())
 }
 
-/// Moves to the next of `count` items of a section, `done` of which were read.
+/// Moves to the next of `count` items of a section, after `done` were read. Returns an error if the section ends before
+/// it.
 #[inline]
 fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
     cursor.row(done, count, what)?;
@@ -280,8 +281,8 @@ fn row(cursor: &mut Cursor<'_>, done: u64, count: u64, what: &str) -> Result<(),
     Ok(())
 }
 
-/// Hands on `count` items of a list, before which `before` of the `all` ones of the section were read. gmsh reads text as words, so
-/// that items stand anywhere on lines.
+/// Hands on the `count` items of a list. `before` items of the section's `all` were read earlier. As in gmsh, items may
+/// stand anywhere on lines.
 fn each<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     (count, before, all, what): (u64, u64, u64, &str),
@@ -293,7 +294,8 @@ fn each<'a, T: Send>(
     each_item(cursor, count, sink, next, read, take)
 }
 
-/// Reads the counts that a section begins with, and lays out what follows: so many rows as `rows` makes of them.
+/// Reads the counts at the start of a section, and chooses how the rest is read. `rows` returns how many rows it should
+/// have.
 fn counts<'a, T: Copy>(
     cursor: &mut Cursor<'a>,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
@@ -305,7 +307,7 @@ fn counts<'a, T: Copy>(
     Ok(counts)
 }
 
-/// Reads what stands before the items of a list or block, the next of `count` called `what`.
+/// Reads the header of a list or block, the next of `count` called `what`.
 fn head<'a, T>(
     cursor: &mut Cursor<'a>,
     (done, count, what): (u64, u64, &str),
@@ -315,7 +317,7 @@ fn head<'a, T>(
     cursor.item(read, &mut None)
 }
 
-/// Checks that a block of `size` is not larger than what the section's count leaves for it.
+/// Checks that a block of `size` items is not larger than what the section's count leaves for it.
 fn block_fits(cursor: &Cursor<'_>, size: u64, left: u64, what: &str) -> Result<(), ReadError> {
     if size <= left {
         return Ok(());
@@ -332,7 +334,7 @@ fn all_in_blocks(cursor: &Cursor<'_>, done: u64, count: u64, what: &str) -> Resu
     Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
 }
 
-/// Moves past the line that ends a section, all announced rows of which were read.
+/// Moves past the line that ends a section, after all announced rows were read.
 fn end_of_section(
     cursor: &mut Cursor<'_>,
     name: &str,

@@ -1,4 +1,4 @@
-//! The names of physical groups, and the entities of the model that each has.
+//! The names of physical groups, and the entities of the model with their physical groups.
 
 use super::words::Words;
 use super::{Encoding, Version, row};
@@ -9,7 +9,7 @@ use crate::file::sink::{Kind, Sink, Within};
 use crate::file::text::{CORRECT, Cursor};
 use std::collections::HashMap;
 
-/// Reads `$PhysicalNames` after its first line and hands on the names. Returns their number.
+/// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.
 pub(super) fn physical_names(
     cursor: &mut Cursor<'_>,
     sink: &mut dyn Sink,
@@ -23,7 +23,7 @@ pub(super) fn physical_names(
         let (dimension, tag) = match cursor.is_at(b'"') {
             true => (None, first),
             false => {
-                // Those of volumes are of no element here.
+                // Groups of volumes belong to no element of the mesh.
                 let dimension = u8::try_from(first).unwrap_or(u8::MAX);
                 (Some(dimension), cursor.signed("the tag of a physical group")?)
             }
@@ -38,7 +38,7 @@ pub(super) fn physical_names(
     Ok(count)
 }
 
-/// The entities of the model, from version 4 on.
+/// The entities of the model, which the format has from version 4 on.
 #[derive(Default)]
 pub(super) struct Model {
     entities: HashMap<(u8, i64), Entity>,
@@ -46,13 +46,13 @@ pub(super) struct Model {
 
 #[derive(Default)]
 struct Entity {
-    /// The entity's tag; that of the whole if it is part of one, for the partition of a mesh.
+    /// The entity's tag. In a partitioned mesh it is the tag of the whole entity that this one is part of.
     tag: i64,
     physical: Vec<i64>,
 }
 
 impl Model {
-    /// The groups of elements of an entity. None is physical until `$Entities` was read.
+    /// Returns the groups of an entity's elements. Physical groups are known only after `$Entities` was read.
     pub(super) fn groups_of(&self, kind: Kind, entity: i64) -> Vec<Within<'static>> {
         let known = self.entities.get(&(kind.dimension(), entity));
         let within = |what, tag: i64| Within { what, label: Label::Tag(tag), dimension: None };
@@ -72,7 +72,7 @@ impl Model {
         Encoding { version, order }: Encoding,
         partitioned: bool,
     ) -> Result<(), ReadError> {
-        // Points have their place in 4.1, and like all others a box in 4.0.
+        // A point has three coordinates in 4.1. All other entities, and points in 4.0, have a bounding box.
         let numbers = |dimension| match (version, dimension) {
             (Version::V4, 0) => 3,
             _ => 6,
@@ -104,7 +104,7 @@ impl Model {
     }
 }
 
-/// How many entities there are of each dimension.
+/// Reads the number of entities of each dimension.
 fn text_counts(cursor: &mut Cursor<'_>, partitioned: bool) -> Result<[u64; 4], ReadError> {
     if partitioned {
         row(cursor, 0, 1, "numbers of partitions")?;
@@ -122,7 +122,7 @@ fn text_counts(cursor: &mut Cursor<'_>, partitioned: bool) -> Result<[u64; 4], R
     Ok(counts)
 }
 
-/// Reads the row of an entity up to its physical groups. What bounds it follows.
+/// Reads the row of an entity up to its physical groups. The bounding entities that follow are left.
 fn text_entity(
     cursor: &mut Cursor<'_>,
     partitioned: bool,
@@ -146,13 +146,13 @@ fn text_entity(
     }
     let mut physical = Vec::new();
     for _ in 0..cursor.integer("the number of an entity's physical groups")? {
-        // A sign tells the direction of a curve.
+        // The sign gives the direction of a curve.
         physical.push(cursor.signed("a physical group")?.saturating_abs());
     }
     Ok((tag, Entity { tag: whole, physical }))
 }
 
-/// The entity that a part stands for: its parent, unless the part is a new boundary between partitions.
+/// Returns the entity that a part belongs to. This is its parent, unless the part is a new boundary between partitions.
 fn whole_of(tag: i64, dimension: u8, parent: i64, parent_dimension: i64) -> i64 {
     if parent_dimension == i64::from(dimension) { parent } else { tag }
 }
@@ -185,7 +185,7 @@ fn binary_entity(
     let int = |cursor: &mut Cursor<'_>| {
         Words::take(cursor, order, 4, progress).map(|mut words| i64::from(words.int()))
     };
-    // A count, and so many words of four bytes.
+    // Reads a count, and as many numbers of four bytes.
     let ints = |cursor: &mut Cursor<'_>| {
         let count = Words::take(cursor, order, 8, progress)?.size();
         let bytes = usize::try_from(count).unwrap_or(usize::MAX).saturating_mul(4);
@@ -203,7 +203,7 @@ fn binary_entity(
     Words::take(cursor, order, 8 * numbers, progress)?;
     let physical = ints(cursor)?.into_iter().map(i64::abs).collect();
     if !is_point {
-        // What bounds it.
+        // The bounding entities.
         ints(cursor)?;
     }
     Ok((tag, Entity { tag: whole, physical }))

@@ -1,4 +1,4 @@
-//! The nodes that belong together in pairs: `$Periodic`.
+//! The nodes that belong together in pairs, from the section `$Periodic`.
 
 use super::{Encoding, Version};
 use crate::file::binary::Order;
@@ -8,18 +8,18 @@ use crate::file::token::{float, integer};
 use crate::mesh::Precision;
 use crate::periodic::Motion;
 
-/// How many numbers a motion of space has, row by row of a matrix.
+/// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;
 
-/// Reads a section after its first line, and leaves the cursor where it is. `None` if it is not as gmsh writes it: the mesh
-/// does not depend on it.
+/// Reads a section after its first line. The cursor does not move. `None` if the section is not as gmsh writes it; the
+/// mesh does not depend on it.
 pub(super) fn read(
     cursor: &Cursor<'_>,
     Encoding { version, order }: Encoding,
 ) -> Option<Vec<Pairs>> {
     let cursor = &mut cursor.clone();
     let found = match (version, order) {
-        // Version 2.2 has the section as text in binary files, too.
+        // In version 2.2 this section is text in binary files, too.
         (Version::V2, _) | (_, None) => text(cursor, version)?,
         (_, Some(order)) => binary(cursor, version, order)?,
     };
@@ -27,13 +27,13 @@ pub(super) fn read(
     is_end.then_some(found)
 }
 
-/// Of a motion of space that keeps the plane, what it does there.
+/// Returns what a motion of space does in the plane, if it is complete.
 fn in_plane(numbers: &[f64]) -> Option<Motion> {
     let all: &[f64; AFFINE] = numbers.try_into().ok()?;
     Some([[all[0], all[1], all[3]], [all[4], all[5], all[7]]])
 }
 
-/// gmsh's pairs are of an image and what it is the image of.
+/// Makes pairs of nodes with their motion; `None` if there is no pair.
 fn pairs(motion: Option<Motion>, nodes: Vec<[u64; 2]>) -> Option<Pairs> {
     (!nodes.is_empty()).then_some(Pairs { motion, nodes })
 }
@@ -46,11 +46,12 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<Pairs>> {
     let links = number(cursor)?;
     let mut found = Vec::new();
     for _ in 0..links {
-        // The dimension and the tags of both entities.
+        // The row with the dimension and the tags of both entities.
         (cursor.next_row() && !cursor.is_at(b'$')).then_some(())?;
         cursor.next_row().then_some(())?;
         let first = cursor.token()?;
-        // From 4.1 on a row tells how many numbers it has; before, there is a row with a word or none.
+        // From 4.1 on, a row has the count of the motion's numbers and the numbers. Before, the row starts with
+        // `Affine`, or there is none.
         let has_row = version == Version::V4 || first == b"Affine";
         let mut numbers = Vec::new();
         if has_row {
@@ -71,7 +72,7 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<Pairs>> {
     Some(found)
 }
 
-/// Takes so many items of a size from the file.
+/// Takes `count` items of `size` bytes from the file.
 fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Option<&'a [u8]> {
     cursor.take(usize::try_from(count).ok()?.checked_mul(size)?)
 }
@@ -88,7 +89,7 @@ fn binary(cursor: &mut Cursor<'_>, version: Version, order: Order) -> Option<Vec
         take(cursor, 3, 4)?;
         let mut count = size(cursor)?;
         let mut numbers = Vec::new();
-        // From 4.1 on it is how many numbers of a motion follow; before, less than nothing if some do.
+        // From 4.1 on, this is the count of the motion's numbers. Before, it is negative if a motion follows.
         if !is_40 || count > i64::MAX as u64 {
             let has = if is_40 { AFFINE as u64 } else { count };
             let real = |bytes: &[u8]| order.real(Precision::Double, bytes);
@@ -118,7 +119,7 @@ mod tests {
         read(&cursor, Encoding { version, order })
     }
 
-    /// Version 4.0 in binary has smaller numbers than 4.1, and marks a motion by a count below zero.
+    /// Version 4.0 in binary has narrower numbers than 4.1, and marks a motion by a negative count.
     #[test]
     fn binary_of_version_4_0_is_read_in_both_byte_orders() {
         for order in [Order::Little, Order::Big] {

@@ -1,4 +1,4 @@
-//! The sections of version 2.2: one line per node and per element.
+//! The sections of version 2.2 as text: one line for each node and element.
 
 use super::kind::{kind_of, node_tags};
 use super::{counts, each};
@@ -7,7 +7,7 @@ use crate::file::heights::Heights;
 use crate::file::sink::{Column, Element, Sink};
 use crate::file::text::{CORRECT, Cursor};
 
-/// Reads `$Nodes` after its first line. Returns their number.
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
@@ -30,12 +30,12 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// What the first two tags of an element tell.
+/// Returns the meaning of the first two tags of an element.
 pub(super) fn columns() -> Vec<Column> {
     ["physical", "entity"].map(Column::tags_from_one).into()
 }
 
-/// Reads `$Elements` after its first line. Returns their number.
+/// Reads `$Elements` after its first line. Returns the number of elements.
 pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| cursor.integer("the number of elements");
     let count = counts(cursor, read, |count| count)?;
@@ -47,7 +47,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u
     Ok(count)
 }
 
-/// A node's tag, x and y with the place of x, and z with its own.
+/// A node's tag, the offset of x with x and y, and the offset of z with z.
 type Node = (u64, (usize, [f64; 2]), (usize, f64));
 
 #[inline]
@@ -68,7 +68,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {
         *number = cursor.signed(format_args!("a tag of element {tag}"))?;
     }
-    // Tags of mesh partitions.
+    // The tags after the second one are those of mesh partitions.
     for _ in 2..groups {
         if cursor.token().is_none() {
             let problem = format!("element {tag} announces {groups} tags, and its line is shorter");

@@ -1,4 +1,4 @@
-//! The sections of version 4.1: blocks, one per entity of the model.
+//! The sections of version 4.1 as text, and the elements of 4.0. There is a block for each entity of the model.
 
 use super::kind::{kind_of, node_tags};
 use super::model::Model;
@@ -11,7 +11,7 @@ use crate::file::text::Cursor;
 use crate::mesh::Precision;
 use std::fmt::Display;
 
-/// Reads `$Nodes` after its first line. Returns their number.
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
@@ -69,13 +69,13 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Passes over the least and the greatest tag of a section, which are not needed.
+/// Skips the least and the greatest tag of a section, which are not needed.
 fn pass_least_and_greatest(cursor: &mut Cursor<'_>) {
     cursor.token();
     cursor.token();
 }
 
-/// Reads the parameters at the end of the rows of nodes of these tags.
+/// Reads the parameters at the end of the rows of these nodes.
 #[cold]
 fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Result<(), ReadError> {
     let mut numbers = TextNumbers::default();
@@ -90,8 +90,8 @@ fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Resu
     Ok(())
 }
 
-/// Reads `$Elements` after its first line, in version 4.1 or 4.0, which differ in what comes first of a block. Returns
-/// their number.
+/// Reads `$Elements` of version 4.0 or 4.1 after its first line. The two differ in the header of a block. Returns the
+/// number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     version: Version,
@@ -112,7 +112,7 @@ pub(super) fn elements(
     let mut done = 0;
     for block in 0..blocks {
         let read = |cursor: &mut Cursor<'_>| {
-            // The dimension of the entity, which is not needed, stands before its tag in 4.1 and after it in 4.0.
+            // The entity's dimension is not needed. It stands before the tag in 4.1, and after it in 4.0.
             if version == Version::V4 {
                 cursor.token();
             }
@@ -139,7 +139,7 @@ pub(super) fn elements(
     Ok(count)
 }
 
-/// x and y with the place of x, and z with its own.
+/// The offset of x with x and y, and the offset of z with z.
 type Point = ((usize, [f64; 2]), (usize, f64));
 
 /// Reads a node's coordinates.

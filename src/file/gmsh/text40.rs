@@ -1,4 +1,5 @@
-//! The nodes of version 4.0: blocks, one per entity of the model, with the tag of each node before its coordinates.
+//! The nodes of version 4.0 as text. There is a block for each entity of the model, and each node has its tag before
+//! its coordinates.
 
 use super::{all_in_blocks, block_fits, by_rows, counts, each, head};
 use crate::error::ReadError;
@@ -6,7 +7,7 @@ use crate::file::heights::Heights;
 use crate::file::sink::Sink;
 use crate::file::text::Cursor;
 
-/// Reads `$Nodes` after its first line. Returns their number.
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     heights: &mut Heights,
@@ -36,7 +37,7 @@ pub(super) fn nodes(
             let point = cursor.point(owner)?;
             Ok((tag, point, cursor.height(owner)?))
         };
-        // Parameters follow on the row.
+        // Parameters follow at the end of the row.
         by_rows(cursor, parametric, |cursor| {
             let list = (size, done, count, "nodes");
             each(cursor, list, sink, read, |cursor, sink, _, (tag, (x_at, at), z)| {

@@ -1,22 +1,22 @@
-//! The numbers of a binary file, which stand between its lines.
+//! The numbers of a binary file between its lines of text.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::text::{CUT_OFF, Cursor};
 use std::fmt::Display;
 
-/// What to do about a number that makes no sense.
+/// The remedy for a number that makes no sense.
 const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
 
-/// Bytes of a binary file that hold some numbers, to be read one after the other.
+/// Bytes of a binary file that hold numbers, which are read one after the other.
 pub(super) struct Words<'a> {
     order: Order,
     bytes: &'a [u8],
 }
 
 impl<'a> Words<'a> {
-    /// Takes the next `size` bytes of the file. They hold one more of the `count` things called `what`, `done` of which
-    /// were read.
+    /// Takes the next `size` bytes of the file, which hold the next of `count` items called `what`. `done` items were
+    /// read before.
     #[inline]
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
@@ -33,7 +33,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next bytes. There have to be so many left: how many are read in all is known when they are taken.
+    /// Returns the next bytes. There must be as many left, as the caller took all that it reads.
     #[inline]
     fn next<const N: usize>(&mut self) -> [u8; N] {
         let (next, rest) = self.bytes.split_first_chunk().expect("as many words as were taken");
@@ -41,7 +41,7 @@ impl<'a> Words<'a> {
         *next
     }
 
-    /// What was not read yet.
+    /// Returns the bytes that were not read yet.
     pub(super) fn left(&self) -> &'a [u8] {
         self.bytes
     }
@@ -50,13 +50,13 @@ impl<'a> Words<'a> {
         self.bytes = &self.bytes[size..];
     }
 
-    /// gmsh's `int`.
+    /// Reads gmsh's `int`.
     #[inline]
     pub(super) fn int(&mut self) -> i32 {
         self.order.i32(self.next())
     }
 
-    /// An `int` that cannot be negative, called `what` in messages.
+    /// Reads an `int` that must not be negative, called `what` in messages.
     #[inline]
     pub(super) fn natural(
         &mut self,
@@ -69,18 +69,18 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// gmsh's `size_t`.
+    /// Reads gmsh's `size_t`.
     #[inline]
     pub(super) fn size(&mut self) -> u64 {
         self.order.u64(self.next())
     }
 
-    /// A number of double precision.
+    /// Reads a number of double precision.
     pub(super) fn double(&mut self) -> f64 {
         self.order.f64(self.next())
     }
 
-    /// Reads x, y and z of a node. What is wrong with z is no harm.
+    /// Reads x, y and z of a node. z need not be finite.
     #[inline]
     pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {
         let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
@@ -94,7 +94,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads gmsh's mark of the byte order, an `int` of one.
+/// Reads gmsh's mark of the byte order, the `int` 1.
 pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<Order, ReadError> {
     match cursor.take(4) {
         Some([1, 0, 0, 0]) => Ok(Order::Little),

@@ -1,8 +1,8 @@
 //! PLY, as text and in binary of either byte order.
 //!
-//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. Of the vertices x and y are
-//! read, of the faces `vertex_indices` (or `vertex_index`), of edges `vertex1` and `vertex2`; other elements and properties are
-//! passed over. Coordinates of the type `float` are of single precision in text too.
+//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. These are read: x, y
+//! and data of vertices, `vertex_indices` or `vertex_index` of faces, `vertex1` and `vertex2` of edges. Other elements
+//! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
 use crate::error::ReadError;
 use crate::file::binary::Order;
@@ -28,10 +28,10 @@ enum Number {
     Double,
 }
 
-/// What each item of a list of the file has.
+/// A property that each item of a list has.
 struct Property<'a> {
     name: &'a [u8],
-    /// The type of the length of a list.
+    /// The type of the length, if the property is a list.
     length: Option<Number>,
     number: Number,
 }
@@ -42,7 +42,7 @@ struct List<'a> {
     properties: Vec<Property<'a>>,
 }
 
-/// Reads items, as text or in binary.
+/// The form of items: text, or binary in a byte order.
 #[derive(Clone, Copy)]
 struct Items {
     order: Option<Order>,
@@ -147,7 +147,7 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
         b"ushort" | b"uint16" => integer(2, false),
         b"int" | b"int32" => integer(4, true),
         b"uint" | b"uint32" => integer(4, false),
-        // meshio writes these of numpy's arrays.
+        // meshio writes these types for numpy's arrays.
         b"int64" => integer(8, true),
         b"uint64" => integer(8, false),
         b"float" | b"float32" => Ok(Number::Float),
@@ -157,7 +157,7 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
 }
 
 impl Property<'_> {
-    /// How many digits its numbers have, if they are single real numbers.
+    /// Returns the precision of the property's numbers, if it is a single real number.
     fn precision(&self) -> Option<Precision> {
         match self.number {
             _ if self.length.is_some() => None,
@@ -168,10 +168,10 @@ impl Property<'_> {
     }
 }
 
-/// The properties of vertices besides coordinates, each of one number.
+/// The properties of vertices besides coordinates that are single numbers.
 struct Data<'l, 'a> {
     properties: Vec<(usize, &'l Property<'a>)>,
-    /// The numbers of each and where they stand, if the sink asks for data.
+    /// The numbers of each property and their offsets, if the sink asks for data.
     numbers: Option<Vec<(Vec<f64>, Vec<usize>)>>,
 }
 
@@ -186,7 +186,7 @@ impl<'l, 'a> Data<'l, 'a> {
         Data { properties, numbers }
     }
 
-    /// Takes the numbers of the next vertex.
+    /// Takes the data of the next vertex.
     fn see(&mut self, values: &[Vec<f64>], at: &[usize]) {
         let Some(numbers) = &mut self.numbers else { return };
         for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
@@ -224,7 +224,7 @@ impl Number {
 }
 
 impl Items {
-    /// How real numbers stand in the file.
+    /// Returns how real numbers are stored in the file.
     fn form(self, precision: Precision) -> Form {
         match self.order {
             None => Form::Text(precision),
@@ -232,7 +232,7 @@ impl Items {
         }
     }
 
-    /// Hands all numbers of each item, from one of them on, to `take`, with the places of the first number of each property.
+    /// Hands the numbers of each item to `take`, from item `from` on, with the offset of each property's first number.
     fn each<'a>(
         self,
         cursor: &mut Cursor<'a>,
@@ -240,7 +240,7 @@ impl Items {
         from: u64,
         mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
-        // There is nothing of them in the file, however many there are.
+        // Items without properties take no room in the file, so their count cannot be checked.
         if list.properties.is_empty() {
             return Ok(());
         }
@@ -278,7 +278,7 @@ impl Items {
             });
             match taken {
                 Ok(()) => is_plain |= missing.is_none(),
-                // Where a single row of many lacks a number, the next ones are read wrongly.
+                // If one row among many lacks a number, the rows after it are read wrongly.
                 Err(error) if is_plain => return Err(missing.unwrap_or(error)),
                 Err(error) => return Err(error),
             }
@@ -286,7 +286,7 @@ impl Items {
         Ok(())
     }
 
-    /// Reads a number. Returns it, and where it starts. `item` becomes where the first number of an item in binary starts.
+    /// Reads a number. Returns it with its offset. `item` is set to the offset of a binary item's first number.
     fn value(
         self,
         cursor: &mut Cursor<'_>,
@@ -296,7 +296,7 @@ impl Items {
         let Some(order) = self.order else {
             let at = cursor.at();
             let value = cursor.real("a number of an item")?;
-            // Programs write what they could not compute as nan.
+            // Programs write `nan` for a number that they could not compute.
             if matches!(number, Number::Integer { .. }) && !value.is_finite() {
                 return Err(cursor.error("a whole number of an item is not finite", CORRECT));
             }
@@ -371,7 +371,7 @@ impl Items {
         })
     }
 
-    /// Reads elements whose corners are the numbers of the properties of these names.
+    /// Reads elements whose corners are the properties with these names.
     fn elements(
         self,
         cursor: &mut Cursor<'_>,
@@ -387,7 +387,7 @@ impl Items {
         self.each(cursor, list, tag, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
-            // No vertex has a number that is negative, or not whole.
+            // A number that is negative or not whole is no number of a vertex.
             let node = |&corner: &f64| match corner >= 0.0 && corner.fract() == 0.0 {
                 true => corner as u64,
                 false => u64::MAX,

@@ -1,4 +1,4 @@
-//! Lists of a PLY that are read on all threads, as far as they are plain.
+//! Reads lists of a PLY on all threads, as long as they are plain.
 
 use super::{Items, List, Number, Property};
 use crate::file::heights::Heights;
@@ -8,8 +8,8 @@ use crate::file::sink::{Element, Kind, Sink, nodes};
 use crate::file::text::{CORRECT, Cursor};
 
 impl Items {
-    /// Hands on the first vertices as far as they are plain, if each has as many numbers. `x` and `z` are the
-    /// places of properties. Returns how many there are.
+    /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are
+    /// indices of properties. Returns how many vertices were taken.
     pub(super) fn plain_vertices(
         self,
         cursor: &mut Cursor<'_>,
@@ -47,7 +47,7 @@ impl Items {
         taken as u64
     }
 
-    /// Hands on the first elements as far as they are triangles. Returns how many there are.
+    /// Hands on the first elements as long as they are triangles. Returns how many were taken.
     pub(super) fn plain_triangles(
         self,
         cursor: &mut Cursor<'_>,
@@ -58,7 +58,7 @@ impl Items {
         let properties = &list.properties;
         let size = |property: &Property<'_>| match property.length {
             None => property.number.size(),
-            // A list of three.
+            // The bytes of a list of three numbers.
             Some(length) => length.size() + 3 * property.number.size(),
         };
         let is_list = |property: &Property<'_>| property.length.is_some();
@@ -80,7 +80,7 @@ impl Items {
         };
         let stride = properties.iter().map(size).sum::<usize>();
         let at = properties[..corners].iter().map(size).sum::<usize>();
-        // Where some have other lengths than triangles, there need not be so many bytes; then none is plain.
+        // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
         let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
         let field =
             |at: usize, number: Number| Field::new(bytes.get(at..), (stride, number.size()), order);
@@ -97,7 +97,8 @@ impl Items {
     }
 }
 
-/// Reads vertices of text, whose first properties are x and y, on all threads, as far as they are plain. Returns how many there are.
+/// Reads vertices of text whose first properties are x and y, on all threads, as long as they are plain. Returns how
+/// many were taken.
 fn vertices_of_text(
     cursor: &mut Cursor<'_>,
     list: &List<'_>,
@@ -136,7 +137,7 @@ fn vertices_of_text(
     taken
 }
 
-/// Reads elements of text on all threads, as far as they are triangles.
+/// Reads elements of text on all threads, as long as they are triangles. Returns how many were taken.
 fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> u64 {
     if !sink.takes_ahead() || sink.asks_for_data() {
         return 0;

@@ -1,4 +1,4 @@
-//! Cells of VTK by their types.
+//! Cells of VTK, by the numbers of their types.
 
 use crate::error::ReadError;
 use crate::file::records::{Expected, Field, LONG, Region, TriangleRecords};
@@ -7,20 +7,20 @@ use crate::file::text::{CORRECT, Cursor};
 use crate::file::whole::Whole;
 use std::ops::Range;
 
-/// A cell, as VTK's formats have it.
+/// A cell of one of VTK's formats.
 #[derive(Clone, Copy)]
 pub(in crate::file) struct Cell<'a> {
-    /// Its position.
+    /// The position of the cell in the file.
     pub(in crate::file) tag: u64,
-    /// The number of its type in VTK.
+    /// VTK's number for the type of the cell.
     pub(in crate::file) cell_type: u64,
     pub(in crate::file) points: &'a [u64],
     pub(in crate::file) region: [i64; 2],
 }
 
 impl Cell<'_> {
-    /// Hands the cell to the sink. Of cells that are neither triangles nor have a kind of their own, such as polylines and
-    /// polygons of more corners, the points stay fixed.
+    /// Hands the cell to the sink. The points of cells without a kind of their own, such as polylines and polygons of
+    /// more than four corners, stay fixed.
     pub(in crate::file) fn send(
         &self,
         cursor: &Cursor<'_>,
@@ -44,18 +44,19 @@ impl Cell<'_> {
     }
 }
 
-/// Cells from a triangle on, of which as many are handed on at once as are triangles.
+/// The cells from a triangle on. Those up to the next cell of another kind are handed on at once.
 pub(in crate::file) struct Triangles<'a> {
-    /// How many cells there are from there on.
+    /// How many cells there are from the first triangle on.
     pub(in crate::file) count: usize,
-    /// The points of all cells, and where those of the triangle stand.
+    /// The points of all cells, and the range of the first triangle's points.
     pub(in crate::file) numbers: &'a Whole<'a>,
     pub(in crate::file) own: Range<usize>,
-    /// Where the points of the triangle and those after it end. If none, the number of its points stands before each cell.
+    /// The ends of the cells' points, from the first triangle on. `None` if each cell's number of points stands before
+    /// its points.
     pub(in crate::file) ends: Option<Field<'a>>,
-    /// The types of the triangle and of those after it, if they are not all polygons.
+    /// The types of the cells from the first triangle on. `None` if all are polygons.
     pub(in crate::file) types: Option<Field<'a>>,
-    /// What is added to the number of a point, which has to be less than the second number before.
+    /// A number that is added to each point, and a bound that each point must be less than.
     pub(in crate::file) points: (u64, u64),
     pub(in crate::file) regions: [Region<'a>; 2],
 }
@@ -87,7 +88,7 @@ impl Triangles<'_> {
     }
 }
 
-/// When to hand on many triangles at once: not too often where they are few among others.
+/// Decides when to try to hand on many triangles at once: rarely if they are few among other cells.
 pub(in crate::file) struct Tries {
     left: usize,
     next: usize,
@@ -100,15 +101,15 @@ impl Tries {
         self.left > 0 && cell >= self.next
     }
 
-    /// Takes notice of a try at a cell, and of how many were handed on.
+    /// Records a try at a cell, and how many triangles were handed on.
     pub(in crate::file) fn done(&mut self, cell: usize, taken: usize) {
         self.left -= 1;
         self.next = cell + taken + LONG;
     }
 }
 
-/// The kind of a cell by its type in VTK. It is that of a single vertex for cells of any number of points, which only
-/// are to stay fixed.
+/// Returns the kind of a cell by VTK's number of its type. For cells of any number of points that stay fixed, it is
+/// that of a single point.
 fn kind_of(
     cursor: &Cursor<'_>,
     tag: u64,

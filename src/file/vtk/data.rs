@@ -1,5 +1,5 @@
-//! Data of points and cells of a legacy VTK file: what names the regions of cells is read, and what of points the sink
-//! wants; the rest is passed over.
+//! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the sink wants, are read.
+//! Others are skipped.
 
 use crate::file::binary::Order;
 use crate::file::heights::TextNumbers;
@@ -12,8 +12,8 @@ use crate::file::vtk::take;
 use crate::mesh::Precision;
 use std::borrow::Cow;
 
-/// Names of arrays by which programs tell the regions of cells, in lower case: gmsh and meshio, VTK's own readers, and
-/// what solvers call materials.
+/// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own
+/// readers, and of solvers, which call regions materials.
 const REGIONS: [&[u8]; 18] = [
     b"gmsh:physical",
     b"gmsh:geometrical",
@@ -35,32 +35,32 @@ const REGIONS: [&[u8]; 18] = [
     b"reference",
 ];
 
-/// Whether an array of cell data of this name tells the cells' regions.
+/// Whether an array of cell data with this name tells the regions of cells.
 pub(in crate::file) fn names_regions(name: &[u8]) -> bool {
     REGIONS.contains(&name.to_ascii_lowercase().as_slice())
 }
 
-/// How many arrays tell regions at most.
+/// The most arrays that tell regions.
 const MOST: usize = 2;
 
-/// An array of cell data that tells regions.
+/// An array of cell data that tells the regions of cells.
 pub(super) struct Regions {
     name: String,
-    /// For each cell what its number is told apart by: the number, or the bits of a number that may have a fraction.
+    /// The number of each cell's region, or the bits of the number if the array has real numbers.
     pub(super) names: Vec<i64>,
-    /// The label that one of them stands for.
+    /// Returns the label that a number or its bits stand for.
     label: fn(i64) -> Option<Label>,
 }
 
 impl Regions {
-    /// What the region of a cell tells.
+    /// Returns the meaning of the array's numbers.
     pub(super) fn column(&self) -> Column {
         Column { what: self.name.clone(), from_dimension: 0, label: self.label }
     }
 }
 
-/// The regions of cells by the first two arrays that name any, from a POINT_DATA or CELL_DATA that was just read. Data that
-/// are damaged or unknown end the search without an error: the mesh does not depend on them.
+/// Reads the regions of cells by the first two arrays that tell them, after a POINT_DATA or CELL_DATA that was just
+/// read. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
 pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -90,7 +90,7 @@ struct Data<'s> {
 }
 
 impl Data<'_> {
-    /// Reads one attribute.
+    /// Reads one attribute. `None` if it is damaged or unknown.
     fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
         let keyword = cursor.token()?.to_ascii_uppercase();
         match keyword.as_slice() {
@@ -152,7 +152,7 @@ impl Data<'_> {
         Some(())
     }
 
-    /// Reads an array if it names regions or is wanted, and passes over it if not.
+    /// Reads an array if it tells regions or is wanted, else skips it.
     fn array(
         &mut self,
         cursor: &mut Cursor<'_>,
@@ -189,7 +189,7 @@ impl Data<'_> {
         let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
         if self.binary {
             let size = size_of(kind)?;
-            // Numbers that are not whole are names as good as any, by their bits.
+            // Real numbers are told apart by their bits.
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
             names.extend(numbers.map(|number| Order::Big.signed(number)));
             label = label_of(kind);
@@ -197,7 +197,7 @@ impl Data<'_> {
             for _ in 0..tuples {
                 cursor.next_word().then_some(())?;
                 let number = cursor.coordinate('r', "a region").ok()?;
-                // Adding zero takes the sign off a negative zero.
+                // Adding zero makes a negative zero positive.
                 names.push((number + 0.0).to_bits().cast_signed());
             }
         }
@@ -228,7 +228,7 @@ impl Data<'_> {
     }
 }
 
-/// How many digits numbers of this type have, if they are real.
+/// Returns the precision of numbers of this type, if they are real.
 fn precision_of(kind: &[u8]) -> Option<Precision> {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => Some(Precision::Single),
@@ -237,7 +237,7 @@ fn precision_of(kind: &[u8]) -> Option<Precision> {
     }
 }
 
-/// A name with the bytes that VTK writes as a percent sign and two digits.
+/// Decodes the bytes of a name that VTK writes as a percent sign and two hexadecimal digits.
 fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
     if !name.contains(&b'%') {
         return Cow::Borrowed(name);
@@ -265,7 +265,7 @@ fn number_of_bits(bits: i64) -> Option<Label> {
     Some(Label::number(f64::from_bits(bits.cast_unsigned())))
 }
 
-/// The label of a number of this type, from its bits read as a whole number with a sign.
+/// Returns a function from the bits of a number of this type, as a signed whole number, to its label.
 fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| Some(Label::number(f64::from(f32::from_bits(bits as u32)))),
@@ -277,7 +277,7 @@ fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
     }
 }
 
-/// The value of a number of this type, from its bits read as a whole number with a sign.
+/// Returns a function from the bits of a number of this type, as a signed whole number, to its value.
 fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| f64::from(f32::from_bits(bits as u32)),

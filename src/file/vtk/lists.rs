@@ -13,23 +13,23 @@ use crate::file::token::quoted;
 use crate::file::whole::Whole;
 use std::ops::Range;
 
-/// The numbers of a list of cells.
+/// A list of cells.
 pub(super) struct Cells<'a> {
     pub(super) count: usize,
-    /// The points of all cells; where there are no offsets, the number of its points stands before those of each cell.
+    /// The points of all cells. Without offsets, each cell's number of points stands before its points.
     numbers: Whole<'a>,
-    /// Where the points of each cell start, and where those of the last end.
+    /// The start of each cell's points, and the end of the last one's.
     offsets: Option<Whole<'a>>,
-    /// The type of each cell; None for polygonal data.
+    /// The type of each cell. `None` for polygonal data.
     pub(super) types: Option<Whole<'a>>,
     kind: List,
-    /// Where the first cell starts.
+    /// The cursor at the first cell.
     first: Cursor<'a>,
-    /// How many bytes a number has, if they are binary.
+    /// The bytes of a binary number. `None` for text.
     width: Option<usize>,
 }
 
-/// What a list of cells holds.
+/// The kind of a list of cells.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum List {
     /// Cells of the types that CELL_TYPES lists.
@@ -37,11 +37,11 @@ pub(super) enum List {
     Polygons,
     Strips,
     Lines,
-    /// Points.
+    /// Points (VERTICES).
     Others,
 }
 
-/// Reads a list of whole numbers, of so many bytes each if they are binary.
+/// Reads a list of `count` whole numbers, of `size` bytes each. `None` for text.
 pub(super) fn integers<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -69,9 +69,9 @@ pub(super) fn integers<'a>(
     }
 }
 
-/// Reads the numbers of the rows that follow on all threads, as long as they are plain and no more than are wanted.
+/// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
 fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
-    /// Rows of more numbers, or of numbers of more than 32 bits, are left to be read one by one.
+    /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
     const MOST: usize = 10;
     let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
         let mut row = ([0; MOST], 0);
@@ -94,13 +94,13 @@ fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
         fits
     });
     if done > 0 {
-        // It stands on the last row, before its words, which were read.
+        // The cursor stands on the last row, before its words, which were read.
         cursor.rest();
     }
 }
 
-/// Reads a list of cells: for each the number of its points and these, or from version 5 on where each starts, and all
-/// points.
+/// Reads a list of cells. Before version 5, it has each cell's number of points and its points. From version 5 on, it
+/// has the offset of each cell and then all points.
 pub(super) fn read<'a>(
     cursor: &mut Cursor<'a>,
     binary: bool,
@@ -146,7 +146,7 @@ pub(super) fn read<'a>(
     Ok(Cells { count, numbers, offsets: None, types: None, kind, first, width })
 }
 
-/// Where the numbers start that are read next.
+/// Returns a cursor at the numbers that are read next.
 fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     match binary {
         true => Cursor::at_byte_of(cursor.source, cursor.at_byte()),
@@ -154,7 +154,7 @@ fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     }
 }
 
-/// The size of a number of the type that the row names.
+/// Returns the size of a number of the type in this row, in bytes.
 fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
     match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
         b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" => Ok(8),
@@ -167,7 +167,7 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 impl Cells<'_> {
-    /// Hands the cells to the sink. `tag` is that of the first one, and becomes that of the first one of the next list.
+    /// Hands the cells to the sink. `tag` is that of the first cell, and becomes that of the next list's first cell.
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
@@ -179,7 +179,7 @@ impl Cells<'_> {
         if self.kind == List::Cells && self.types.is_none() && self.count > 0 {
             return Err(cursor.error("CELLS without CELL_TYPES", CUT_OFF));
         }
-        // Where each cell stands is looked for only by those who use it.
+        // The location of a cell is found only for a sink that uses it.
         let mut place = self.first.clone();
         let mut tries = Tries::NEW;
         let (mut index, mut end) = (0, 0);
@@ -223,7 +223,7 @@ impl Cells<'_> {
         Ok(())
     }
 
-    /// The triangles from a cell of three points on.
+    /// Returns the triangles from a cell of three points on.
     fn triangles<'c>(
         &'c self,
         index: usize,
@@ -251,7 +251,7 @@ impl Cells<'_> {
         })
     }
 
-    /// Where the points of a cell stand, those of the cell before it ending at `end`.
+    /// Returns the range of a cell's points. `end` is the end of the previous cell's points.
     fn points(&self, index: usize, end: usize) -> Range<usize> {
         match &self.offsets {
             Some(offsets) => offsets.at(index) as usize..offsets.at(index + 1) as usize,
@@ -259,19 +259,19 @@ impl Cells<'_> {
         }
     }
 
-    /// The type of a cell. Polygonal data has none: as if they were polygons, strips, and lists of points and lines.
+    /// Returns the type of a cell. Polygonal data has no types; its lists are of polygons, strips, lines and points.
     fn cell_type(&self, index: usize) -> u64 {
         match (&self.types, self.kind) {
             (Some(types), _) => types.at(index),
             (None, List::Polygons) => 7,
             (None, List::Strips) => 6,
-            // A list of lines, or one of points.
+            // A polyline, and a group of points.
             (None, List::Lines) => 4,
             (None, _) => 2,
         }
     }
 
-    /// Moves from the first cell to one of the others.
+    /// Moves from the first cell to another one.
     #[cold]
     fn stand_before(&self, place: &mut Cursor<'_>, index: usize) {
         let mut end = 0;
@@ -283,14 +283,14 @@ impl Cells<'_> {
         self.stand(place);
     }
 
-    /// Moves to where the next cell starts, past what stands before it in text.
+    /// Moves to the start of the next cell, over blanks in text.
     fn stand(&self, place: &mut Cursor<'_>) {
         if self.width.is_none() {
             place.next_word();
         }
     }
 
-    /// Moves from the start of a cell of so many points to that of the next.
+    /// Moves from the start of a cell with this many points to its end.
     fn pass(&self, place: &mut Cursor<'_>, points: usize) {
         let numbers = points + usize::from(self.offsets.is_none());
         match self.width {

@@ -1,8 +1,8 @@
 //! VTK's legacy `.vtk`: unstructured grids and polygonal data, as text and in binary.
 //!
-//! The format: <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>, versions 1.0 to 5.1. Binary numbers are
-//! big-endian. Points of the type `float` are read and written in single precision in text too, as VTK itself reads
-//! them. Of the data, arrays are read that name the cells' regions.
+//! The format: <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>, versions 1.0 to 5.1. Binary
+//! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK reads them so. Arrays
+//! that name the cells' regions are read with the mesh, other data when they are asked for.
 
 mod cells;
 mod data;
@@ -49,7 +49,7 @@ impl Walk for Vtk {
         let mut heights = None;
         let mut regions: Vec<Regions> = Vec::new();
         while cursor.next_word() {
-            // VTK does not tell small letters from capitals.
+            // VTK ignores the case of keywords.
             let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
             match keyword.as_slice() {
                 b"DATASET" => dataset(cursor)?,
@@ -88,7 +88,7 @@ impl Walk for Vtk {
                     sink.leaves_out("field data");
                     passed::pass_field(cursor, binary)?;
                 }
-                // Data of points and cells, to the end of the file.
+                // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
                     regions = data::regions(cursor, binary, &keyword, sink);
                     break;
@@ -134,7 +134,7 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
     }
 }
 
-/// Reads the points, of three coordinates each. Returns how many digits they have.
+/// Reads the points, of three coordinates each. Returns their precision.
 fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -174,7 +174,7 @@ fn points(
         return Ok(precision);
     }
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
-    // One point a row, or else the numbers are broken into lines anywhere.
+    // If points are not one in each row, their numbers may be broken into lines anywhere.
     let mut rest = cursor.clone();
     let mut done = 0;
     let plain = each_row(
@@ -227,7 +227,7 @@ fn finite(cursor: &Cursor<'_>, point: [f64; 2]) -> Result<[f64; 2], ReadError> {
     }
 }
 
-/// Takes so many items of so many bytes. The line that announced them has to be read to its end.
+/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
 fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Result<&'a [u8], ReadError> {
     let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
     let problem = format!("the file ends before {count} items of {size} bytes");

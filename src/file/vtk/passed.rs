@@ -1,11 +1,11 @@
-//! Arrays of a legacy VTK file that are passed over.
+//! Skips arrays of a legacy VTK file.
 
 use crate::error::ReadError;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::file::token::quoted;
 use crate::file::vtk::take;
 
-/// Passes over an array of so many numbers, bits or strings.
+/// Skips an array of `count` numbers, bits or strings.
 pub(super) fn pass(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -15,7 +15,7 @@ pub(super) fn pass(
     let kind = kind.to_ascii_lowercase();
     match (kind.as_slice(), binary) {
         (b"string" | b"utf8_string", true) => strings(cursor, count),
-        // One a line, which may be empty.
+        // One string in each line, which may be empty.
         (b"string" | b"utf8_string", false) => each(cursor, count, |c| c.line().is_some()),
         (_, false) => each(cursor, count, |c| c.next_word() && c.token().is_some()),
         (b"bit", true) => take(cursor, count.div_ceil(8), 1).map(|_| ()),
@@ -40,7 +40,7 @@ fn each<'a>(
     }
 }
 
-/// Passes over strings in binary. Before each stands its length, whose first two bits tell of how many bytes it is.
+/// Skips binary strings. Each has its length before it, whose first two bits give the bytes of the length.
 fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
     for _ in 0..count {
         let first = take(cursor, 1, 1)?[0];
@@ -53,7 +53,7 @@ fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// How many bytes a number of this type has.
+/// Returns the bytes of a number of this type.
 pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     match kind.to_ascii_lowercase().as_slice() {
         b"char" | b"unsigned_char" | b"signed_char" => Some(1),
@@ -65,7 +65,7 @@ pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     }
 }
 
-/// Reads the name of an array, and before it what describes the array before.
+/// Reads the name of an array, after skipping the metadata of the array before.
 pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
     loop {
         let name = cursor.token()?;
@@ -77,7 +77,7 @@ pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
     }
 }
 
-/// Passes over the arrays of a field of the dataset.
+/// Skips the arrays of a field of the dataset.
 pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
     cursor.token();
     let arrays = cursor.integer("the number of arrays of a field")?;

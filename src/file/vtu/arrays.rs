@@ -1,4 +1,4 @@
-//! Arrays of a VTK XML file as numbers.
+//! Reads arrays of a VTK XML file as numbers.
 
 use super::blocks::{Unwrapped, Wrapping};
 use super::document::{Array, Coding, Document};
@@ -15,7 +15,7 @@ use crate::mesh::Precision;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A file with what its tags say.
+/// A file, with the content of its tags.
 pub(super) struct File<'a> {
     pub(super) source: &'a Source,
     pub(super) document: Document,
@@ -23,7 +23,7 @@ pub(super) struct File<'a> {
 }
 
 impl File<'_> {
-    /// The array of a section of a piece, by its name where it is not alone.
+    /// Returns the array of a section of a piece. `name` is needed if the section has several.
     pub(super) fn array(
         &self,
         piece: usize,
@@ -48,7 +48,7 @@ impl File<'_> {
         self.source.error_at(place, problem, CUT_OFF)
     }
 
-    /// The bytes of an encoded array, how they are wrapped, and where.
+    /// Decodes an array. Returns its wrapping, its bytes, and their range in the file.
     pub(super) fn unwrap(
         &self,
         array: &Array,
@@ -73,7 +73,7 @@ impl File<'_> {
         Ok((wrapping, found, range))
     }
 
-    /// The whole numbers of an array.
+    /// Reads the whole numbers of an array as unsigned.
     pub(super) fn integers(&self, array: &Array) -> Result<Whole<'_>, ReadError> {
         if array.format == Coding::Ascii {
             let mut numbers = Whole::with_capacity(array.content.len() / 8);
@@ -88,7 +88,7 @@ impl File<'_> {
         Ok(Whole::binary(found.bytes, size, wrapping.order))
     }
 
-    /// The same with their signs.
+    /// Reads the whole numbers of an array as signed.
     pub(super) fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
         if array.format == Coding::Ascii {
             return self.words(array, |cursor| cursor.signed("a number"));
@@ -102,7 +102,7 @@ impl File<'_> {
         Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.signed(number)).collect())
     }
 
-    /// The numbers of an array of any type.
+    /// Reads the numbers of an array of any type.
     pub(super) fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
         let precision = precision_of(array);
         if array.format == Coding::Ascii {
@@ -132,7 +132,7 @@ impl File<'_> {
         let numbers = old.bytes.chunks_exact(stride);
         let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
         let form = Form::Binary(wrapping.order, precision);
-        // Raw bytes are replaced in place, all others encoded again.
+        // Raw bytes can be replaced in place. All others are encoded again.
         let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
             true => (range.end - old.bytes.len(), Home::File),
             false => {
@@ -145,7 +145,7 @@ impl File<'_> {
         Ok(PointNumbers { numbers, nodes: None, stored })
     }
 
-    /// The words of an array written as text.
+    /// Reads the words of an array of text.
     fn words<T>(
         &self,
         array: &Array,
@@ -159,7 +159,7 @@ impl File<'_> {
         Ok(words)
     }
 
-    /// How many bytes a whole number of an array has.
+    /// Returns the bytes of a whole number of an array.
     fn size_of_integer(&self, array: &Array) -> Result<usize, ReadError> {
         match array.number.as_str() {
             "Int8" | "UInt8" => Ok(1),
@@ -175,7 +175,7 @@ impl File<'_> {
     }
 }
 
-/// How many digits the numbers of an array have, if they are real.
+/// Returns the precision of an array's numbers, if they are real.
 pub(super) fn precision_of(array: &Array) -> Option<Precision> {
     match array.number.as_str() {
         "Float32" => Some(Precision::Single),

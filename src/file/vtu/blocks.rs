@@ -1,4 +1,4 @@
-//! Arrays of a VTK XML file as bytes: base64, and blocks that are compressed.
+//! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
 
 use crate::file::binary::Order;
 use crate::parallel::map_parts;
@@ -9,48 +9,48 @@ use flate2::read::{ZlibDecoder, ZlibEncoder};
 use std::borrow::Cow;
 use std::io::Read;
 
-/// How blocks are compressed.
+/// The compression of blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
-/// How the bytes of an array are wrapped.
+/// How the bytes of an array are encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrapping {
     pub(super) order: Order,
-    /// How many bytes a number of the header has.
+    /// The bytes of a number in the header.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) base64: bool,
 }
 
-/// An array that was unwrapped.
+/// A decoded array, with what is needed to encode it again.
 pub(super) struct Unwrapped<'a> {
-    /// Those of the file itself, if it has them as they are.
+    /// The decoded bytes; those of the file itself, if they are not encoded.
     pub(super) bytes: Cow<'a, [u8]>,
-    /// How many bytes of the file it took.
+    /// How many bytes of the file the array takes.
     pub(super) taken: usize,
-    /// The size of a block before compression; 0 if there is none.
+    /// The size of a block before compression; 0 without blocks.
     block: usize,
-    /// Whether the length of an array that is not compressed is in base64 apart from its content.
+    /// Whether an uncompressed array has its length in a base64 text of its own.
     header_apart: bool,
 }
 
 impl<'a> Unwrapped<'a> {
-    /// The bytes, and all else without them.
+    /// Separates the bytes from the rest.
     pub(super) fn split(self) -> (Cow<'a, [u8]>, Unwrapped<'static>) {
         let Unwrapped { bytes, taken, block, header_apart } = self;
         (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
     }
 }
 
-/// The most bytes that a compressed one may stand for. More is no compressor's work; counts that say so are wrong.
+/// The most bytes that one compressed byte may stand for. No compressor reaches this, so counts beyond it are wrong.
 const MOST: usize = 1100;
 
 impl Wrapping {
-    /// The bytes of the array that starts `input`. None if they are damaged or end too early.
+    /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
     pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
         match self.compressor {
             None => self.unwrap_plain(input),
@@ -66,7 +66,7 @@ impl Wrapping {
             return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
         }
         let apart = encoded(self.header);
-        // As much padding as the header alone has; with a few bytes after it there is less.
+        // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
         let padding = 3 - self.header % 3;
         let header_apart = input.get(apart - padding..apart)? == &b"=="[..padding];
         let first = decode(input.get(..apart)?)?;
@@ -89,7 +89,7 @@ impl Wrapping {
     ) -> Option<Unwrapped<'static>> {
         let counts = self.numbers(input, 3)?;
         let [blocks, size, last] = [counts[0], counts[1], counts[2]];
-        // As many numbers follow as there are blocks.
+        // The header has another number for each block.
         let counts = self.numbers(input, blocks.checked_add(3)?)?;
         let header = self.header * counts.len();
         let compressed: usize = counts[3..].iter().try_fold(0_usize, |a, &b| a.checked_add(b))?;
@@ -122,7 +122,7 @@ impl Wrapping {
         Some(Unwrapped { bytes: bytes.into(), taken, block: size, header_apart: true })
     }
 
-    /// Wraps new bytes as those of `old` were wrapped.
+    /// Encodes new bytes as those of `old` were encoded.
     pub(super) fn wrap(&self, old: &Unwrapped<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
@@ -144,7 +144,7 @@ impl Wrapping {
         }
     }
 
-    /// The first numbers of a header that stands apart.
+    /// Reads the first `count` numbers of a header that is encoded alone.
     fn numbers(&self, input: &[u8], count: usize) -> Option<Vec<usize>> {
         let length = count.checked_mul(self.header)?;
         let decoded;
@@ -171,12 +171,12 @@ impl Wrapping {
     }
 }
 
-/// The length of so many bytes in base64.
+/// Returns the length of this many bytes in base64.
 fn encoded(bytes: usize) -> usize {
     bytes.div_ceil(3).saturating_mul(4)
 }
 
-/// The bytes of a text in base64. The text may be longer than its padding says, where the header is not apart.
+/// Decodes base64.
 fn decode(text: &[u8]) -> Option<Vec<u8>> {
     STANDARD.decode(text).ok()
 }

@@ -1,4 +1,4 @@
-//! The cells of a VTK XML file and the data of points and cells, piece by piece.
+//! The cells and data of a VTK XML file, piece by piece.
 
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
@@ -9,12 +9,12 @@ use crate::file::text::{CORRECT, Cursor};
 use crate::file::vtk;
 use crate::file::whole::Whole;
 
-/// How many arrays tell regions at most.
+/// The most arrays that tell regions.
 const MOST: usize = 2;
 
 /// The types of the cells of a list.
 enum Types<'a> {
-    /// The same for all.
+    /// The same type for all cells.
     Same(u64),
     Listed(Whole<'a>),
 }
@@ -22,10 +22,10 @@ enum Types<'a> {
 /// A list of cells of a piece.
 struct List<'a> {
     connectivity: Whole<'a>,
-    /// Where the points of each cell end.
+    /// The end of each cell's points in `connectivity`.
     offsets: Whole<'a>,
     types: Types<'a>,
-    /// Where it stands, for messages.
+    /// The offset of the list in the file, for messages.
     at: usize,
 }
 
@@ -112,12 +112,12 @@ impl File<'_> {
         Ok(())
     }
 
-    /// The lists of cells of a piece.
+    /// Reads the lists of cells of a piece.
     fn lists(&self, piece: usize) -> Result<Vec<List<'_>>, ReadError> {
         let announced = &self.document.pieces[piece];
         let sections: &[(&str, Option<u64>)] = match self.document.content {
             Content::Grid => &[("Cells", None)],
-            // The type of all cells of a section.
+            // The sections of polygonal data, with the type of their cells.
             Content::Polygons => {
                 &[("Verts", Some(2)), ("Lines", Some(4)), ("Strips", Some(6)), ("Polys", Some(7))]
             }
@@ -157,8 +157,8 @@ impl File<'_> {
         Ok(lists)
     }
 
-    /// The names of the first arrays that tell regions. Damaged data are no reason to refuse a mesh that does not depend on
-    /// them.
+    /// Returns the names of the first arrays that tell regions. Damaged arrays are ignored, as the mesh does not depend
+    /// on them.
     fn region_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for array in self.document.arrays.iter().filter(|array| tells_regions(array)) {
@@ -172,15 +172,15 @@ impl File<'_> {
         names
     }
 
-    /// The regions of the cells of a piece by the array of this name.
+    /// Reads the regions of a piece's cells from the array with this name. Empty if there is none.
     fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
         let mut arrays = self.document.arrays.iter().filter(|array| tells_regions(array));
         let array = arrays.find(|array| array.piece == piece && array.name == name);
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
 
-    /// Hands the arrays of point data to the sink that it wants. Those that are damaged are passed over: the mesh does not
-    /// depend on them.
+    /// Hands the arrays of point data that the sink wants to it. Damaged ones are skipped, as the mesh does not depend
+    /// on them.
     pub(super) fn point_arrays(&self, sink: &mut dyn Sink) {
         let pieces = &self.document.pieces;
         let mut first = 0;
@@ -208,7 +208,7 @@ impl File<'_> {
         }
     }
 
-    /// Hands the arrays of data of some cells to the sink that it wants, but for those that tell regions.
+    /// Hands the arrays of cell data that the sink wants to it, except those that tell regions.
     fn cell_arrays(
         &self,
         piece: usize,

@@ -1,4 +1,4 @@
-//! The elements of a VTK XML file, and where they stand.
+//! The elements of a VTK XML file, and their offsets.
 
 use crate::error::{Location, ReadError};
 use crate::file::binary::Order;
@@ -11,48 +11,48 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;
 
-/// What the tags of a file say.
+/// The content of a file's tags.
 pub(super) struct Document {
     pub(super) order: Order,
-    /// How many bytes a number has that tells the length of a block.
+    /// The bytes of a number that gives the length of a block.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) content: Content,
-    /// The pieces of the mesh, those without points too.
+    /// The pieces of the mesh, including those without points.
     pub(super) pieces: Vec<Piece>,
     pub(super) arrays: Vec<Array>,
     pub(super) appended: Option<Appended>,
 }
 
-/// What a file holds.
+/// The kind of dataset that a file holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Content {
     Grid,
     Polygons,
 }
 
-/// How much a `Piece` holds.
+/// The sizes of a `Piece`.
 pub(super) struct Piece {
     pub(super) points: u64,
-    /// The number of cells; of polygonal data those of points, lines, strips and polygons.
+    /// The number of cells. For polygonal data: points, lines, strips and polygons.
     pub(super) cells: [u64; 4],
 }
 
 /// A `DataArray`.
 pub(super) struct Array {
-    /// The piece it stands in, or the last one before it.
+    /// The index of the array's piece, or of the last piece before it.
     pub(super) piece: usize,
-    /// The element it stands in: `Points`, `Cells`, `PointData` and so on.
+    /// The element around the array: `Points`, `Cells`, `PointData` and so on.
     pub(super) section: String,
     pub(super) name: String,
     pub(super) number: String,
     pub(super) components: u64,
     pub(super) format: Coding,
-    /// Where its text stands; empty if it is appended.
+    /// The range of the array's text; empty if it is appended.
     pub(super) content: Range<usize>,
-    /// Of an appended array, where it starts in the appended data and where the file says so.
+    /// For an appended array, its offset in the appended data, and the range of the file that gives the offset.
     pub(super) offset: Option<(usize, Range<usize>)>,
-    /// Where its tag starts.
+    /// The offset of the array's tag.
     pub(super) at: usize,
 }
 
@@ -64,15 +64,15 @@ pub(super) enum Coding {
     Appended,
 }
 
-/// The data at the end of the file.
+/// The appended data at the end of the file.
 #[derive(Clone, Copy)]
 pub(super) struct Appended {
-    /// Where it starts, after the underscore.
+    /// The offset of the data, after the underscore.
     pub(super) start: usize,
     pub(super) base64: bool,
 }
 
-/// The most elements that may stand in each other. VTK writes no more than seven; each takes some memory until its end.
+/// The most elements that may be nested. VTK nests no more than seven, and each takes memory until it ends.
 const DEEPEST: usize = 100;
 
 impl Document {
@@ -121,7 +121,7 @@ impl Document {
                         }
                         "AppendedData" => {
                             document.appended = Some(tag.appended(after)?);
-                            // What follows need not be XML.
+                            // The data after this tag need not be XML.
                             break;
                         }
                         _ => {}
@@ -144,7 +144,7 @@ impl Document {
         Ok(document)
     }
 
-    /// What the file says of the places of appended arrays.
+    /// Returns the offsets of appended arrays, as the file gives them.
     pub(super) fn offsets(&self) -> Vec<Offset> {
         let Some(appended) = self.appended else { return Vec::new() };
         let offset = |array: &Array| {
@@ -203,7 +203,7 @@ impl Document {
     }
 }
 
-/// A tag, and where it stands.
+/// A tag and its offset.
 struct Tag<'a> {
     source: &'a Source,
     at: usize,
@@ -278,7 +278,7 @@ impl Tag<'_> {
         })
     }
 
-    /// Where the value of an attribute stands, that the tag is known to have.
+    /// Returns the range of an attribute's value. The tag must have the attribute.
     fn place_of_value(&self, name: &str, after: usize) -> Result<Range<usize>, ReadError> {
         let tag = &self.source.bytes[self.at..after];
         let found = memchr::memmem::find_iter(tag, name).find_map(|at| {

@@ -1,4 +1,4 @@
-//! Arrays that are encoded, as base64 or compressed, and what they become with other numbers.
+//! Encoded arrays (base64 or compressed), and their encoding with new numbers.
 
 use super::blocks::{Unwrapped, Wrapping};
 use crate::file::numbers::{Encoded, Offset, Splice};
@@ -8,18 +8,18 @@ use std::sync::Arc;
 /// Arrays of points or of their data that are encoded, one for each piece of the mesh.
 pub(super) struct Encoding {
     parts: Vec<Part>,
-    /// The numbers of all of them.
+    /// The decoded bytes of all arrays, one after the other.
     bytes: Vec<u8>,
     offsets: Arc<[Offset]>,
 }
 
 struct Part {
     wrapping: Wrapping,
-    /// How it was wrapped, without its bytes.
+    /// How the array was encoded, without its bytes.
     old: Unwrapped<'static>,
-    /// Where it stands in the file.
+    /// The range of the array in the file.
     range: Range<usize>,
-    /// Its bytes among those of all.
+    /// The range of this array in the decoded bytes of all arrays.
     own: Range<usize>,
 }
 

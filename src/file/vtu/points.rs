@@ -1,4 +1,4 @@
-//! The points of a VTK XML file, piece by piece.
+//! Reads the points of a VTK XML file, piece by piece.
 
 use super::arrays::File;
 use super::blocks::{Unwrapped, Wrapping};
@@ -15,24 +15,24 @@ use crate::mesh::Precision;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How the points of all pieces stand in the file.
+/// How the points of all pieces are stored in the file.
 pub(super) struct Stored {
     pub(super) numbers: Numbers,
     pub(super) encoded: Option<Box<dyn Encoded>>,
 }
 
-/// The arrays of points read so far.
+/// The points read so far.
 struct Points<'s, 'f> {
     sink: &'s mut dyn Sink,
     heights: Heights,
-    /// How the numbers stand: the same in all pieces.
+    /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
     numbers: Option<(Numbers, bool)>,
     encoded: Vec<(Wrapping, Unwrapped<'f>, Range<usize>)>,
-    /// How many bytes the encoded arrays have.
+    /// The bytes of all encoded arrays, decoded.
     bytes: usize,
-    /// How many points were read.
+    /// The number of points.
     count: u64,
-    /// Where the last array of points ends that is not encoded.
+    /// The offset of the last array of points that is not encoded.
     end: usize,
 }
 
@@ -96,7 +96,7 @@ impl<'f> Points<'_, 'f> {
         Ok(())
     }
 
-    /// Hands on points in binary. Returns where they start, how they stand, and whether they are encoded.
+    /// Hands on binary points. Returns their offset, how they are stored, and whether they are encoded.
     fn binary(
         &mut self,
         file: &'f File<'_>,
@@ -111,7 +111,7 @@ impl<'f> Points<'_, 'f> {
             let problem = format!("{} bytes for {count} points", old.bytes.len());
             return Err(cursor.error(problem, CORRECT));
         }
-        // Raw bytes are replaced in place, all others encoded again.
+        // Raw bytes can be replaced in place. All others are encoded again.
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
         self.sink.expect_nodes(old.bytes.len() / (3 * wide));
@@ -143,7 +143,7 @@ impl<'f> Points<'_, 'f> {
         Ok((start, numbers, is_encoded))
     }
 
-    /// Hands on points written as text.
+    /// Hands on points of a text.
     fn text(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
         let cursor = &mut Cursor::within(file.source, points.content.clone());
         self.sink.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));

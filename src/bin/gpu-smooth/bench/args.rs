@@ -36,10 +36,10 @@ pub(crate) struct BenchArgs {
     /// Seconds to measure for each line
     #[arg(long, default_value_t = 2.0, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
-    /// As JSON, which --baseline takes
+    /// Print JSON, which --baseline reads
     #[arg(long)]
     pub(crate) json: bool,
-    /// As Markdown, with the machine and the version, ready to be pasted
+    /// Print Markdown with the machine and the version, ready to be pasted
     #[arg(long, conflicts_with = "json")]
     pub(crate) markdown: bool,
     /// Compare with measurements that `bench --json` has printed

@@ -1,4 +1,4 @@
-//! Measurements of another time, to compare with.
+//! Earlier measurements, which new ones are compared with.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::report::Row;
 
-/// What `bench --json` has printed.
+/// The JSON that an earlier `bench --json` has printed.
 pub(super) struct Baseline {
     rows: Vec<Known>,
 }
@@ -32,7 +32,8 @@ impl Baseline {
         Ok(Self { rows })
     }
 
-    /// The time of a sweep that was measured then: by the same engine and scheme, on a mesh of the same size.
+    /// Returns the seconds of a sweep in the earlier measurements, if they have one of the same engine, scheme and mesh
+    /// size.
     pub(super) fn seconds(&self, row: &Row) -> Option<f64> {
         let is_same = |known: &&Known| {
             (&known.engine, &known.scheme) == (&row.engine, &row.scheme)

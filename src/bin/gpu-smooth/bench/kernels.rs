@@ -1,22 +1,23 @@
-//! The time each kernel takes, by the device's own clock.
+//! Measures the time of each kernel by the device's own clock.
 
 use gpu_smooth::gpu::{Kernel, Timestamps};
 use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, SmoothError, Sweeps, wgpu};
 
-/// Sweeps before those that are timed.
+/// Sweeps before the clock starts, so that the timed ones run warm.
 const BEFORE: u32 = 6;
 /// Sweeps that are timed.
 const TIMED: u32 = 5;
 
-/// What one kernel takes of a sweep.
+/// The time of one kernel in a sweep.
 pub(crate) struct KernelTime {
     pub(crate) kernel: Kernel,
-    /// How often it is dispatched.
+    /// How many times the kernel is dispatched in a sweep.
     pub(crate) passes: u32,
     pub(crate) seconds: f64,
 }
 
-/// The kernels of a sweep with the objective after it, in the order they run; `None` if the device has no clock.
+/// Times the kernels of a sweep and of the objective after it, in the order in which they run. `None` if the device has
+/// no clock.
 pub(crate) fn time(
     gpu: &Gpu,
     mesh: &Mesh,

@@ -1,11 +1,11 @@
-//! Meshes to measure on, of any size within seconds.
+//! Meshes to measure on, of any size, which are made within seconds.
 
 use gpu_smooth::Mesh;
 
-/// How far vertices are moved off the lattice, in edges. Below a quarter nothing is inverted.
+/// How far vertices are moved off the lattice, in edge lengths. Below a quarter no triangle is inverted.
 const SHIFT: f64 = 0.2;
 
-/// A square lattice of about this many vertices, diagonals and positions at random, the same on each run.
+/// Makes a square lattice of about this many vertices. Diagonals and positions are random, and the same in each run.
 pub(crate) fn lattice(vertices: usize) -> Mesh {
     let side = ((vertices as f64).sqrt().round() as u32).max(3);
     let mut random = Random(1);
@@ -33,7 +33,7 @@ pub(crate) fn lattice(vertices: usize) -> Mesh {
 struct Random(u64);
 
 impl Random {
-    /// The next number, from 0 to 1.
+    /// Returns the next random number, from 0 to 1.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

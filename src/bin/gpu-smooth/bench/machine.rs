@@ -1,6 +1,6 @@
-//! What a measurement depends on besides the mesh.
+//! The machine and the version that a measurement depends on.
 
-/// The name of the processor, as far as the system tells it.
+/// Returns the name of the processor, as far as the system tells it.
 fn processor() -> String {
     let of_linux = || {
         let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
@@ -11,13 +11,13 @@ fn processor() -> String {
     of_linux().or_else(of_windows).unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }
 
-/// Processor, threads and system in a line.
+/// Returns processor, threads and system in one line.
 pub(super) fn machine() -> String {
     let (threads, system) = (rayon::current_num_threads(), std::env::consts::OS);
     format!("{}, {threads} threads, {system} {}", processor(), std::env::consts::ARCH)
 }
 
-/// The name and version of the program, and how it was compiled if that makes it slow.
+/// Returns the name and version of the program, and how it was compiled if that makes it slow.
 pub(super) fn version() -> String {
     let slow = if cfg!(debug_assertions) { ", not optimized: measure with --release" } else { "" };
     format!("gpu-smooth {}{slow}", env!("CARGO_PKG_VERSION"))

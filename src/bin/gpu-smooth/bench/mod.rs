@@ -1,4 +1,4 @@
-//! `gpu-smooth bench`: how fast this machine smooths.
+//! `gpu-smooth bench`: measures how fast this machine smooths.
 
 mod args;
 mod baseline;
@@ -22,14 +22,14 @@ pub(crate) use args::BenchArgs;
 use baseline::Baseline;
 use report::{Form, KernelRow, Row};
 
-/// An engine, and how many bytes a second it reads and writes when it copies.
+/// An engine to measure, and how many bytes a second it reads and writes when it only copies.
 struct Place {
     gpu: Option<Gpu>,
     name: String,
     copy_rate: f64,
 }
 
-/// Words an error in the user's terms.
+/// A function that words an error in the user's terms.
 type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
@@ -88,7 +88,7 @@ fn measure_all(
                 count += 1;
                 measured(row);
             }
-            // Where one adapter fails, the rest are measured all the same.
+            // If one adapter fails, the others are still measured.
             Err(SmoothError::Gpu(error)) if places.len() > 1 || count > 0 => {
                 tell::note(false, &format!("{}: {error}", place.name));
             }
@@ -152,7 +152,7 @@ fn measure(
     })
 }
 
-/// The engines to measure: those asked for, or all there are.
+/// Opens the engines to measure: those asked for, or all there are.
 fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, String> {
     let mut places = Vec::new();
     if args.engine != EngineChoice::Gpu && args.adapter.is_none() {

@@ -1,18 +1,18 @@
-//! How fast memory is copied, the rate that sweeps are compared with.
+//! Measures how fast memory is copied, the rate that sweeps are compared with.
 
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{Gpu, wgpu};
 use rayon::prelude::*;
 
-/// Bytes copied at once: more than caches hold.
+/// Bytes copied at once, more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// How often copying is timed; the fastest time counts.
+/// How many times copying is timed; the fastest time counts.
 const REPEATS: u32 = 5;
-/// Copies in one submission to a GPU.
+/// How many copies are in one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
-/// Bytes read and written per second by all cores together.
+/// Returns the bytes that all cores together read and write per second when they copy.
 pub(crate) fn on_cpu() -> f64 {
     let from = vec![1u8; BYTES as usize];
     let mut to = vec![2u8; BYTES as usize];
@@ -23,7 +23,7 @@ pub(crate) fn on_cpu() -> f64 {
     })
 }
 
-/// Bytes read and written per second by a kernel that only copies.
+/// Returns the bytes that a kernel reads and writes per second when it only copies.
 pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
     let device = gpu.device();
     let bound = device.limits().max_storage_buffer_binding_size;
@@ -72,7 +72,7 @@ pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
     fastest(SUBMITTED, copy) * bytes as f64 / BYTES as f64
 }
 
-/// Bytes read and written per second by the fastest of some calls, each of which makes `copies` copies.
+/// Returns the bytes read and written per second by the fastest of several calls, each of which makes `copies` copies.
 fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
     let time = || {
         let start = Instant::now();

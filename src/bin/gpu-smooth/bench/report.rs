@@ -1,4 +1,4 @@
-//! What `gpu-smooth bench` prints.
+//! The tables that `gpu-smooth bench` prints.
 
 use serde::Serialize;
 
@@ -9,33 +9,33 @@ use crate::bench::BenchArgs;
 use crate::columns::right;
 use crate::tell;
 
-/// What was measured of one mesh on one engine.
+/// The measurements of one mesh on one engine.
 #[derive(Serialize)]
 pub(super) struct Row {
     pub(super) version: String,
     pub(super) machine: String,
     pub(super) engine: String,
-    /// Whether it is an adapter whose driver computes on the CPU.
+    /// Whether the engine is an adapter whose driver computes on the CPU.
     pub(super) software: bool,
     pub(super) scheme: String,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) free: usize,
     pub(super) colors: usize,
-    /// The time of a sweep with the objective after it, from which the rates below follow.
+    /// The time of a sweep with the objective after it. All rates of the row follow from it.
     pub(super) seconds_per_sweep: f64,
-    /// That time in the measurements that are compared with, if they have it.
+    /// The time of a sweep in the measurements of `--baseline`, if they have this row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) baseline_seconds_per_sweep: Option<f64>,
     pub(super) vertex_updates_per_second: f64,
-    /// The least bytes that have to be read and written, over the time.
+    /// The least bytes that a sweep and the objective have to read and write, divided by their time.
     pub(super) bytes_per_second: f64,
     pub(super) share_of_copy_rate: f64,
-    /// The time of each kernel by the device's clock, if it has one.
+    /// The time of each kernel by the device's clock, if the device has one.
     pub(super) kernels: Option<Vec<KernelRow>>,
 }
 
-/// What one kernel takes of a sweep.
+/// The time of one kernel in a sweep.
 #[derive(Serialize)]
 pub(super) struct KernelRow {
     kernel: String,
@@ -46,7 +46,8 @@ pub(super) struct KernelRow {
 }
 
 impl KernelRow {
-    /// The row of a kernel. `bytes` is the least that it has to read and write, given only where that is much.
+    /// Makes the row of a kernel. `bytes` is the least that it has to read and write, given only for kernels that read
+    /// much.
     pub(super) fn new(time: &KernelTime, bytes: Option<u64>, copy_rate: f64) -> Self {
         let rate = bytes.map(|bytes| bytes as f64 / time.seconds);
         Self {
@@ -59,7 +60,7 @@ impl KernelRow {
     }
 }
 
-/// The columns of the table, the engine last; with what is compared, where it is.
+/// The columns of the table before the engine. `baseline` and `change` are left out without `--baseline`.
 const COLUMNS: [&str; 7] =
     ["vertices", "ms/sweep", "baseline", "change", "M updates/s", "GB/s", "of copying"];
 const WIDTHS: [usize; 7] = [10, 10, 10, 9, 12, 8, 11];
@@ -76,7 +77,7 @@ impl Form {
         Self { markdown: args.markdown, compared: args.baseline.is_some() }
     }
 
-    /// The head of the table, and what holds for all of it.
+    /// Writes the machine, the engines and the head of the table.
     pub(super) fn head(self, args: &BenchArgs, places: &[Place]) -> String {
         let mark = if self.markdown { "- " } else { "" };
         let mut text = format!("{mark}{}\n{mark}{}\n", machine::version(), machine::machine());
@@ -120,7 +121,7 @@ impl Form {
         }
     }
 
-    /// A row as it is printed.
+    /// Writes a row of the table.
     pub(super) fn row(self, row: &Row) -> String {
         let seconds = row.seconds_per_sweep;
         let milliseconds = |seconds: f64| format!("{:.3}", seconds * 1e3);
@@ -138,7 +139,7 @@ impl Form {
         self.line(columns, &row.engine)
     }
 
-    /// A line of the table of kernels.
+    /// Writes a row of the table of kernels.
     fn kernel(self, fields: [&str; 5]) -> String {
         let [name, passes, time, rate, share] = fields;
         match self.markdown {
@@ -147,7 +148,7 @@ impl Form {
         }
     }
 
-    /// The tables of kernels, one for each row that has them.
+    /// Writes the tables of kernels, one for each measurement that has them.
     pub(super) fn kernels(self, rows: &[Row]) -> String {
         let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
         let mut text = String::new();

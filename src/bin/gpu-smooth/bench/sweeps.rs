@@ -1,34 +1,34 @@
-//! Whole sweeps, and the least each has to read and write.
+//! Times whole sweeps, and counts the least bytes that each has to read and write.
 
 use std::time::{Duration, Instant};
 
 use gpu_smooth::SmoothError;
 use gpu_smooth::internal::{Problem, Stepwise};
 
-/// Sweeps before the clock starts. After them kernels are compiled, caches warm and sweeps over-relaxed.
+/// Sweeps before the clock starts. After these, kernels are compiled, caches are warm and sweeps are over-relaxed.
 const BEFORE: u32 = 6;
-/// About how long a batch of sweeps, which are timed together, takes.
+/// About how long a batch of sweeps takes. The sweeps of a batch are timed together.
 const BATCH: Duration = Duration::from_millis(100);
-/// The most batches, whose median counts; fewer if the seconds that the user gives end before.
+/// The most batches, whose median counts. There are fewer if the seconds that the user gives end before.
 const BATCHES: usize = 15;
 
-/// Bytes of a position: of its coordinates in double precision, or as two floats each.
+/// Bytes of a position: two coordinates in double precision, or as two floats each.
 const POSITION: u64 = 16;
 
-/// Bytes that a sweep reads and writes if it touches everything once and nothing twice: all positions, the
-/// one-rings of the free vertices, and what moved.
+/// Counts the bytes that a sweep reads and writes if it touches everything once: all positions, the one-rings of the
+/// free vertices, and the vertices that moved.
 pub(crate) fn sweep_bytes(problem: &Problem) -> u64 {
     let (vertices, free) = (problem.positions().len() as u64, problem.free_count() as u64);
     let rings = 4 * (problem.ring().len() as u64 + free);
     POSITION * (vertices + free) + rings
 }
 
-/// Bytes that an evaluation of the objective reads if it reads everything once: all positions and triangles.
+/// Counts the bytes that the objective reads if it reads everything once: all positions and triangles.
 pub(crate) fn objective_bytes(problem: &Problem) -> u64 {
     POSITION * problem.positions().len() as u64 + 12 * problem.triangles().len() as u64
 }
 
-/// The median time of a sweep with the objective after it, in seconds.
+/// Measures the median time of a sweep with the objective after it, in seconds.
 pub(crate) fn time(engine: &mut dyn Stepwise, seconds: f64) -> Result<f64, SmoothError> {
     engine.advance(BEFORE)?;
     let mut timed = |sweeps: u32| -> Result<f64, SmoothError> {

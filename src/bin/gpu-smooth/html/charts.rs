@@ -5,10 +5,10 @@ use std::fmt::Write;
 use crate::html::page::escape;
 use crate::numbers::five;
 
-/// In pixels of the chart, which is scaled to the window.
+/// Width and height in pixels of the chart, which is scaled to the window.
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 250.0;
-/// What the plot leaves for numbers and names: left, right, top, bottom.
+/// Space around the plot for numbers and names: left, right, top, bottom.
 const MARGIN: [f64; 4] = [58.0, 14.0, 26.0, 36.0];
 
 /// A scale of one axis.
@@ -16,13 +16,13 @@ struct Axis {
     low: f64,
     high: f64,
     log: bool,
-    /// In pixels.
+    /// The two ends of the axis in pixels.
     from: f64,
     to: f64,
 }
 
 impl Axis {
-    /// Of some numbers, which must be above 0 for a logarithm.
+    /// Makes an axis that covers these numbers. On a logarithmic axis only numbers above 0 count.
     fn new(numbers: impl Iterator<Item = f64>, log: bool, from: f64, to: f64) -> Self {
         let usable = numbers.filter(|x| x.is_finite() && (!log || *x > 0.0));
         let (mut low, mut high) = usable
@@ -43,8 +43,8 @@ impl Axis {
         self.from + share * (self.to - self.from)
     }
 
-    /// Round numbers on the axis: powers of ten where there are enough, with their multiples where there are few, else even
-    /// steps.
+    /// Returns round numbers on the axis: powers of ten if the axis covers enough of them, their multiples by 1, 2 and
+    /// 5 if it covers few, else even steps.
     fn ticks(&self) -> Vec<f64> {
         if self.log && (6.0..1500.0).contains(&(self.high / self.low)) {
             let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
@@ -80,7 +80,7 @@ fn x_axis(from: f64, to: f64) -> [f64; 2] {
     [from + MARGIN[0], to - MARGIN[1]]
 }
 
-/// A mark with its number under the plot.
+/// Draws a tick under the plot, with its number.
 fn below(text: &mut String, x: f64, name: &str) {
     let bottom = HEIGHT - MARGIN[3];
     let _ = write!(
@@ -92,7 +92,7 @@ fn below(text: &mut String, x: f64, name: &str) {
     );
 }
 
-/// A line across the plot with its number on the left.
+/// Draws a grid line across the plot, with its number on the left.
 fn across(text: &mut String, y: f64, name: &str) {
     let [left, right] = x_axis(0.0, WIDTH);
     let _ = write!(
@@ -104,7 +104,7 @@ fn across(text: &mut String, y: f64, name: &str) {
     );
 }
 
-/// A number beside an axis.
+/// Formats a number beside an axis.
 fn tick(x: f64) -> String {
     let text = match x.abs() {
         a if a != 0.0 && !(1e-3..1e5).contains(&a) => return format!("{x:e}"),
@@ -116,9 +116,9 @@ fn tick(x: f64) -> String {
     }
 }
 
-/// A line through points, and a mark on each if they are few. `log` says which axes are by the logarithm.
+/// Draws a line through points, with a mark on each if they are few. `log` says which of the two axes are logarithmic.
 ///
-/// The logarithm has no place for an `x` of 0: it then stands as far left of the next point as that is left of the double.
+/// A logarithmic axis has no place for `x` = 0, so that point is drawn at half the least `x` above 0.
 pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]) -> String {
     let least =
         points.iter().map(|point| point[0]).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
@@ -141,7 +141,7 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
     let x = Axis::new(shown().map(|point| point[0]), log[0], left, right);
     let y = Axis::new(shown().map(|point| point[1]), log[1], bottom, top);
     y.ticks().into_iter().for_each(|value| across(&mut text, y.place(value), &tick(value)));
-    // What stands for the state before the first sweep.
+    // The state before the first sweep, at `x` = 0.
     let has_zero = log[0] && x.low == zero;
     if has_zero {
         below(&mut text, x.place(zero), "0");
@@ -173,7 +173,7 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
     text + "</svg></figure>"
 }
 
-/// Two bars for each bin: before and after.
+/// Draws two bars for each bin: before and after.
 pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String {
     let mut text = open(title);
     let [left, right] = x_axis(0.0, WIDTH);
@@ -193,7 +193,7 @@ pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String 
             let count = counts[state][i];
             let top = y.place(percent(count));
             let start = left + (i as f64 + 0.08 + 0.42 * state as f64) * width;
-            // Few among many are still seen.
+            // A bin with few triangles among many is still seen.
             let height = (bottom - top).max(if count > 0 { 1.0 } else { 0.0 });
             let _ = write!(
                 text,
@@ -245,7 +245,7 @@ mod tests {
             assert_eq!(ticks, expected, "{low} to {high}");
             assert_eq!((axis.place(low), axis.place(high)), (0.0, 100.0));
         }
-        // A single value has an axis too.
+        // An axis for a single value has ticks too.
         let axis = Axis::new([3.0].into_iter(), true, 0.0, 100.0);
         assert!((40.0..60.0).contains(&axis.place(3.0)) && !axis.ticks().is_empty());
     }

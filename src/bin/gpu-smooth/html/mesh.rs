@@ -1,4 +1,5 @@
-//! The mesh as the script of the page draws it: all of it, or a picture of it with what is around the worst triangles.
+//! The data by which the script of the page draws the mesh: all of it, or a picture with the triangles around the worst
+//! ones.
 
 use std::collections::HashSet;
 
@@ -10,19 +11,19 @@ use serde_json::{Value, json};
 use crate::html::worst::Spot;
 use crate::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
 
-/// The measures that the mesh can be colored by. The picture of a large one has the colors of the first.
+/// The measures that the mesh can be colored by. The picture of a large mesh is colored by the first.
 const SHOWN: [Measure; 4] =
     [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
 
-/// What bounds the size of a page.
+/// Limits on the size of a page.
 pub(crate) struct Bounds {
     /// Meshes of more triangles are shown as a picture and by parts.
     most: usize,
-    /// The width or height of that picture in pixels, whichever is longer.
+    /// The longer side of that picture, in pixels.
     pixels: u32,
 }
 
-/// With these, a page has up to some 15 MB.
+/// With these limits, a page has up to some 15 MB.
 pub(crate) const BOUNDS: Bounds = Bounds { most: 250_000, pixels: 2000 };
 
 /// How many triangles around each of the worst ones are shown of a larger mesh.
@@ -31,7 +32,7 @@ const AROUND: usize = 1500;
 /// The most edges of the boundary, and of lines between regions, that are shown of a larger mesh.
 const MOST_EDGES: usize = 200_000;
 
-/// How a mesh of so many triangles is shown, in a sentence or two.
+/// Says in a sentence or two how a mesh of this many triangles is shown.
 pub(crate) fn caption(triangles: usize) -> String {
     match triangles > BOUNDS.most {
         false => format!("All {triangles} triangles."),
@@ -42,7 +43,7 @@ pub(crate) fn caption(triangles: usize) -> String {
     }
 }
 
-/// All that the script needs.
+/// Collects all data that the script needs.
 pub(crate) fn data(
     file: &MeshFile,
     states: [&Measured<'_>; 2],
@@ -83,7 +84,7 @@ pub(crate) fn data(
         let definition = measure.definition();
         json!({
             "name": measure.name(), "unit": definition.unit, "ideal": definition.ideal,
-            // None where the scale is by the logarithm.
+            // Null if the scale is logarithmic, and so has no bad end.
             "bad": bad_end(measure),
             "ticks": ticks(measure).into_iter()
                 .map(|(value, name)| json!([goodness(measure, value), name])).collect::<Vec<_>>(),
@@ -122,7 +123,7 @@ pub(crate) fn data(
     }))
 }
 
-/// Numbers, given as bytes with the lowest first, in Base64.
+/// Encodes numbers, given as little-endian bytes, in Base64.
 fn encoded<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> String {
     BASE64_STANDARD.encode(numbers.flatten().collect::<Vec<u8>>())
 }
@@ -131,7 +132,8 @@ fn indices(numbers: &[u32]) -> String {
     encoded(numbers.iter().map(|number| number.to_le_bytes()))
 }
 
-/// Of each measure, of each triangle: 0 if it is inverted or flat, else from 1 to 65534 by how good it is.
+/// Returns the codes of the shown triangles for each measure: 0 if a triangle is inverted or flat, else from 1 (bad) to
+/// 65534 (ideal).
 fn codes(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -151,7 +153,7 @@ fn codes(
     Ok(SHOWN.map(of).to_vec())
 }
 
-/// The whole mesh as pixels, by the first measure.
+/// Draws the whole mesh as pixels, colored by the first measure.
 fn picture(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -162,7 +164,7 @@ fn picture(
     Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
 }
 
-/// The triangles around each of some, nearest first, ascending and each once.
+/// Returns the triangles around each spot, ascending and each once. The triangles nearest to a spot are taken first.
 fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
     let mut all = HashSet::new();
     for spot in spots {
@@ -184,7 +186,7 @@ fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
 
 /// The vertices that are shown, in new numbers.
 struct Part {
-    /// The new number of each vertex; the largest number if it has none.
+    /// The new number of each vertex, or `u32::MAX` if it has none.
     number: Vec<u32>,
     /// The old number of each vertex that is shown.
     vertices: Vec<u32>,
@@ -195,7 +197,7 @@ impl Part {
         Self { number: vec![u32::MAX; vertices], vertices: Vec::new() }
     }
 
-    /// The new number of a vertex, which it gets if it has none.
+    /// Returns the new number of a vertex, after giving it one if it has none.
     fn number(&mut self, vertex: u32) -> u32 {
         let number = &mut self.number[vertex as usize];
         if *number == u32::MAX {
@@ -205,7 +207,7 @@ impl Part {
         *number
     }
 
-    /// The coordinates of the vertices that are shown.
+    /// Encodes the coordinates of the vertices that are shown.
     fn points(&self, points: &[[f64; 2]]) -> String {
         let coordinates = self.vertices.iter().flat_map(|&v| points[v as usize]);
         encoded(coordinates.map(f64::to_le_bytes))
@@ -218,7 +220,7 @@ mod tests {
     use crate::html::worst;
     use std::path::Path;
 
-    /// A mesh of 80 by 80 squares that are cut in two, with one vertex far from its place.
+    /// Makes a mesh of 80 by 80 squares, each cut in two, with one vertex far from its place.
     fn file() -> MeshFile {
         let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6561\n".to_owned();
         for i in 0..6561 {
@@ -255,10 +257,10 @@ mod tests {
             let picture = parts["states"][state]["picture"].as_str().unwrap();
             let png = picture.strip_prefix("data:image/png;base64,").unwrap();
             let png = BASE64_STANDARD.decode(png).unwrap();
-            // Width and height stand there.
+            // Width and height of the picture.
             assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 1, 44]);
         }
-        // The worst are at the vertex that is out of place, and shown in both.
+        // The worst triangles are those at the vertex out of place, and are shown in both forms.
         for data in [&whole, &parts] {
             let first = &data["spots"][0];
             assert!(first["triangle"].is_u64(), "{first}");

@@ -1,4 +1,4 @@
-//! `--html`: a run as one page that needs nothing else.
+//! `--html`: a run as one page in a single file.
 
 mod charts;
 mod mesh;
@@ -19,7 +19,7 @@ use tables::measure_name;
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
-/// Refuses a page that cannot be written, or would replace one of these files.
+/// Refuses a page that cannot be written, or that would replace one of the other files.
 pub(crate) fn check<'p>(
     path: Option<&Path>,
     mut others: impl Iterator<Item = &'p Path>,
@@ -71,7 +71,7 @@ fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     Ok(page.finish())
 }
 
-/// The histograms before and after, side by side.
+/// Draws the histograms before and after, side by side.
 fn histograms(states: [&Measured<'_>; 2]) -> String {
     let mut text = String::from("<div class=\"charts\">");
     for measure in HISTOGRAMS {
@@ -82,7 +82,7 @@ fn histograms(states: [&Measured<'_>; 2]) -> String {
     text + "</div>"
 }
 
-/// f against sweeps and time, and how far it was from its last value.
+/// Draws f against sweeps and against time, and its distance from its least value.
 fn convergence(done: &Done<'_>) -> String {
     let f: Vec<f64> = done.report.history.iter().map(|sweep| sweep.f).collect();
     let by_sweep: Vec<[f64; 2]> = f.iter().enumerate().map(|(i, &f)| [i as f64, f]).collect();

@@ -1,10 +1,10 @@
-//! The frame of a page.
+//! The frame of a page: head, style and script.
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("viewer.js");
 const VIEWER: &str = include_str!("viewer.html");
 
-/// A page in the making.
+/// A page under construction.
 pub(crate) struct Page {
     title: String,
     body: String,
@@ -18,21 +18,21 @@ impl Page {
         Self { title, body, data: String::new() }
     }
 
-    /// A sentence at the top.
+    /// Adds a sentence at the top.
     pub(crate) fn lead(&mut self, text: &str) {
         self.body += &format!("<p class=\"lead\">{}</p>\n", escape(text));
     }
 
-    /// A part of the page; `content` is HTML.
+    /// Adds a section; `content` is HTML.
     pub(crate) fn section(&mut self, title: &str, content: &str) {
         self.body += &format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title));
     }
 
-    /// The part that shows the mesh; `data` is what the script draws.
+    /// Adds the section that shows the mesh; `data` is what the script draws.
     pub(crate) fn mesh(&mut self, caption: &str, data: &serde_json::Value) {
         let content = VIEWER.replace("{caption}", &escape(caption));
         self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");
-        // Nothing in a text of JSON can end the script element.
+        // Without `<`, no text in the JSON can end the script element.
         self.data = data.to_string().replace('<', "\\u003c");
     }
 
@@ -48,7 +48,7 @@ impl Page {
     }
 }
 
-/// Text as it stands in HTML, also in attributes.
+/// Escapes a text for HTML, attributes included.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! What ran, and what is certain of its result.
+//! The section on the run: the command, versions, the engine, and what was checked on the result.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -9,7 +9,7 @@ use crate::numbers::six;
 use crate::picture::slid;
 use crate::task::{Done, Task};
 
-/// The command, versions, the engine, and the certificate.
+/// Writes the command, versions, the engine, and the certificate.
 pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     let engine = &done.report.engine;
@@ -43,7 +43,7 @@ pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
     Ok(text)
 }
 
-/// What was checked on the coordinates as they were written.
+/// Writes what was checked on the coordinates as they were written.
 fn certificate(done: &Done<'_>) -> Result<String, String> {
     let topology = done.smoother.topology();
     let (old, new) = (&done.file.mesh().points, &done.outcome.points);
@@ -51,7 +51,7 @@ fn certificate(done: &Done<'_>) -> Result<String, String> {
     let bits = |point: &[f64; 2]| point.map(f64::to_bits);
     let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
     let held = topology.free().iter().filter(|free| !**free).count();
-    // Where vertices may slide, those that did are told of by themselves.
+    // Where vertices may slide, those that slid are told of in a sentence of their own.
     let off = slid(topology, old, new).len();
     let held = if done.report.slid.is_some() { held - off } else { held };
     let kept = if done.report.slid.is_some() { held } else { held - off };
@@ -74,7 +74,7 @@ fn certificate(done: &Done<'_>) -> Result<String, String> {
     ))
 }
 
-/// Day and time, from the seconds since 1970.
+/// Formats day and time, given in seconds since 1970.
 fn date(seconds: u64) -> String {
     let (mut days, minutes) = (seconds / 86_400, seconds % 86_400 / 60);
     let is_leap = |year: u64| {
@@ -97,7 +97,7 @@ fn date(seconds: u64) -> String {
     format!("{year}-{month:02}-{:02} {:02}:{:02} UTC", days + 1, minutes / 60, minutes % 60)
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell if it needs quotes.
 fn quoted(word: &OsStr) -> String {
     let word = word.to_string_lossy();
     let is_plain = |c: char| c.is_alphanumeric() || "-_=+./,:@%".contains(c);

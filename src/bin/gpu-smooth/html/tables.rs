@@ -1,4 +1,4 @@
-//! Tables of numbers.
+//! Tables of numbers on the page.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use crate::html::page::escape;
 use crate::numbers::{five, six};
 use crate::report::{Report, Seconds};
 
-/// What the summary on the terminal tells of the mesh before and after.
+/// Writes the summary of the terminal: what was smoothed, and its quality before and after.
 pub(crate) fn summary(report: &Report) -> String {
     let mut text = format!(
         "{}<div class=\"wide\"><table><thead><tr><th></th><th>before</th><th>after</th></tr></thead><tbody>",
@@ -26,7 +26,7 @@ pub(crate) fn summary(report: &Report) -> String {
     text + "</tbody></table></div>"
 }
 
-/// Every measure before and after.
+/// Writes the statistics of every measure, before and after.
 pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
     let [before, after] = states.map(|state| state.statistics(Measure::ALL));
     let mut text = String::from(
@@ -56,7 +56,7 @@ fn row(text: &mut String, state: &str, statistics: &Statistics) {
     *text += "</tr>";
 }
 
-/// The share of each part of the run.
+/// Writes the share that each part of the run has of its time.
 pub(crate) fn time(seconds: &Seconds) -> String {
     let Seconds { read, prepare, smooth, write, total } = *seconds;
     let parts = [("read", read), ("prepare", prepare), ("smooth", smooth), ("write", write)];
@@ -76,7 +76,7 @@ pub(crate) fn time(seconds: &Seconds) -> String {
     )
 }
 
-/// The name of a measure with its unit.
+/// Returns the name of a measure with its unit.
 pub(crate) fn measure_name(measure: Measure) -> String {
     match measure.definition().unit {
         "" => measure.name().to_owned(),

@@ -1,6 +1,6 @@
 "use strict";
-// Draws the mesh before and after a run on two canvases that look at the same place.
-// Triangles are filled pixel by pixel: that leaves no seams, and many small ones take no longer than few large ones.
+// Draws the mesh before and after a run on two canvases that show the same region. Triangles are filled pixel by pixel:
+// that leaves no seams, and many small triangles take no longer than few large ones.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -24,7 +24,7 @@ const states = data.states.map((state) => {
 const canvases = [...document.querySelectorAll("#views canvas")];
 const [low, high] = data.extent;
 
-// The middle of what is seen, in units of the mesh, and CSS pixels per unit. `spot` is the triangle that was asked for.
+// The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the triangle that a link asked for.
 const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
 let measure = 0;
 
@@ -113,11 +113,11 @@ function draw(canvas, state) {
     const x0 = at[a], y0 = at[a + 1], x1 = at[b], y1 = at[b + 1], x2 = at[c], y2 = at[c + 1];
     if (Math.max(x0, x1, x2) < 0 || Math.min(x0, x1, x2) > width || Math.max(y0, y1, y2) < 0 || Math.min(y0, y1, y2) > height) continue;
     const longest = Math.max((x1 - x0) ** 2 + (y1 - y0) ** 2, (x2 - x1) ** 2 + (y2 - y1) ** 2, (x0 - x2) ** 2 + (y0 - y2) ** 2);
-    // Small ones are seen better in the picture of the whole.
+    // Small triangles are seen better in the picture of the whole mesh.
     if (hasPicture && longest < (4 * ratio) ** 2) continue;
     fill(best, width, height, x0, y0, x1, y1, x2, y2, codes[t]);
     const area = Math.abs((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0));
-    // Edges only where a triangle is some pixels high.
+    // Edges are drawn only where a triangle is some pixels high.
     if (area > 4 * ratio * Math.sqrt(longest)) {
       if (a < b) inner.push(a / 2, b / 2);
       if (b < c) inner.push(b / 2, c / 2);
@@ -345,7 +345,7 @@ function follow() {
   if (found) show(Number(found[1]));
 }
 document.addEventListener("click", (event) => {
-  // Also if the same link is followed again.
+  // A click on the same link shows the triangle again, which `hashchange` would not tell.
   const link = event.target.closest('a[href^="#spot-"]');
   if (link && link.hash === location.hash) follow();
 });

@@ -1,4 +1,4 @@
-//! The worst triangles before and after, as links that show them.
+//! Lists of the worst triangles before and after, with links that show each in the mesh.
 
 use std::fmt::Write;
 
@@ -10,10 +10,10 @@ use crate::numbers::five;
 /// How many triangles a list has.
 const LISTED: usize = 8;
 
-/// Among so many of the worst, those are looked for that can move.
+/// How many of the worst triangles are searched for those that can move.
 const CANDIDATES: usize = 10_000;
 
-/// The lists: their titles, the state they are of, and whether only triangles that can move are in them.
+/// The lists: title, state (0 before, 1 after), and whether it lists only triangles that can move.
 const LISTS: [(&str, usize, bool); 3] = [
     ("The worst before the run", 0, false),
     ("The worst after the run", 1, false),
@@ -22,23 +22,24 @@ const LISTS: [(&str, usize, bool); 3] = [
 
 /// A bad triangle of the mesh before or after the run.
 pub(crate) struct Spot {
-    /// Its index in the mesh.
+    /// The index of the triangle in the mesh.
     pub(crate) triangle: usize,
     list: usize,
-    /// 0 if it is one of the worst before, 1 after the run.
+    /// 0 if the triangle is one of the worst before the run, 1 after it.
     pub(crate) state: usize,
-    /// The file's number or tag for it, and where it stands.
+    /// The file's number or tag for the triangle, and its place in the file.
     label: u64,
     place: String,
-    /// Its middle and its longest edge.
+    /// The centroid of the triangle, and its longest edge, in units of the mesh.
     pub(crate) at: [f64; 2],
     pub(crate) size: f64,
-    /// Its shape and smallest angle, before and after.
+    /// Shape and smallest angle (degrees), before and after.
     values: [[f64; 2]; 2],
     is_movable: bool,
 }
 
-/// The worst triangles by shape. Those that can move have a list of their own only if others are among the worst.
+/// Finds the worst triangles by shape. Triangles that can move have a list of their own only if others are among the
+/// worst.
 pub(crate) fn spots(file: &MeshFile, states: [&Measured<'_>; 2]) -> Vec<Spot> {
     let topology = states[0].topology();
     let corners = |t: usize| topology.triangles()[t];
@@ -77,7 +78,7 @@ pub(crate) fn spots(file: &MeshFile, states: [&Measured<'_>; 2]) -> Vec<Spot> {
     all.map(|(list, triangle)| spot(list, triangle)).collect()
 }
 
-/// The lists as tables.
+/// Writes the lists as tables.
 pub(crate) fn lists(spots: &[Spot]) -> String {
     let mut text = String::from("<div class=\"lists\">");
     for (list, (title, ..)) in LISTS.iter().enumerate() {
@@ -110,7 +111,7 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
     text + "</div><p>A click shows the triangle in the mesh. All vertices of those marked as fixed must stay.</p>"
 }
 
-/// A coordinate with about seven significant digits.
+/// Formats a coordinate with about seven significant digits.
 fn coordinate(x: f64) -> String {
     match x.abs() {
         a if (1e-3..1e10).contains(&a) || a == 0.0 => {

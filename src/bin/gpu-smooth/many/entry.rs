@@ -1,4 +1,4 @@
-//! What became of a mesh.
+//! How the smoothing of one of many meshes ended.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::numbers::five;
 use crate::report::Report;
 use crate::task::Failure;
 
-/// A mesh and what became of it.
+/// A mesh, and how its smoothing ended.
 pub(crate) struct Entry {
     pub(crate) input: PathBuf,
     pub(crate) out: PathBuf,
@@ -15,13 +15,13 @@ pub(crate) struct Entry {
     pub(crate) told: Told,
 }
 
-/// What became of a mesh.
+/// How the smoothing of a mesh ended.
 pub(crate) enum Told {
     Smoothed {
         report: Box<Report>,
         remarks: Vec<String>,
     },
-    /// It was done before.
+    /// The mesh was smoothed by an earlier call.
     Skipped,
     Failed(Failure),
     /// The user ended the call before the mesh was done.
@@ -29,7 +29,7 @@ pub(crate) enum Told {
 }
 
 impl Told {
-    /// In one word.
+    /// Returns the end in one word.
     pub(crate) fn status(&self) -> &'static str {
         match self {
             Self::Smoothed { .. } => "smoothed",
@@ -51,7 +51,7 @@ impl Told {
         self.report().is_some_and(|report| report.fell_short().is_some())
     }
 
-    /// In one line.
+    /// Describes the end in one line.
     pub(crate) fn text(&self) -> String {
         match (self.report(), self.problem()) {
             (Some(report), _) => {
@@ -68,7 +68,7 @@ impl Told {
         }
     }
 
-    /// Why it failed, in one line.
+    /// Returns the first line of the error, if the mesh failed.
     pub(crate) fn problem(&self) -> Option<&str> {
         match self {
             Self::Failed(failure) => failure.message.lines().next(),

@@ -1,4 +1,4 @@
-//! Which meshes are to be smoothed, and into which files.
+//! Lists the meshes that are to be smoothed, and the files that they are written to.
 
 use std::collections::HashMap;
 use std::fs;
@@ -11,12 +11,12 @@ use crate::streams::is_standard;
 
 /// A mesh that is to be smoothed.
 pub(crate) struct Listed {
-    /// As it was given first, if it was given several times.
+    /// The path as it was given first, if the mesh was given several times.
     pub(crate) input: PathBuf,
     pub(crate) out: PathBuf,
-    /// The files that are the mesh, as far as they are there.
+    /// The files of the mesh that exist.
     pub(crate) inputs: Vec<PathBuf>,
-    /// The files that it will be written to.
+    /// The files that the smoothed mesh is written to.
     pub(crate) outputs: Vec<PathBuf>,
 }
 
@@ -38,14 +38,14 @@ impl Listed {
         Ok(Self { input: input.to_owned(), out, inputs, outputs })
     }
 
-    /// The size of its files, in bytes.
+    /// Returns the size of the mesh's files, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let sizes = self.inputs.iter().filter_map(|part| Some(fs::metadata(part).ok()?.len()));
         sizes.sum()
     }
 
-    /// Whether all files that it is written to are there, and newer than all that it is read from. Files take their places
-    /// whole, so that one that is there is complete.
+    /// Whether all output files exist and are newer than all input files. A file that exists is complete, as files are
+    /// replaced whole.
     pub(crate) fn is_done(&self) -> bool {
         let time = |path: &PathBuf| fs::metadata(path).and_then(|found| found.modified()).ok();
         let times = |paths: &[PathBuf]| paths.iter().map(time).collect::<Option<Vec<SystemTime>>>();
@@ -59,7 +59,7 @@ impl Listed {
     }
 }
 
-/// What the files of a Triangle mesh have in common, if the path names one of them.
+/// Returns the path without its ending if it names a file of a Triangle mesh.
 fn stem(path: &Path) -> Option<PathBuf> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     matches!(&*ending, "node" | "ele" | "poly").then(|| path.with_extension(""))
@@ -101,9 +101,9 @@ fn parts(path: &Path) -> Vec<PathBuf> {
     endings.into_iter().map(with).filter(|part| part.is_file()).collect()
 }
 
-/// The meshes that some paths name, each once, with the files in `directory` that they are to be written to.
+/// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
 ///
-/// An error if two would be written to the same file, or one in its own place.
+/// Returns an error if two meshes would be written to the same file, or if a mesh would replace itself.
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
@@ -125,7 +125,7 @@ pub(crate) fn list<'p>(
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
             Some(known) if is_same(known, &mesh) => {
-                // Its outline is not the mesh.
+                // The mesh is named by its `.node` or `.ele`, not by its `.poly`.
                 if known.input.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly")) {
                     *known = mesh;
                 }
@@ -147,7 +147,7 @@ pub(crate) fn list<'p>(
     Ok(listed)
 }
 
-/// Whether a path is what the names of a Triangle mesh's files have in common.
+/// Whether a path is the name of a Triangle mesh without its ending.
 fn is_stem(path: &Path) -> bool {
     !path.exists() && appended(path, ".node").is_file()
 }
@@ -162,7 +162,7 @@ fn is_any(path: &Path, others: &[PathBuf]) -> bool {
     others.iter().any(|other| output::same_file(other, path))
 }
 
-/// Whether two meshes are of the same files.
+/// Whether two meshes have a file in common.
 fn is_same(a: &Listed, b: &Listed) -> bool {
     let (mine, theirs) = match is_xdmf(&a.input) {
         // Several may have their numbers in one file.
@@ -205,7 +205,7 @@ mod tests {
             of(&folder, &["a.1.poly", "a.1.ele"]).unwrap()[0].input.extension().unwrap(),
             "ele"
         );
-        // By the name without an ending, and twice.
+        // Two meshes, each given twice: one also without its ending.
         assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
     }
 

@@ -24,17 +24,17 @@ use entry::{Entry, Told};
 use listing::Listed;
 use workers::Watch;
 
-/// What a run does in silence, as other runs go on beside it.
+/// Output settings of each run: it prints nothing, as other runs go on beside it.
 const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
 
-/// Smooths all meshes. An error at the end if one could not be smoothed.
+/// Smooths all meshes. Returns an error at the end if one of them failed.
 pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), String> {
     let start = Instant::now();
     let list = listing::list(args.meshes(), directory)?;
     let files = list.iter().flat_map(|mesh| mesh.inputs.iter().chain(&mesh.outputs));
     check_report(args, files.map(|path| path.as_path()))?;
     interrupt::watch(show.quiet);
-    // The first signal is left to the runs: what is under way is given up, and what is done is told.
+    // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
     interrupt::has_result();
     make(directory)?;
     let is_done = |mesh: &Listed| args.resume && mesh.is_done();
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
     }
 }
 
-/// Makes the directory, if it is not there.
+/// Makes the directory if it does not exist.
 fn make(directory: &Path) -> Result<(), String> {
     std::fs::create_dir_all(directory).map_err(|error| {
         format!(
@@ -89,7 +89,7 @@ fn make(directory: &Path) -> Result<(), String> {
     })
 }
 
-/// Shows how far the call is, and keeps what became of each mesh.
+/// Shows how far the call is, and keeps how each mesh ended.
 struct Watched<'a> {
     list: &'a [Listed],
     show: &'a OutputArgs,
@@ -114,7 +114,7 @@ impl Watch for Watched<'_> {
     }
 }
 
-/// One of the meshes.
+/// Smooths one of the meshes.
 fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
     let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
     let mut follow = Followed { mesh, remarks: Vec::new() };
@@ -126,7 +126,7 @@ fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
     }
 }
 
-/// Keeps what there is to remark about a mesh.
+/// Keeps the remarks on a mesh.
 struct Followed<'a> {
     mesh: &'a Listed,
     remarks: Vec<String>,
@@ -140,7 +140,7 @@ impl Follow for Followed<'_> {
         }
         file.check_destination(out).map_err(|error| error.to_string())?;
         let written = file.destinations(out).map_err(|error| error.to_string())?;
-        // By another name, which the list could not tell.
+        // A file may have two names, which the list could not tell.
         match written.iter().find(|path| file.paths().any(|own| output::same_file(own, path))) {
             Some(path) => Err(format!("{}: the mesh itself would be replaced", path.display())),
             None => Ok(()),
@@ -163,7 +163,7 @@ impl Follow for Followed<'_> {
     }
 }
 
-/// Writes the report on all meshes that was asked for.
+/// Writes the report on all meshes if it was asked for.
 fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), String> {
     let Some(path) = &args.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;

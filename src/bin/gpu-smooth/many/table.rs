@@ -1,4 +1,4 @@
-//! What became of many meshes: as a table, as CSV and as JSON.
+//! Writes how many meshes ended: as a table, as CSV and as JSON.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -11,10 +11,10 @@ use crate::many::entry::{Entry, Told};
 use crate::numbers::five;
 use crate::report::Report;
 
-/// The columns of numbers with their widths. The first two are left out where a terminal is narrow.
+/// The widths of the columns of numbers. The first two columns are left out on a narrow terminal.
 const WIDTHS: [usize; 7] = [9, 7, 10, 10, 10, 8, 8];
 
-/// The widths of the names and of all columns of numbers that are shown.
+/// The width of the column of names, and which columns of numbers are shown.
 struct Widths {
     name: usize,
     is_narrow: bool,
@@ -41,12 +41,13 @@ impl Widths {
     }
 }
 
-/// No two have the same.
+/// Returns the name of a mesh's file. No two meshes of a call have the same.
 fn name(entry: &Entry) -> String {
     entry.input.file_name().unwrap_or_default().display().to_string()
 }
 
-/// A line for each mesh, and one for all of them. A terminal has so many columns.
+/// Writes a line for each mesh, and one for all of them. `terminal` is the number of columns of the terminal, if there
+/// is one.
 pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> String {
     let widths = Widths::new(entries, terminal);
     let base = entries.iter().find_map(|entry| entry.told.report()).map_or("imr", Report::base);
@@ -75,7 +76,7 @@ pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> 
     text
 }
 
-/// The columns of a mesh that was smoothed.
+/// Formats the columns of a mesh that was smoothed.
 fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     let (before, after) = (&report.before, &report.after);
     let base = report.base();
@@ -91,7 +92,7 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     ]
 }
 
-/// How many meshes came to which end.
+/// Counts the meshes by how they ended.
 fn counts(entries: &[Entry]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for status in ["smoothed", "skipped", "failed", "interrupted"] {
@@ -109,14 +110,14 @@ fn counted(meshes: usize) -> String {
     if meshes == 1 { "1 mesh".into() } else { format!("{meshes} meshes") }
 }
 
-/// The meshes that failed with their reasons, if any did.
+/// Lists the meshes that failed with their reasons, if any did.
 pub(crate) fn failures(entries: &[Entry]) -> Option<String> {
     let failed = || entries.iter().filter_map(|entry| Some((entry, entry.told.problem()?)));
     let count = failed().count();
     let mut text = format!("{count} of {} failed", counted(entries.len()));
     for (entry, problem) in failed() {
         let input = entry.input.display().to_string();
-        // Most reasons start with a file of the mesh.
+        // Most reasons start with the name of a file of the mesh.
         let named = |path: &PathBuf| problem.starts_with(&*path.to_string_lossy());
         let _ = match entry.files.iter().any(named) || problem.starts_with(&input) {
             true => write!(text, "\n  {problem}"),
@@ -179,7 +180,7 @@ fn values(entry: &Entry) -> [Value; KEYS.len()] {
     std::array::from_fn(|_| all.next().unwrap_or_default())
 }
 
-/// A row for each mesh.
+/// Writes a header and a row for each mesh.
 pub(crate) fn csv(entries: &[Entry]) -> String {
     let mut text = KEYS.join(",");
     for entry in entries {
@@ -193,7 +194,7 @@ pub(crate) fn csv(entries: &[Entry]) -> String {
     text
 }
 
-/// An object for each mesh, in a list.
+/// Writes a list with an object for each mesh.
 pub(crate) fn json(entries: &[Entry]) -> Result<String, String> {
     let object =
         |entry| Value::Object(KEYS.map(str::to_owned).into_iter().zip(values(entry)).collect());
@@ -201,7 +202,7 @@ pub(crate) fn json(entries: &[Entry]) -> Result<String, String> {
     serde_json::to_string_pretty(&list).map_err(|error| error.to_string())
 }
 
-/// All that is known of all meshes: of each that was smoothed the report that a run by itself writes.
+/// Writes the report on all meshes. It has, for each smoothed mesh, the report that a single run writes.
 pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, String> {
     let told = |error: serde_json::Error| error.to_string();
     let mut meshes = Vec::new();

@@ -1,4 +1,5 @@
-//! Who smooths which mesh: large ones one after the other on all cores, small ones side by side, each on one thread.
+//! Distributes meshes over threads: large ones one after the other on all cores, small ones side by side, each on one
+//! thread.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -8,26 +9,26 @@ use crate::interrupt;
 use crate::many::entry::Told;
 use crate::many::listing::Listed;
 
-/// Files of more bytes than this are large: some 100,000 vertices as text. Less than that does not keep all cores busy.
+/// Files of more bytes than this are large, some 100,000 vertices as text. Smaller meshes do not keep all cores busy.
 const LARGE: u64 = 10 << 20;
 
-/// Small meshes under way for each core. Writing waits until the disk has the file; another mesh takes the core meanwhile.
+/// Small meshes under way for each core. While one waits for the disk, another takes the core.
 const PER_CORE: usize = 2;
 
 /// How often an interrupt is looked for.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Who follows the work on many meshes.
+/// Is told how the work on many meshes goes.
 pub(crate) trait Watch {
-    /// A mesh of the list is done.
+    /// Is told that a mesh of the list is done, by its index.
     fn done(&mut self, mesh: usize, told: Told);
-    /// Nothing has happened for a while.
+    /// Is told that nothing has happened for a while.
     fn waits(&mut self);
-    /// The user ends the call. No mesh is begun after that.
+    /// Is told that the user ends the call. No mesh is begun after that.
     fn interrupted(&mut self);
 }
 
-/// Calls `work` for each of the `open` meshes of a list, and tells `watch` of it on this thread.
+/// Calls `work` for each of the `open` meshes of a list (indices), and tells `watch` of each on this thread.
 pub(crate) fn run(
     list: &[Listed],
     open: &[usize],
@@ -35,7 +36,7 @@ pub(crate) fn run(
     watch: &mut dyn Watch,
 ) {
     let mut sized: Vec<(u64, usize)> = open.iter().map(|&i| (list[i].bytes(), i)).collect();
-    // The largest first, so that no core is left with one at the end.
+    // The largest meshes come first, so that no core is left with a large one at the end.
     sized.sort_by_key(|&(bytes, i)| (std::cmp::Reverse(bytes), i));
     let large = sized.partition_point(|&(bytes, _)| bytes > LARGE);
     let order: Vec<usize> = sized.into_iter().map(|(_, i)| i).collect();
@@ -62,7 +63,8 @@ pub(crate) fn run(
     });
 }
 
-/// Calls `work` for each of some meshes on threads of their own, which share the cores. It returns whether to go on.
+/// Calls `work` for some meshes (indices) on threads of their own, which share the cores. `work` returns whether to go
+/// on.
 fn side_by_side(meshes: &[usize], work: &(dyn Fn(usize) -> bool + Sync)) {
     let cores = rayon::current_num_threads();
     let workers = (PER_CORE * cores).min(meshes.len());
@@ -76,7 +78,7 @@ fn side_by_side(meshes: &[usize], work: &(dyn Fn(usize) -> bool + Sync)) {
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                // What a run does on all threads, it does on those of this pool.
+                // A run that uses all threads uses those of this pool.
                 let threads = (cores / workers).max(1);
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
                 let _pool = pool.use_current_thread().build();

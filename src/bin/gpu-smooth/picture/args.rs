@@ -10,7 +10,7 @@ pub(crate) struct PictureArgs {
     /// Draw the mesh, colored by its quality, as .png or .svg
     #[arg(long, value_name = "FILE", help_heading = "Picture")]
     pub(crate) picture: Option<PathBuf>,
-    /// The measure of the colors (see `gpu-smooth quality --help`)
+    /// The measure that colors show (see `gpu-smooth quality --help`)
     #[arg(
         long,
         value_name = "NAME",
@@ -29,7 +29,7 @@ pub(crate) struct PictureArgs {
         value_parser = clap::value_parser!(u32).range(400..=8000)
     )]
     pub(crate) picture_size: u32,
-    /// Draw how far the vertices of a run have moved, as arrows in its second half
+    /// Draw how far the vertices of a run have moved, as arrows on the mesh after the run
     #[arg(long, requires = "picture", help_heading = "Picture")]
     pub(crate) picture_arrows: bool,
 }

@@ -5,11 +5,11 @@ use std::collections::HashSet;
 use crate::picture::canvas::{Canvas, Point};
 use crate::picture::color::{BLACK, WHITE};
 
-/// Shorter ways, in pixels, have no arrow.
+/// Moves shorter than this, in pixels, have no arrow.
 const SHORTEST: f32 = 2.0;
 
-/// Draws the ways of vertices, from and to. Of those that begin in one small square only the first is drawn, so that the
-/// mesh under them can be seen.
+/// Draws the moves of vertices, each given by its start and its end. Of the arrows that start in one small square only
+/// the first is drawn, so that the mesh below stays visible.
 pub(super) fn draw(ways: impl Iterator<Item = [Point; 2]>, text: f32, canvas: &mut dyn Canvas) {
     let mut taken = HashSet::new();
     let square = |at: Point| at.map(|x| (x / (0.6 * text)) as i32);
@@ -20,13 +20,13 @@ pub(super) fn draw(ways: impl Iterator<Item = [Point; 2]>, text: f32, canvas: &m
     canvas.lines(&segments, (text / 14.0).max(1.2), BLACK, 1.0);
 }
 
-/// The shaft of an arrow and the two strokes of its head.
+/// Returns the shaft of an arrow and the two strokes of its head.
 fn arrow([from, to]: [Point; 2], text: f32) -> [[Point; 2]; 3] {
     let way = [to[0] - from[0], to[1] - from[1]];
     let length = way[0].hypot(way[1]);
     let head = (0.35 * length).min(0.4 * text);
     let [x, y] = way.map(|along| along / length * head);
-    // Back along the way, and 0.5 of that to either side.
+    // A stroke goes back along the shaft, and half as far to one side.
     let stroke = |side: f32| [to, [to[0] - x - side * y, to[1] - y + side * x]];
     [[from, to], stroke(0.5), stroke(-0.5)]
 }

@@ -1,11 +1,11 @@
-//! What a picture is drawn on.
+//! The surface that a picture is drawn on.
 
 use crate::picture::color::Color;
 
-/// A place in pixels, from the upper left corner.
+/// A point in pixels, from the upper left corner.
 pub(crate) type Point = [f32; 2];
 
-/// Where a text stands from its place.
+/// Which part of a text is at the point where it is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -13,9 +13,9 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// A kind of picture file.
+/// Draws a picture for one kind of file.
 pub(crate) trait Canvas {
-    /// Triangles with their goodness, in the rectangle from one corner to the other.
+    /// Draws triangles, colored by their goodness, in the rectangle between two corners.
     fn faces(
         &mut self,
         corners: [Point; 2],
@@ -24,15 +24,15 @@ pub(crate) trait Canvas {
     );
     fn lines(&mut self, segments: &[[Point; 2]], width: f32, color: Color, opacity: f32);
     fn rectangle(&mut self, corners: [Point; 2], color: Color);
-    /// A disc with a margin.
+    /// Draws a filled disc.
     fn disc(&mut self, center: Point, radius: f32, fill: Color);
     fn ring(&mut self, center: Point, radius: f32, width: f32, color: Color);
-    /// Text on a base line.
+    /// Draws a text. `at` is on its base line.
     fn text(&mut self, at: Point, size: f32, anchor: Anchor, text: &str);
-    /// Draws only inside a rectangle until it is called with none.
+    /// Limits drawing to a rectangle, until it is called with `None`.
     fn clip(&mut self, corners: Option<[Point; 2]>);
-    /// The width of a text.
+    /// Returns the width of a text, in pixels.
     fn width(&self, size: f32, text: &str) -> f32;
-    /// The file.
+    /// Returns the bytes of the file.
     fn finish(self: Box<Self>) -> Result<Vec<u8>, String>;
 }

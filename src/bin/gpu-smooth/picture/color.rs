@@ -6,11 +6,12 @@ pub(crate) type Color = [u8; 3];
 
 pub(crate) const BLACK: Color = [0, 0, 0];
 pub(crate) const WHITE: Color = [255, 255, 255];
-/// Of inverted and flat triangles: not on the scale, and lighter or darker than what is near it there for any eye.
+/// The color of inverted and flat triangles. It is not on the scale, and any eye sees it lighter or darker than its
+/// neighbors there.
 pub(crate) const BAD: Color = [230, 25, 75];
 
-/// Viridis (Smith & van der Walt, 2015) from bad to good: even steps for the eye, also for those who cannot tell red from
-/// green, and in gray.
+/// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps look even to the eye, to the
+/// color-blind, and in gray.
 pub(crate) const VIRIDIS: [Color; 10] = [
     [68, 1, 84],
     [72, 40, 120],
@@ -24,7 +25,7 @@ pub(crate) const VIRIDIS: [Color; 10] = [
     [253, 231, 37],
 ];
 
-/// The color of a goodness: 0 for bad, 1 for ideal, below 0 for an inverted or flat triangle.
+/// Returns the color of a goodness: 0 is bad, 1 is ideal, below 0 is an inverted or flat triangle.
 pub(crate) fn of_goodness(goodness: f32) -> Color {
     if goodness < 0.0 {
         return BAD;
@@ -38,22 +39,24 @@ pub(crate) fn of_goodness(goodness: f32) -> Color {
     [0, 1, 2].map(|i: usize| mix(from[i], to[i]))
 }
 
-/// How far above its ideal a ratio is that is shown as bad as can be.
+/// A ratio this far above its ideal is shown as the worst.
 const WORST_ABOVE: f64 = 9.0;
 
-/// How good a value is, from 0 to 1. The scale depends on the measure alone, so that pictures can be compared: from one
-/// end of its range to the other, or, where that has no end, by the logarithm to 9 above the ideal.
+/// Rates a value from 0 (bad) to 1 (ideal). The scale depends on the measure alone, so that pictures can be compared.
+/// It goes from one end of the measure's range to the other, or, if that has no end, logarithmically to 9 above the
+/// ideal.
 pub(crate) fn goodness(measure: Measure, value: f64) -> f32 {
     let definition = measure.definition();
     let share = match bad_end(measure) {
         Some(bad) => (value - bad) / (definition.ideal - bad),
         None => 1.0 - (1.0 + (value - definition.ideal).abs()).ln() / (1.0 + WORST_ABOVE).ln(),
     };
-    // NaN, which no measure gives, would be black.
+    // Clamped, as NaN would be drawn black. No measure gives it.
     share.clamp(0.0, 1.0) as f32
 }
 
-/// The bad end of a scale that has one. Negative scaled Jacobians are those of inverted triangles.
+/// Returns the bad end of a measure's scale, if it has one. A scaled Jacobian below 0 belongs to an inverted triangle,
+/// so that scale ends at 0.
 pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
     let definition = measure.definition();
     let bad = match definition.better {
@@ -63,7 +66,7 @@ pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
     bad.is_finite().then_some(bad)
 }
 
-/// Values to be named beside a scale, from bad to good, with their names.
+/// Returns the values to be marked beside a scale, from bad to good, with their names.
 pub(crate) fn ticks(measure: Measure) -> Vec<(f64, String)> {
     let definition = measure.definition();
     let Some(bad) = bad_end(measure) else {
@@ -96,7 +99,7 @@ mod tests {
         assert_eq!(ticks(Measure::MinAngle)[1].1, "10°");
     }
 
-    /// As seen in gray, each step is lighter than the one before it.
+    /// Each step of the scale is lighter in gray than the one before it.
     #[test]
     fn better_is_lighter() {
         let gray = |goodness: f32| {

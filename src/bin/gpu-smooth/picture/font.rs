@@ -1,4 +1,4 @@
-//! Text as outlines. The font is the Latin part of DejaVu Sans; its license is beside it.
+//! Text as outlines. The font is the Latin part of DejaVu Sans; its license is in the same folder.
 
 use tiny_skia::{Path, PathBuilder, Transform};
 use ttf_parser::{Face, OutlineBuilder};
@@ -11,18 +11,18 @@ impl Font {
         face.map(Self).map_err(|error| format!("the font of pictures cannot be read: {error}"))
     }
 
-    /// The width of a text at a size in pixels.
+    /// Returns the width of a text, in pixels, at a size in pixels.
     pub(crate) fn width(&self, size: f32, text: &str) -> f32 {
         let advance = |c| self.0.glyph_index(c).and_then(|glyph| self.0.glyph_hor_advance(glyph));
         let units: f32 = text.chars().map(|c| f32::from(advance(c).unwrap_or(1200))).sum();
         units * self.scale(size)
     }
 
-    /// The outlines of a text that starts at a place on its base line.
+    /// Returns the outlines of a text that starts at a point on its base line.
     pub(crate) fn outlines(&self, [x, y]: [f32; 2], size: f32, text: &str) -> Option<Path> {
         let mut builder = Outlines(PathBuilder::new(), 0.0);
         for c in text.chars() {
-            // A character that the font does not have leaves a gap.
+            // A character that the font lacks leaves a gap.
             if let Some(glyph) = self.0.glyph_index(c) {
                 self.0.outline_glyph(glyph, &mut builder);
                 builder.1 += f32::from(self.0.glyph_hor_advance(glyph).unwrap_or(0));

@@ -10,7 +10,8 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// Of the vertices of some triangles at all of several positions. Vertices that are no finite numbers are left out.
+    /// Returns the rectangle around the vertices of some triangles, at all of several positions. Vertices that are not
+    /// finite are left out.
     pub(crate) fn of(triangles: &[[u32; 3]], all: &[&[[f64; 2]]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for points in all {
@@ -24,7 +25,7 @@ impl Extent {
         Self { low, high }
     }
 
-    /// Width and height, neither of which is nothing.
+    /// Returns width and height. Neither is less than a thousandth of the other.
     pub(crate) fn size(&self) -> [f64; 2] {
         let size = [0, 1].map(|axis| self.high[axis] - self.low[axis]);
         let least = 1e-3 * size[0].max(size[1]).max(f64::MIN_POSITIVE);
@@ -32,20 +33,20 @@ impl Extent {
     }
 }
 
-/// Puts points of the plane into a rectangle of the picture, upright and with equal axes.
+/// Maps points of the plane into a rectangle of the picture, upright and with equal axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
-    /// Upper left and lower right corner of what the mesh takes.
+    /// Upper left and lower right corner of the mapped rectangle, in pixels.
     pub(crate) corners: [Point; 2],
     middle: [f64; 2],
-    /// The middle in pixels.
+    /// Where `middle` lies in the picture, in pixels.
     center: [f64; 2],
-    /// Pixels per unit.
+    /// Pixels per unit of the plane.
     pub(crate) scale: f64,
 }
 
 impl Frame {
-    /// As large as fits into `corners`.
+    /// Makes a frame in which the extent is as large as fits into the given corners.
     pub(crate) fn new(extent: Extent, [[left, top], [right, bottom]]: [[f64; 2]; 2]) -> Self {
         let [width, height] = extent.size();
         let scale = ((right - left) / width).min((bottom - top) / height);
@@ -56,7 +57,7 @@ impl Frame {
         Self { corners: [corner(-1.0), corner(1.0)], middle, center, scale }
     }
 
-    /// A rectangle of the picture with a point of the plane in its middle.
+    /// Makes a frame for a rectangle of the picture, with a point of the plane in its middle.
     pub(crate) fn around(middle: [f64; 2], scale: f64, corners: [Point; 2]) -> Self {
         let center = [0, 1].map(|axis| f64::from(corners[0][axis] + corners[1][axis]) / 2.0);
         Self { corners, middle, center, scale }
@@ -70,12 +71,12 @@ impl Frame {
     }
 }
 
-/// Where a mesh, and what is told of it, is.
+/// Where a mesh, its title and its insets lie.
 pub(crate) struct Place {
     pub(crate) frame: Frame,
-    /// Where the first line above the mesh starts, on its base line.
+    /// Where the first line of the title starts, on its base line.
     pub(crate) title: Point,
-    /// Rectangles for parts of the mesh, enlarged; none if they were not asked for.
+    /// Rectangles for enlarged parts of the mesh; empty without insets.
     pub(crate) insets: Vec<[Point; 2]>,
 }
 
@@ -85,21 +86,21 @@ pub(crate) struct Layout {
     /// The height of text.
     pub(crate) text: f32,
     pub(crate) panels: Vec<Place>,
-    /// The upper left corner and the width of the legend.
+    /// The upper left corner of the legend, and its width.
     pub(crate) legend: (Point, f32),
 }
 
-/// No mesh is higher than this times the width of the picture.
+/// The most height of a mesh, as a multiple of the width of the picture.
 const HIGHEST: f64 = 1.2;
 
-/// Meshes less high than this times their width are one above the other, others side by side.
+/// Meshes whose height is less than this times their width stand one above the other, others side by side.
 const WIDE: f64 = 0.4;
 
-/// The height of an inset by its width.
+/// The height of an inset, as a multiple of its width.
 const INSET: f64 = 0.65;
 
 impl Layout {
-    /// Of `count` panels of one extent, each with a row of so many insets.
+    /// Lays out `count` panels of one extent, each with a row of `insets` insets, in a picture of this width.
     pub(crate) fn new(extent: Extent, count: usize, insets: usize, width: u32) -> Self {
         let full = f64::from(width);
         let text = (full / 62.0).max(11.0);

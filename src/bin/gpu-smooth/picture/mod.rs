@@ -27,7 +27,7 @@ use scene::{Panel, Scene};
 
 use crate::numbers::five;
 
-/// Among so many of the worst triangles, some are marked that are apart from each other.
+/// How many of the worst triangles are searched for some that lie apart from each other.
 const CANDIDATES: usize = 1000;
 
 /// The vertices of a mesh at some time.
@@ -51,7 +51,7 @@ fn kind(path: &Path) -> Result<Kind, String> {
     }
 }
 
-/// Refuses a picture that cannot be written, or would replace one of these files, before there is anything to draw.
+/// Refuses, before anything is drawn, a picture that cannot be written or that would replace one of these files.
 pub(crate) fn check<'p>(
     args: &PictureArgs,
     mut others: impl Iterator<Item = &'p Path>,
@@ -64,7 +64,7 @@ pub(crate) fn check<'p>(
     output::check(path).map_err(|error| format!("the picture cannot be written: {error}"))
 }
 
-/// Draws the picture that was asked for, with a panel for each shot, all on one scale.
+/// Draws the picture that was asked for: one panel for each shot, all on one color scale.
 pub(crate) fn write(
     args: &PictureArgs,
     file: &MeshFile,
@@ -104,8 +104,8 @@ pub(crate) fn write(
     output::replace(path, &bytes).map_err(|error| failed(error.to_string()))
 }
 
-/// The triangles alone as PNG, colored by a measure, with nothing behind them; `longest` pixels wide or high, whichever is
-/// more. The picture ends where the extent does.
+/// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
+/// `longest` pixels, and it ends where the extent does.
 pub(crate) fn picture_of(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -125,7 +125,7 @@ pub(crate) fn picture_of(
     png::encode(&raster)
 }
 
-/// How good each triangle is; below 0 if it is inverted or flat.
+/// Rates each triangle from 0 to 1, or below 0 if it is inverted or flat.
 fn goodness_of(
     topology: &Topology<'_>,
     state: &Measured<'_>,

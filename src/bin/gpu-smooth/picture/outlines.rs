@@ -1,22 +1,22 @@
-//! The lines of a mesh: edges inside it, its boundary, lines between regions, and vertices that are held.
+//! The lines of a mesh: edges inside it, its boundary, edges between regions, and vertices that are held.
 
 use gpu_smooth::Topology;
 
-/// What is drawn of a mesh besides its triangles, by its vertices. The same before and after a run.
+/// Lines and vertices that are drawn on the triangles, by vertex indices. They are the same before and after a run.
 pub(crate) struct Outlines {
-    /// Edges of one triangle.
+    /// Edges that belong to one triangle.
     pub(crate) boundary: Vec<[u32; 2]>,
-    /// Edges of two triangles of different regions.
+    /// Edges between triangles of different regions.
     pub(crate) between_regions: Vec<[u32; 2]>,
     /// Vertices inside the mesh that did not move and must not.
     pub(crate) held: Vec<u32>,
-    /// Vertices on lines that slid along them.
+    /// Vertices on lines that slid along their line.
     pub(crate) slid: Vec<u32>,
 }
 
 impl Outlines {
-    /// Of a mesh with a list of fixed vertices and, if there are several, the region of each triangle; with its vertices before a run
-    /// and after it.
+    /// Collects the lines of a mesh from its fixed vertices, the region of each triangle (if there are several), and
+    /// its vertices before and after a run.
     pub(crate) fn of(
         topology: &Topology<'_>,
         fixed: &[u32],
@@ -36,14 +36,14 @@ impl Outlines {
     }
 }
 
-/// The vertices that are not free and have moved all the same, ascending: they slid.
+/// Returns the vertices that are not free and have moved all the same, ascending. These slid.
 pub(crate) fn slid(topology: &Topology<'_>, before: &[[f64; 2]], after: &[[f64; 2]]) -> Vec<u32> {
     let states = before.iter().zip(after).zip(topology.free());
     let slid = states.map(|((was, is), is_free)| !is_free && was != is);
     (0..).zip(slid).filter(|(_, slid)| *slid).map(|(v, _)| v).collect()
 }
 
-/// The edges between triangles of different regions.
+/// Returns the edges between triangles of different regions.
 fn between(topology: &Topology<'_>, regions: &[u32]) -> Vec<[u32; 2]> {
     let triangles = topology.triangles();
     let across = |t: usize, [a, b]: [u32; 2]| {
@@ -60,7 +60,7 @@ fn between(topology: &Topology<'_>, regions: &[u32]) -> Vec<[u32; 2]> {
         .collect()
 }
 
-/// The edges inside a mesh, each once with one of its triangles, and some of the boundary.
+/// Returns each edge inside a mesh once, with one of its triangles, and some edges of the boundary.
 pub(crate) fn inner_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (usize, [u32; 2])> + '_ {
     let edges = |(t, &[a, b, c]): (usize, &[u32; 3])| [(t, [a, b]), (t, [b, c]), (t, [c, a])];
     // With consistent windings, the two triangles of an edge run along it in opposite directions.

@@ -1,4 +1,4 @@
-//! Pictures of pixels.
+//! Pictures as PNG.
 
 use tiny_skia::{
     FillRule, Mask, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8, Rect, Stroke, Transform,
@@ -37,7 +37,7 @@ fn paint(color: Color, opacity: f32) -> Paint<'static> {
     paint
 }
 
-/// The rectangle's triangles as a PNG with nothing behind them.
+/// Encodes the triangles of a raster as a PNG without background.
 pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
     let (width, height) = (size(raster.width)?, size(raster.height)?);
@@ -73,7 +73,7 @@ impl Canvas for Png {
     }
 
     fn lines(&mut self, segments: &[[Point; 2]], width: f32, color: Color, opacity: f32) {
-        // In pieces, as the time for one path grows faster than its length.
+        // The lines are drawn in pieces, as the time for one path grows faster than its length.
         for piece in segments.chunks(4096) {
             let mut path = PathBuilder::new();
             for [from, to] in piece {
@@ -120,7 +120,7 @@ impl Canvas for Png {
             Anchor::End => x - width,
         };
         if let Some(path) = self.font.outlines([start, y], size, text) {
-            // A margin keeps it legible on any ground.
+            // A white margin keeps the text legible on any background.
             self.stroke(Some(path.clone()), size / 5.0, WHITE, 1.0);
             let paint = paint(BLACK, 1.0);
             self.pixels.fill_path(

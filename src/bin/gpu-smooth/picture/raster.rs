@@ -1,20 +1,20 @@
-//! Triangles as pixels, however many there are.
+//! Draws any number of triangles as pixels.
 
 use crate::picture::canvas::Point;
 use crate::picture::color::of_goodness;
 
-/// The goodness of each pixel of a rectangle. Where triangles are smaller than a pixel, the worst of them shows.
+/// The goodness of each pixel of a rectangle. A pixel with several triangles shows the worst of them.
 pub(crate) struct Raster {
     pub(crate) left: i32,
     pub(crate) top: i32,
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Infinite where there is no triangle.
+    /// The goodness row by row; infinite where there is no triangle.
     goodness: Vec<f32>,
 }
 
 impl Raster {
-    /// Of the whole pixels that a rectangle touches.
+    /// Makes a raster of all pixels that a rectangle touches.
     pub(crate) fn new([[left, top], [right, bottom]]: [Point; 2]) -> Self {
         let (left, top) = (left.floor() as i32, top.floor() as i32);
         let size = |from: i32, to: f32| (to.ceil() as i32 - from).max(1) as usize;
@@ -22,12 +22,12 @@ impl Raster {
         Self { left, top, width, height, goodness: vec![f32::INFINITY; width * height] }
     }
 
-    /// Fills the pixels whose centers are in a triangle; the pixel of its middle if there is none.
+    /// Fills the pixels whose centers are in a triangle. If there is none, fills the pixel at the triangle's centroid.
     pub(crate) fn fill(&mut self, corners: [Point; 3], goodness: f32) {
         let [p, q, r] = corners.map(|[x, y]| [x - self.left as f32, y - self.top as f32]);
         let least = |axis: usize| p[axis].min(q[axis]).min(r[axis]);
         let most = |axis: usize| p[axis].max(q[axis]).max(r[axis]);
-        // Rows whose center is between the lowest and the highest corner.
+        // Rows whose centers lie between the lowest and the highest corner.
         let first = (least(1) - 0.5).ceil().max(0.0) as usize;
         let end = ((most(1) - 0.5).floor() + 1.0).clamp(0.0, self.height as f32) as usize;
         let mut met = false;
@@ -62,7 +62,7 @@ impl Raster {
         }
     }
 
-    /// Pixels row by row, red, green, blue and opacity.
+    /// Returns the pixels row by row, as red, green, blue and opacity.
     pub(crate) fn pixels(&self) -> impl Iterator<Item = [u8; 4]> + '_ {
         self.goodness.iter().map(|&goodness| match goodness.is_finite() {
             true => {
@@ -100,7 +100,7 @@ mod tests {
         }
         assert_eq!(raster.goodness[5], 0.2);
         assert_eq!(raster.pixels().filter(|pixel| pixel[3] > 0).count(), 1);
-        // Outside, and no numbers: nothing.
+        // Triangles outside, or with corners that are not finite, draw nothing.
         for x in [-5.0, 99.0, f32::NAN, f32::INFINITY] {
             raster.fill([[x, -9.0], [x, 99.0], [x, 1.0]], 0.0);
         }

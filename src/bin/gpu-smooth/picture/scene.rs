@@ -1,4 +1,4 @@
-//! What is drawn.
+//! Draws meshes with their legend on a canvas.
 
 use std::collections::HashSet;
 
@@ -11,12 +11,12 @@ use crate::picture::color::{self, BAD, BLACK, WHITE};
 use crate::picture::layout::{Extent, Frame, Layout, Place};
 use crate::picture::outlines::{Outlines, inner_edges};
 
-/// A mesh at some positions, with what its colors are of.
+/// A mesh at one set of positions, with the numbers that its colors show.
 pub(crate) struct Panel<'a> {
-    /// Lines above the mesh.
+    /// The two lines above the mesh.
     pub(crate) title: [String; 2],
     pub(crate) points: &'a [[f64; 2]],
-    /// Of each triangle: from 0 to 1, or below 0 if it is inverted or flat.
+    /// For each triangle: from 0 to 1, or below 0 if it is inverted or flat.
     pub(crate) goodness: Vec<f32>,
     /// Bad triangles with their values, the worst first.
     pub(crate) worst: Vec<(usize, f64)>,
@@ -26,20 +26,21 @@ pub(crate) struct Panel<'a> {
 pub(crate) struct Scene<'a> {
     pub(crate) measure: Measure,
     pub(crate) triangles: &'a [[u32; 3]],
-    /// Whether the panels after the first show how far vertices have moved since that.
+    /// Whether the panels after the first show how far vertices have moved since the first.
     pub(crate) with_arrows: bool,
     pub(crate) outlines: Outlines,
     pub(crate) panels: Vec<Panel<'a>>,
 }
 
-/// Triangles less high than this, in pixels, have no edges; twice and four times as high ones darker edges.
+/// Triangles whose height is less than this, in pixels, have no edges. Edges are darker at twice and at four times this
+/// height.
 const LEAST_HEIGHT: f32 = 3.0;
 
 /// How many of the worst triangles are marked, and enlarged.
 const MARKED: usize = 3;
 
 impl Scene<'_> {
-    /// With insets if a bad triangle is too small to be seen without.
+    /// Lays out the panels, with insets if a marked triangle is too small to be seen without.
     pub(crate) fn layout(&self, width: u32) -> Layout {
         let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
         let extent = Extent::of(self.triangles, &all);
@@ -63,7 +64,7 @@ impl Scene<'_> {
             for (number, &(t, _)) in (1..).zip(&spots) {
                 let at = place.frame.place(self.middle(panel, t));
                 worst(at, text, canvas);
-                // On the left where the picture ends on the right.
+                // The number stands on the left of a mark near the right end of the picture.
                 let is_last = at[0] + 2.0 * text > layout.size[0] as f32;
                 let (aside, anchor) = match is_last {
                     true => (-0.85 * text, Anchor::End),
@@ -74,7 +75,7 @@ impl Scene<'_> {
             }
             for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
                 let [[left, top], [right, _]] = corners;
-                // Some seven triangles across, and larger than in the picture of the whole.
+                // Some seven triangles fit across an inset, and it is larger than the picture of the whole.
                 let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
                 let scale = if scale.is_finite() { scale } else { place.frame.scale };
                 let scale = scale.max(2.5 * place.frame.scale);
@@ -99,7 +100,7 @@ impl Scene<'_> {
         self.draw_legend(layout, canvas);
     }
 
-    /// The worst triangles whose marks do not touch.
+    /// Returns the worst triangles whose marks do not touch.
     fn spots(&self, panel: &Panel<'_>, frame: &Frame, text: f32) -> Vec<(usize, f64)> {
         let mut spots: Vec<(usize, f64, Point)> = Vec::new();
         for &(t, value) in &panel.worst {
@@ -117,7 +118,7 @@ impl Scene<'_> {
         [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
     }
 
-    /// In the unit of the mesh.
+    /// Returns the length of a triangle's longest edge, in units of the mesh.
     fn longest_edge(&self, panel: &Panel<'_>, t: usize) -> f64 {
         let [p, q, r] = self.triangles[t].map(|v| panel.points[v as usize]);
         let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
@@ -151,7 +152,7 @@ impl Scene<'_> {
         };
         between_regions(&placed(&self.outlines.between_regions), text, canvas);
         canvas.lines(&placed(&self.outlines.boundary), boundary_width(text), BLACK, 1.0);
-        // One in each small square, so that dense ones do not hide what is under them.
+        // One mark in each small square, so that dense marks do not hide what lies under them.
         let mut taken = HashSet::new();
         if self.with_arrows {
             let before = self.panels[0].points.iter().map(|&point| frame.place(point));
@@ -179,7 +180,7 @@ impl Scene<'_> {
         for step in 0..steps {
             let [from, to] = [step, step + 1].map(|i| left + bar * i as f32 / steps as f32);
             let color = color::of_goodness((step as f32 + 0.5) / steps as f32);
-            // A little longer, so that no seam is left.
+            // Each step is a little longer, so that no seam is left.
             let to = if step + 1 < steps { to + 1.0 } else { to };
             canvas.rectangle([[from, upper], [to, upper + high]], color);
         }
@@ -198,7 +199,7 @@ impl Scene<'_> {
         self.draw_signs(layout, [left + bar + 2.0 * text, upper], canvas);
     }
 
-    /// What the lines and marks mean, in two columns beside the scale, as far as they are there.
+    /// Explains the lines and marks that occur, in two columns beside the scale.
     fn draw_signs(&self, layout: &Layout, [left, top]: Point, canvas: &mut dyn Canvas) {
         let (text, small) = (layout.text, 0.8 * layout.text);
         type Sign = fn(Point, f32, &mut dyn Canvas);
@@ -248,20 +249,20 @@ fn boundary_width(text: f32) -> f32 {
     (text / 14.0).max(1.0)
 }
 
-/// A white line on a black one.
+/// Draws edges between regions: a white line on a black one.
 fn between_regions(segments: &[[Point; 2]], text: f32, canvas: &mut dyn Canvas) {
     canvas.lines(segments, (text / 5.0).max(3.5), BLACK, 1.0);
     canvas.lines(segments, (text / 12.0).max(1.5), WHITE, 1.0);
 }
 
-/// A frame around an inset.
+/// Draws a frame around an inset.
 fn around([[left, top], [right, bottom]]: [Point; 2], text: f32, canvas: &mut dyn Canvas) {
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
     let sides = [0, 1, 2, 3].map(|i: usize| [corners[i], corners[(i + 1) % 4]]);
     canvas.lines(&sides, text / 16.0, BLACK, 1.0);
 }
 
-/// Whether points may be seen, with the lines between them, in a rectangle.
+/// Whether these points, or the lines between them, may be visible in a rectangle.
 fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
     let beyond = |axis: usize| {
         points.iter().all(|point| point[axis] < corners[0][axis] - text)
@@ -270,30 +271,30 @@ fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
     !beyond(0) && !beyond(1)
 }
 
-/// A vertex that has moved.
+/// Draws the arrow of a vertex that has moved, for the legend.
 fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
     arrows::draw(std::iter::once([[x - 0.7 * text, y], [x + 0.7 * text, y]]), text, canvas);
 }
 
-/// A vertex that must not move.
+/// Draws a vertex that must not move.
 fn held(at: Point, text: f32, canvas: &mut dyn Canvas) {
     canvas.disc(at, text / 6.5, BLACK);
     canvas.disc(at, text / 12.0, WHITE);
 }
 
-/// A vertex that slid along its line.
+/// Draws a vertex that slid along its line.
 fn slid(at: Point, text: f32, canvas: &mut dyn Canvas) {
     canvas.disc(at, text / 6.5, WHITE);
     canvas.disc(at, text / 9.0, BLACK);
 }
 
-/// A mark around a bad triangle.
+/// Draws a mark around a bad triangle.
 fn worst(at: Point, text: f32, canvas: &mut dyn Canvas) {
     canvas.ring(at, 0.6 * text, text / 4.0, WHITE);
     canvas.ring(at, 0.6 * text, text / 10.0, BLACK);
 }
 
-/// The least height of a triangle.
+/// Returns the least height of a triangle.
 fn least_height([p, q, r]: [Point; 3]) -> f32 {
     let to = |p: Point, q: Point| [q[0] - p[0], q[1] - p[1]];
     let (a, b, c) = (to(p, q), to(p, r), to(q, r));

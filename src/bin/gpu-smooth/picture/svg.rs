@@ -1,4 +1,5 @@
-//! Pictures as SVG: triangles and lines as such, but for the triangles of large meshes, which are a picture of pixels inside.
+//! Pictures as SVG. Triangles and lines are shapes, except that the triangles of large meshes are an embedded picture
+//! of pixels.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,10 +13,10 @@ use crate::picture::font::Font;
 use crate::picture::png;
 use crate::picture::raster::Raster;
 
-/// Up to so many triangles of a panel are drawn as such: some megabytes.
+/// The most triangles of a panel that are drawn as shapes, which take some megabytes.
 const MOST_TRIANGLES: usize = 50_000;
 
-/// Colors of triangles are rounded to so many.
+/// The number of steps that colors of triangles are rounded to.
 const COLORS: f32 = 128.0;
 
 pub(crate) struct Svg {
@@ -44,7 +45,7 @@ fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A coordinate with a digit or two after the point, which no eye can tell from more.
+/// Formats a coordinate with a digit or two after the point, as no eye can see more.
 fn short(x: f32) -> String {
     let text = format!("{x:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -55,7 +56,7 @@ fn place(at: Point) -> String {
     format!("{x} {y}")
 }
 
-/// Text that is no markup.
+/// Escapes a text for SVG.
 fn escaped(text: &str) -> String {
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
@@ -93,7 +94,7 @@ impl Canvas for Svg {
         }
         for (color, path) in paths {
             let color = hex(of_goodness(color as f32 / COLORS));
-            // The stroke closes the seam that shows between two smoothed edges.
+            // The stroke closes the seam that shows between two antialiased edges.
             self.add(format_args!(
                 "<path fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.5\" d=\"{path}\"/>"
             ));
@@ -196,7 +197,7 @@ mod tests {
         let bytes = BASE64_STANDARD.decode(&data[..data.find('"').unwrap()]).unwrap();
         let picture = tiny_skia::Pixmap::decode_png(&bytes).unwrap();
         assert_eq!((picture.width(), picture.height()), (20, 20));
-        // Inside the triangle and beside it.
+        // A pixel inside the triangle and one beside it.
         assert_eq!(
             [picture.pixel(8, 5), picture.pixel(2, 11)].map(|p| p.unwrap().alpha()),
             [255, 0]

@@ -1,4 +1,4 @@
-//! How progress is shown.
+//! Chooses how progress is shown.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use crate::cli::OutputArgs;
 use crate::tell;
 
-/// What is shorter than this shows nothing.
+/// Runs shorter than this show no progress.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(700);
 
 /// How progress is shown.

@@ -1,4 +1,4 @@
-//! Estimates of the time that is left.
+//! Estimates the time that is left.
 
 use crate::progress::stage::Stage;
 
@@ -8,16 +8,16 @@ const WRITE: f64 = 450e6;
 /// Vertices that two cores prepare in a second.
 const PREPARE: f64 = 4e6;
 
-/// Estimates how long stages take. The machine is as fast as it was at the stages before.
+/// Estimates how long stages take, assuming that the machine is as fast as it was in earlier stages.
 #[derive(Default)]
 pub(crate) struct Pace {
-    /// Seconds that past stages were expected to take, and took.
+    /// Seconds that earlier stages were expected to take, and that they took.
     expected: f64,
     took: f64,
 }
 
 impl Pace {
-    /// A stage has ended after so many seconds.
+    /// Records how many seconds a stage took.
     pub(crate) fn learn(&mut self, stage: Stage, seconds: f64) {
         if let Some(expected) = usual(stage) {
             self.expected += expected;
@@ -25,7 +25,8 @@ impl Pace {
         }
     }
 
-    /// Seconds that a stage is likely to take as a whole; `None` for sweeps, and if nothing is known of the file.
+    /// Estimates how many seconds a stage takes as a whole. `None` for untangling and sweeps, and if the size of the
+    /// file or mesh is not known.
     pub(crate) fn whole(&self, stage: Stage) -> Option<f64> {
         // A fraction of a second tells little of the machine.
         let slower = if self.took > 0.2 { self.took / self.expected } else { 1.0 };
@@ -33,7 +34,7 @@ impl Pace {
     }
 }
 
-/// Seconds that a stage takes on the machine that was measured.
+/// Returns the seconds that a stage takes on the machine that was measured.
 fn usual(stage: Stage) -> Option<f64> {
     let seconds = match stage {
         Stage::Reading { bytes } => bytes as f64 / READ,
@@ -44,12 +45,12 @@ fn usual(stage: Stage) -> Option<f64> {
     (seconds > 0.0).then_some(seconds)
 }
 
-/// When a run by sweeps is likely to end.
+/// Estimates when a run by sweeps ends.
 pub(crate) struct Decay {
-    /// The share of f that may be left; `None` if the run has another goal.
+    /// The share of f that may be left to gain; `None` if the run has another goal.
     tolerance: Option<f64>,
     max_sweeps: u32,
-    /// Sweeps that were done, and f after them; the last three.
+    /// The last three pairs of a sweep and f after it.
     known: Vec<(u32, f64)>,
 }
 
@@ -58,7 +59,7 @@ impl Decay {
         Self { tolerance, max_sweeps, known: Vec::new() }
     }
 
-    /// f was so much after so many sweeps.
+    /// Records f after this sweep.
     pub(crate) fn learn(&mut self, sweep: u32, f: f64) {
         if self.known.last().is_some_and(|last| last.0 >= sweep) {
             self.known.clear();
@@ -69,8 +70,8 @@ impl Decay {
         self.known.push((sweep, f));
     }
 
-    /// Sweeps that are likely to be left: until a geometric decay of the gains is within the tolerance, or all that are
-    /// allowed.
+    /// Estimates how many sweeps are left: until the gains, if they decay geometrically, are within the tolerance, or
+    /// until the most that are allowed.
     pub(crate) fn sweeps_left(&self) -> Option<f64> {
         let &(last, f) = self.known.last()?;
         let most = f64::from(self.max_sweeps.saturating_sub(last));
@@ -81,15 +82,15 @@ impl Decay {
         let Some(decay) = decay(before / now, b - a, c - b).filter(|_| now > 0.0) else {
             return Some(most).filter(|_| tolerance == 0.0);
         };
-        // What is left to gain; the stop rule doubles what it estimates.
+        // The gain that is left, doubled as in the stop rule.
         let remaining = 2.0 * now / (decay * (c - b)).exp_m1();
         let sweeps = (remaining / (tolerance * f).max(f64::MIN_POSITIVE)).ln() / decay;
         Some(sweeps.clamp(0.0, most))
     }
 }
 
-/// By what power of e the distance from the limit falls in a sweep, if the gain of `before` sweeps is `ratio` times that of
-/// the `after` ones that followed. `None` if it does not fall.
+/// Returns the rate λ at which the distance from the limit falls as exp(−λ) per sweep, if the gain of `before` sweeps
+/// is `ratio` times that of the `after` sweeps that followed. `None` if it does not fall.
 fn decay(ratio: f64, before: f64, after: f64) -> Option<f64> {
     let of = |decay: f64| (decay * before).exp_m1() / -(-decay * after).exp_m1();
     let (mut low, mut high) = (1e-9, 40.0);
@@ -103,7 +104,7 @@ fn decay(ratio: f64, before: f64, after: f64) -> Option<f64> {
     Some(high)
 }
 
-/// A time as it is told: seconds, minutes and seconds, or hours and minutes.
+/// Formats a time as seconds, minutes and seconds, or hours and minutes.
 pub(crate) fn told(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {

@@ -1,4 +1,4 @@
-//! How far a run is, while it is under way: a bar on a terminal, else a line now and then.
+//! Shows how far a run is: by a bar on a terminal, else by a line now and then.
 
 mod form;
 mod left;

@@ -1,4 +1,4 @@
-//! How far a run on one mesh is.
+//! Shows how far a run on one mesh is.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ use crate::tell;
 /// How often a bar is drawn again.
 const FRAME: Duration = Duration::from_millis(200);
 
-/// Shows the stages of a run on standard error if it takes a while.
+/// Shows the stages of a run on standard error, if the run takes long enough.
 pub(crate) struct Display {
     shared: Arc<Shared>,
 }
@@ -40,23 +40,24 @@ struct State {
     next_line: Instant,
 }
 
-/// What is known of the sweeps so far.
+/// How far the sweeps are.
 struct Swept {
     progress: Progress,
-    /// When their phase began, and when this was told.
+    /// When the phase of these sweeps began, and when its progress was last told.
     began: Instant,
     told: Instant,
 }
 
 impl Swept {
-    /// The time that a sweep takes.
+    /// Returns the mean seconds of a sweep in this phase.
     fn seconds(&self) -> f64 {
         (self.told - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
     }
 }
 
 impl Display {
-    /// For a run that ends within a share of the limit of f, if it has no other goal, or after so many sweeps.
+    /// Makes a display for a run that ends within `tolerance` of the limit of f (`None` if it has another goal) or
+    /// after `max_sweeps`.
     pub(crate) fn new(show: &OutputArgs, tolerance: Option<f64>, max_sweeps: u32) -> Self {
         let (form, now) = (Form::new(show), Instant::now());
         let wait = match form {
@@ -78,7 +79,8 @@ impl Display {
         };
         let shared = Arc::new(Shared { state: Mutex::new(state), ended: Condvar::new() });
         if form != Form::None {
-            // Reading, preparing and writing do not tell how far they are: a clock does.
+            // The stages of reading, preparing and writing do not tell how far they are, so a clock redraws the
+            // display.
             let of_clock = Arc::clone(&shared);
             let clock = std::thread::Builder::new().name("progress".into());
             let _ = clock.spawn(move || of_clock.tick());
@@ -86,7 +88,7 @@ impl Display {
         Self { shared }
     }
 
-    /// Another stage begins.
+    /// Begins another stage.
     pub(crate) fn stage(&self, stage: Stage) {
         let mut state = self.shared.lock();
         let seconds = state.stage_began.elapsed().as_secs_f64();
@@ -99,7 +101,7 @@ impl Display {
         }
     }
 
-    /// Some sweeps were done.
+    /// Shows that sweeps were done.
     pub(crate) fn sweep(&self, progress: &Progress) {
         let mut state = self.shared.lock();
         let told = Instant::now();
@@ -115,13 +117,13 @@ impl Display {
         state.show();
     }
 
-    /// Does something that prints, without the bar.
+    /// Calls `print` while the bar is hidden.
     pub(crate) fn aside(&self, print: impl FnOnce()) {
         let state = self.shared.lock();
         state.bar.suspend(print);
     }
 
-    /// Takes the bar away.
+    /// Removes the bar, and shows no more.
     pub(crate) fn clear(&self) {
         let mut state = self.shared.lock();
         state.has_ended = true;
@@ -168,7 +170,7 @@ impl State {
             Form::Bar => {
                 let (text, left) = (self.text(), self.left());
                 let seconds = self.stage_began.elapsed().as_secs_f64();
-                // A narrow terminal has room for the text alone.
+                // A narrow terminal has no room for a bar beside the text.
                 let template = match left {
                     Some(_) => "{bar:16} {wide_msg}",
                     None => "{wide_msg}",
@@ -199,7 +201,7 @@ impl State {
         tell::event(event);
     }
 
-    /// What is under way, for how long, and how long it will be.
+    /// Says what is under way, for how long, and how long it will take.
     fn text(&self) -> String {
         let mut text = match (self.stage, &self.sweeps) {
             (Stage::Smoothing, Some(swept)) => {
@@ -225,7 +227,7 @@ impl State {
         text
     }
 
-    /// Seconds that the stage is likely to go on, if that can be told.
+    /// Estimates how many more seconds the stage takes, if that can be told.
     fn left(&self) -> Option<f64> {
         let seconds = self.stage_began.elapsed().as_secs_f64();
         match (self.stage, &self.sweeps) {
@@ -234,7 +236,7 @@ impl State {
                 Some((self.decay.sweeps_left()? * swept.seconds() - since).max(0.0))
             }
             (Stage::Smoothing, _) => None,
-            // What takes longer than expected has no end that is known.
+            // A stage that takes longer than expected has no known end.
             (stage, _) => {
                 self.pace.whole(stage).map(|whole| whole - seconds).filter(|left| *left > 0.0)
             }

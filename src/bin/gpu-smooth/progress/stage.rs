@@ -1,6 +1,6 @@
 //! The stages of a run.
 
-/// What a run does at a time, as a user is told of it.
+/// A stage of a run, as it is named to the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
     /// A file of so many bytes is read; 0 if that is not known.
@@ -16,7 +16,7 @@ pub(crate) enum Stage {
 }
 
 impl Stage {
-    /// In one word.
+    /// Returns the name in one word.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Reading { .. } => "reading",
@@ -27,7 +27,7 @@ impl Stage {
         }
     }
 
-    /// With what it is done to.
+    /// Returns the name with the size of the file or mesh.
     pub(crate) fn text(self) -> String {
         match self {
             Self::Reading { bytes } | Self::Writing { bytes } if bytes >= 1 << 20 => {

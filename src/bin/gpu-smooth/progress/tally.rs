@@ -1,4 +1,4 @@
-//! How many of many meshes are done.
+//! Shows how many of several meshes are done.
 
 use std::path::Path;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use crate::progress::form::Form;
 use crate::progress::left::told;
 use crate::tell;
 
-/// Shows how many of many meshes are done.
+/// Shows how many of several meshes are done.
 pub(crate) struct Tally {
     form: Form,
     bar: ProgressBar,
@@ -44,7 +44,7 @@ impl Tally {
         }
     }
 
-    /// Another mesh is done, or failed for a reason; `text` says so in a line.
+    /// Counts another mesh, done or failed for the reason `problem`. `text` describes its end in a line.
     pub(crate) fn add(&mut self, mesh: &Path, problem: Option<&str>, text: &str) {
         self.done += 1;
         self.failed += usize::from(problem.is_some());
@@ -63,7 +63,7 @@ impl Tally {
         self.waits();
     }
 
-    /// Shows how long it has been, and how long it will be.
+    /// Shows how long the call has taken, and how long it will take.
     pub(crate) fn waits(&mut self) {
         match self.form {
             Form::Bar => self.bar.set_message(self.text()),
@@ -77,7 +77,7 @@ impl Tally {
         }
     }
 
-    /// Seconds until all meshes are done, as far as those that are can tell.
+    /// Estimates how many seconds are left until all meshes are done, once one is.
     fn left(&self) -> Option<f64> {
         let took = self.started.elapsed().as_secs_f64();
         let left = took / self.done as f64 * (self.meshes - self.done) as f64;

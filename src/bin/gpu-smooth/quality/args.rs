@@ -12,10 +12,10 @@ use crate::surface_args::SurfaceArgs;
 
 #[derive(Args)]
 pub(crate) struct QualityArgs {
-    /// The meshes; several are told side by side
+    /// The meshes; several are shown side by side
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Measures to draw histograms of, and to list the worst triangles by the first of: min-angle, max-angle, edge-ratio,
+    /// Measures to draw histograms of; the first also ranks the worst triangles: min-angle, max-angle, edge-ratio,
     /// aspect-ratio, radius-ratio, scaled-jacobian, condition, shape, skewness, size-ratio, or a metric
     #[arg(
         short,
@@ -28,19 +28,20 @@ pub(crate) struct QualityArgs {
     /// How many of the worst triangles to list
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
-    /// Tell the statistics of each region too: physical groups, materials, references, attributes
+    /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]
     pub(crate) by_region: bool,
-    /// What a triangle must not be, as in 'min-angle<20'; may be given several times. Exit code 1 if a triangle is so
+    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. Exit code 1 if a triangle
+    /// has one
     #[arg(long, value_name = "NAME<VALUE")]
     pub(crate) threshold: Vec<Threshold>,
-    /// As JSON
+    /// Print JSON
     #[arg(long, conflicts_with = "csv")]
     pub(crate) json: bool,
-    /// The statistics as CSV, a row for each measure (and region) of each file
+    /// Print the statistics as CSV, a row for each measure (and region) of each file
     #[arg(long)]
     pub(crate) csv: bool,
-    /// Draw in ASCII, as is done anyway where standard output is not a terminal
+    /// Draw in ASCII, which is the default where standard output is not a terminal
     #[arg(long)]
     pub(crate) ascii: bool,
     #[command(flatten)]
@@ -101,7 +102,7 @@ impl FromStr for Threshold {
             Better::Lower => "high",
         };
         if rest.starts_with('<') != (bad == "low") {
-            // It would be met by the good triangles; most likely what all shall have was written.
+            // Most likely the user wrote the values that all triangles should have.
             return Err(format!(
                 "{bad} values of {measure} are the bad ones: name those that no triangle may have, as in '{threshold}'"
             ));

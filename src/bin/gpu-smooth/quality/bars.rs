@@ -7,18 +7,18 @@ use crate::columns;
 use crate::numbers::five;
 use crate::quality::sheet::Histogram;
 
-/// How to draw.
+/// How to draw on this terminal.
 pub(crate) struct Style {
-    /// ASCII throughout, also where other characters are in use without a terminal, such as a degree sign.
+    /// Whether to use ASCII only, also for signs that need no terminal, such as the degree sign.
     pub(crate) plain: bool,
-    /// Bars of block characters.
+    /// Whether bars are drawn by block characters.
     blocks: bool,
-    /// Columns.
+    /// The width in columns.
     pub(crate) width: usize,
 }
 
 impl Style {
-    /// By what standard output is, and the environment.
+    /// Chooses the style by the standard output and the environment. `ascii` asks for ASCII only.
     pub(crate) fn of_terminal(ascii: bool) -> Self {
         let is_terminal = std::io::stdout().is_terminal();
         let plain = ascii || is_terminal && !shows_unicode();
@@ -27,7 +27,7 @@ impl Style {
     }
 }
 
-/// Whether a terminal is expected to show more than ASCII: neither a dumb one nor one of another encoding.
+/// Whether the terminal is expected to show more than ASCII: it is not a dumb one, and the locale is UTF-8.
 fn shows_unicode() -> bool {
     let set = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
     if set("TERM").is_some_and(|term| term == "dumb") {
@@ -37,7 +37,7 @@ fn shows_unicode() -> bool {
     locale.is_none_or(|locale| locale.to_lowercase().contains("utf"))
 }
 
-/// A histogram with a line for each bin, from the first that is not empty to the last.
+/// Draws a histogram with a line for each bin, from the first that is not empty to the last.
 pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
     let Histogram { edges, counts, .. } = histogram;
     let total: usize = counts.iter().sum();
@@ -64,7 +64,7 @@ pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
     text
 }
 
-/// An edge of a bin, without digits that say nothing.
+/// Formats an edge of a bin, without zeros at its end.
 fn edge(x: f64) -> String {
     let text = five(x);
     match text.contains('.') && !text.contains('e') {
@@ -81,7 +81,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// A bar of so many columns, which are shown to an eighth by block characters. Never nothing for something.
+/// Draws a bar of this many columns, exact to an eighth with block characters. A bar above 0 is never empty.
 fn bar(columns: f64, blocks: bool) -> String {
     if !blocks {
         let whole = "#".repeat(columns.round() as usize);

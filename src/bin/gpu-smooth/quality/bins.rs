@@ -2,12 +2,12 @@
 
 use gpu_smooth::Measure;
 
-/// Where the bins of a measure start and end, ascending.
+/// Returns the edges of a measure's bins, ascending, one more than there are bins.
 pub(crate) fn edges(measure: Measure) -> Vec<f64> {
     let definition = measure.definition();
     let [least, most] = definition.range;
     if most.is_finite() {
-        // Angles by 5° or 10°, shares by tenths.
+        // Angles go by 5° or 10°, shares by tenths.
         let bins = if most - least == 60.0 || most - least == 120.0 {
             12
         } else {
@@ -16,7 +16,8 @@ pub(crate) fn edges(measure: Measure) -> Vec<f64> {
         let edge = |i| least + (most - least) * f64::from(i) / f64::from(bins);
         return (0..=bins).map(edge).collect();
     }
-    // How far a ratio is above its ideal; the last bin takes all the rest. Sizes may be below it.
+    // Ratios go by their distance above the ideal, and the last bin takes all the rest. Size ratios may be below the
+    // ideal.
     let below = [0.0, 0.1, 0.25, 0.5, 0.75, 0.9].into_iter().filter(|_| least < definition.ideal);
     let above =
         [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 9.0, 99.0, f64::INFINITY];

@@ -1,4 +1,4 @@
-//! What is told of meshes, as JSON and as CSV.
+//! Writes the quality of meshes as JSON and as CSV.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::columns::quoted;
 use crate::quality::sheet::{Histogram, Region, Sheet, Violation, Worst, location};
 
-/// An object for one mesh, a list of them for several.
+/// Returns an object for one mesh, or a list of objects for several.
 pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, String> {
     let one = |sheet| object(sheet).map_err(|error: serde_json::Error| error.to_string());
     match sheets {
@@ -58,13 +58,13 @@ fn measures(statistics: &[Statistics]) -> Value {
     Value::Object(statistics.iter().map(one).collect())
 }
 
-/// The last edge is null where the last bin takes all the rest.
+/// Writes a histogram. The last edge is null if the last bin takes all the rest.
 fn histogram(histogram: &Histogram) -> Value {
     let Histogram { measure, edges, counts } = histogram;
     json!({ "measure": measure.name(), "edges": edges, "counts": counts })
 }
 
-/// A triangle and where it stands.
+/// Writes a triangle, under `key`, and its place in the file.
 fn placed(key: &str, place: &Place) -> Map<String, Value> {
     let (kind, at) = location(place);
     let mut object = Map::new();
@@ -95,12 +95,12 @@ fn violation(violation: &Violation) -> Value {
     json!({ "threshold": threshold.to_string(), "triangles": count, "worst": worst })
 }
 
-/// The groups of a region, as options name them.
+/// Returns the groups of a region, spelled as options name them.
 fn spellings(region: &Region) -> Vec<&str> {
     region.groups.iter().map(|group| &*group.spelling).collect()
 }
 
-/// The statistics, a row for each measure of each file, and of each region where asked for.
+/// Writes the statistics, a row for each measure of each file, and of each region if asked for.
 pub(crate) fn csv(sheets: &[Sheet]) -> String {
     let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
     for share in QUANTILES {

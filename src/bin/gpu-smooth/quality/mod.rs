@@ -1,4 +1,4 @@
-//! `gpu-smooth quality MESH...`.
+//! `gpu-smooth quality MESH...`: measures meshes.
 
 mod args;
 mod bars;
@@ -18,7 +18,7 @@ use sheet::Sheet;
 use crate::picture;
 use crate::tell;
 
-/// Tells how good meshes are. An error if one cannot be read, or if a triangle is what none may be.
+/// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
 pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
     if let Some(picture) = &args.picture.picture {
         if args.meshes.len() > 1 {
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
     if violations.is_empty() { Ok(()) } else { Err(violations.join("\n  ")) }
 }
 
-/// A sentence for each threshold that triangles of a mesh have passed.
+/// Words a sentence for each threshold that triangles of a mesh have passed.
 fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
     sheet.violations.iter().filter_map(move |violation| {
         let (place, value) = violation.worst.as_ref()?;

@@ -1,4 +1,4 @@
-//! What is told of a mesh.
+//! All numbers that are shown of a mesh.
 
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use crate::report::QualityReport;
 use crate::streams::read;
 use crate::tell;
 
-/// What is told of one mesh. The mesh itself is not kept, so that many can be told side by side.
+/// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
 pub(crate) struct Sheet {
     pub(crate) path: PathBuf,
     pub(crate) format: String,
@@ -24,18 +24,18 @@ pub(crate) struct Sheet {
     pub(crate) vertices: usize,
     pub(crate) free: usize,
     pub(crate) triangles: usize,
-    /// As in the report of a run.
+    /// The quality, as in the report of a run.
     pub(crate) report: QualityReport,
-    /// The triangle of the largest inverse mean ratio.
+    /// Where the triangle of the largest inverse mean ratio is in the file.
     pub(crate) worst_place: Place,
     /// Statistics of every measure.
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
-    /// The worst triangles by the first chosen measure.
+    /// The worst triangles by the first measure that was asked for.
     pub(crate) worst: Vec<Worst>,
     pub(crate) violations: Vec<Violation>,
-    /// Inverted and flat triangles: all of them for JSON, else those that are listed.
+    /// Inverted and flat triangles: all of them for JSON, else the first ones, which are listed.
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
     pub(crate) duplicate_vertices: usize,
@@ -44,28 +44,28 @@ pub(crate) struct Sheet {
 
 /// Triangles that the file puts into one region.
 pub(crate) struct Region {
-    /// Where the first of its triangles stands.
+    /// Where the first triangle of the region is in the file.
     pub(crate) first: Place,
-    /// The groups of the file that have its triangles; those that have a name first.
+    /// The groups of the file that the region's triangles belong to. Groups with a name come first.
     pub(crate) groups: Vec<Named>,
-    /// Statistics of every measure.
+    /// The statistics of every measure in the region.
     pub(crate) statistics: Vec<Statistics>,
 }
 
-/// A group of the file.
+/// A group of the file, with its names.
 pub(crate) struct Named {
-    /// As options name it.
+    /// The group as options name it.
     pub(crate) spelling: String,
-    /// What it is, with its name or tag.
+    /// What kind of group it is, with its name or tag.
     pub(crate) full: String,
-    /// Its name, or its tag with what it is.
+    /// Its name, or else its tag with the kind of group.
     pub(crate) short: String,
 }
 
-/// How many triangles have their value where.
+/// How many triangles have a value in each bin.
 pub(crate) struct Histogram {
     pub(crate) measure: Measure,
-    /// One more than there are bins.
+    /// The edges of the bins, one more than there are bins.
     pub(crate) edges: Vec<f64>,
     pub(crate) counts: Vec<usize>,
 }
@@ -76,22 +76,22 @@ pub(crate) struct Worst {
     /// The file's numbers or tags for its vertices.
     pub(crate) vertices: [u64; 3],
     pub(crate) corners: [[f64; 2]; 3],
-    /// The values of the chosen measures.
+    /// The values of the measures that were asked for.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether one of its vertices is free to move.
     pub(crate) is_movable: bool,
 }
 
-/// Triangles that are what no triangle may be.
+/// The triangles that pass a threshold.
 pub(crate) struct Violation {
     pub(crate) threshold: Threshold,
     pub(crate) count: usize,
-    /// The worst of them and its value, if there is one.
+    /// The worst of these triangles and its value; `None` if there is none.
     pub(crate) worst: Option<(Place, f64)>,
 }
 
 impl Sheet {
-    /// Reads and measures a mesh.
+    /// Reads a mesh and measures it.
     pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
         let mut file = read(path, args.reading)?;
         let laid_out = args.surface.lay_out(&mut file)?;
@@ -178,7 +178,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
     let named = |(group, spelling): (&Group, String)| {
         let tag = group.tag.map(|tag| tag.to_string());
         let short = match group.name.clone().or(tag).unwrap_or_default() {
-            // Alone it would be taken for the number of a region.
+            // A number alone would be taken for the number of a region.
             number if number.parse::<f64>().is_ok() => format!("{} {number}", group.what),
             name => name,
         };
@@ -191,7 +191,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
     found.into_iter().map(told).collect()
 }
 
-/// How many triangles have their value in each bin of a measure.
+/// Counts the triangles that have their value in each bin of a measure.
 pub(crate) fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
     let edges = bins::edges(measure);
     let counts = measured.histogram(measure, &edges);
@@ -227,7 +227,7 @@ fn violation(file: &MeshFile, measured: &Measured<'_>, threshold: &Threshold) ->
     Violation { threshold: threshold.clone(), count, worst }
 }
 
-/// The line or byte of a place, as the keys of JSON have them.
+/// Returns the line or byte of a place, with its key in JSON.
 pub(crate) fn location(place: &Place) -> (&'static str, usize) {
     match place.location {
         Location::Line(line) => ("line", line),

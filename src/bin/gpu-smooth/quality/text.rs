@@ -1,4 +1,4 @@
-//! What is told of meshes, as text.
+//! Writes the quality of meshes as text.
 
 use std::fmt::Write;
 
@@ -13,11 +13,11 @@ use crate::quality::sheet::{Region, Sheet, Worst};
 /// The width of a table's first column.
 const NAME: usize = 17;
 
-/// The columns of numbers, in which seven fit the usual terminal.
+/// The columns of numbers. The usual terminal has room for seven.
 const COLUMNS: [&str; 7] = ["min", "5 %", "median", "mean", "95 %", "max", "sd"];
 const COLUMN: usize = 9;
 
-/// The columns that fit a terminal, which go without the others: the most important first.
+/// Chooses the columns that fit a terminal. The most important are chosen first.
 fn shown(style: &Style) -> [bool; COLUMNS.len()] {
     let fit = style.width.saturating_sub(NAME) / COLUMN;
     let mut shown = [false; COLUMNS.len()];
@@ -25,7 +25,7 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
     shown
 }
 
-/// All that is told of some meshes.
+/// Writes all that is shown of some meshes.
 pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
     let mut text = String::new();
     for sheet in sheets {
@@ -45,7 +45,7 @@ pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
     text.trim_end().to_owned()
 }
 
-/// The statistics of every measure: a row for each, or for each measure and file.
+/// Writes the statistics of every measure: a row for each measure, or for each measure and file.
 fn table(sheets: &[Sheet], style: &Style) -> String {
     let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
@@ -82,7 +82,7 @@ fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
     text + "\n"
 }
 
-/// The name of a measure with its unit.
+/// Returns the name of a measure with its unit.
 fn named(measure: Measure, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
         ("", _) => measure.name().to_owned(),
@@ -91,7 +91,7 @@ fn named(measure: Measure, style: &Style) -> String {
     }
 }
 
-/// All about one mesh besides the statistics of its measures.
+/// Writes all that is shown of one mesh besides the statistics of its measures.
 fn details(sheet: &Sheet, style: &Style) -> String {
     let mut text = String::new();
     for histogram in &sheet.histograms {
@@ -129,7 +129,7 @@ fn details(sheet: &Sheet, style: &Style) -> String {
     text
 }
 
-/// The statistics of the chosen measures, region by region.
+/// Writes the statistics of the measures that were asked for, region by region.
 fn by_region(sheet: &Sheet, style: &Style) -> String {
     let mut text = String::new();
     for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
@@ -159,7 +159,7 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
     text
 }
 
-/// Where a triangle is, how bad, and whether smoothing can help.
+/// Writes where a triangle is, how bad it is, and whether smoothing can help.
 fn worst_line(worst: &Worst, style: &Style) -> String {
     let Worst { place, corners, values, is_movable, .. } = worst;
     let values: Vec<String> =
@@ -170,7 +170,7 @@ fn worst_line(worst: &Worst, style: &Style) -> String {
     format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(x), six(y))
 }
 
-/// A value with the name of its measure.
+/// Writes a value after the name of its measure.
 pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
         ("°", true) => format!("{measure} {} deg", five(value)),

@@ -1,4 +1,4 @@
-//! What a run writes, checked before the work is done.
+//! Checks, before the work is done, that all files of a run can be written.
 
 use std::path::{Path, PathBuf};
 
@@ -10,8 +10,8 @@ use crate::picture;
 use crate::run_args::SmoothArgs;
 use crate::streams::is_standard;
 
-/// The files that the smoothed mesh is written to; none if it goes to the standard output. An error if they cannot be
-/// written.
+/// Returns the files that the smoothed mesh is written to; none for the standard output. Returns an error if they
+/// cannot be written.
 pub(crate) fn of_mesh(file: &MeshFile, out: &Path) -> Result<Vec<PathBuf>, String> {
     if !is_standard(out) {
         file.check_destination(out).map_err(|error| error.to_string())?;
@@ -23,7 +23,7 @@ pub(crate) fn of_mesh(file: &MeshFile, out: &Path) -> Result<Vec<PathBuf>, Strin
     }
 }
 
-/// Refuses destinations of a run that cannot be written, or would replace each other or the mesh.
+/// Refuses files that cannot be written, or that would replace each other or the mesh.
 pub(crate) fn check(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<(), String> {
     let written = of_mesh(file, out)?;
     let of_meshes = || file.paths().chain(written.iter().map(PathBuf::as_path));
@@ -44,7 +44,7 @@ pub(crate) fn check(args: &SmoothArgs, file: &MeshFile, out: &Path) -> Result<()
     }
 }
 
-/// Refuses a report that cannot be written, or is named as a mesh or as one of these files.
+/// Refuses a report that cannot be written, or that has the name of a mesh or would replace one of these files.
 pub(crate) fn check_report<'p>(
     args: &SmoothArgs,
     mut meshes: impl Iterator<Item = &'p Path>,
@@ -60,7 +60,7 @@ pub(crate) fn check_report<'p>(
     can_write_report(args)
 }
 
-/// Checks whether the report can be written, which may have changed during a long run.
+/// Checks whether the report can be written, as this may have changed during a long run.
 pub(crate) fn can_write_report(args: &SmoothArgs) -> Result<(), String> {
     let Some(report) = &args.report else { return Ok(()) };
     output::check(report).map_err(|error| format!("the report cannot be written: {error}"))

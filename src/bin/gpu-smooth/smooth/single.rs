@@ -1,4 +1,4 @@
-//! A run on one mesh, as it is shown to the user.
+//! Smooths one mesh and shows the run to the user.
 
 use std::path::Path;
 
@@ -31,7 +31,8 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     let task = Task { args, show, input, out, resumed };
     let display = Display::new(show, args.estimated_end(), args.max_sweeps);
     let mut follow = Shown { args, show, out, display: &display };
-    // The driver starts while the mesh is read, or while it is prepared if its size decides on the engine.
+    // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
+    // is prepared.
     let done = std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let engine = move |size| match opening {
@@ -90,7 +91,7 @@ impl Follow for Shown<'_> {
     }
 }
 
-/// Writes and prints what a run was asked to tell.
+/// Writes and prints the results of a run that were asked for.
 fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     let Task { args, show, out, .. } = *task;
     let Done { file, smoother, outcome, report, .. } = done;
@@ -120,7 +121,7 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     }
 }
 
-/// A line for each sweep.
+/// Writes a line for each sweep.
 fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     report.history.iter().map(|sweep| {
         let metric = sweep.metric.unwrap_or("-");
@@ -128,7 +129,8 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     })
 }
 
-/// Why a mesh is not smoothed. Where triangles are inverted or flat, the report that was asked for lists all of them.
+/// Returns the message why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
+/// report that was asked for.
 fn told_with_report(args: &SmoothArgs, Failure { message, triangles }: Failure) -> String {
     if triangles.is_empty() {
         return message;
@@ -140,7 +142,7 @@ fn told_with_report(args: &SmoothArgs, Failure { message, triangles }: Failure) 
     }
 }
 
-/// Draws the picture that was asked for: before and after.
+/// Draws the mesh before and after the run, if a picture was asked for.
 fn draw(
     args: &SmoothArgs,
     file: &MeshFile,
