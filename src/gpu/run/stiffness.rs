@@ -1,4 +1,4 @@
-//! The stiffness of the base metric at the free vertices, found on the device.
+//! Computes the stiffness of the base metric at the free vertices on the device.
 
 use wgpu::BufferUsages as Usage;
 
@@ -14,8 +14,9 @@ use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::scope::scoped;
 
-/// The root of the stiffness at each free vertex, of which `op` has the number and the sharpness; see
-/// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots).
+/// Returns the square root of the stiffness at each free vertex; see
+/// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots). `op` gives the number of free vertices and the
+/// sharpness.
 pub(crate) async fn roots(
     gpu: &Gpu,
     mesh: &MeshBuffers,
@@ -41,7 +42,7 @@ pub(crate) async fn roots(
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
         let size = u64::from(op.free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
-        // The kernel has no use for these two bindings of its interface.
+        // The kernel does not use these two bindings of its interface.
         let [direction, vectors] = ["no correction", "no vectors"]
             .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
         let label = "gpu-smooth stiffness";
