@@ -44,7 +44,7 @@ pub(crate) fn check(
 /// The error for a checkpoint from another mesh.
 pub(crate) fn foreign() -> SmoothError {
     SmoothError::Checkpoint(
-        "it is of another mesh, or vertices were held or targets set otherwise: go on with the mesh that the run began with".to_owned(),
+        "it is of another mesh, or other vertices were held or other targets set: continue with the mesh that the run began with".to_owned(),
     )
 }
 

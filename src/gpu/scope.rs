@@ -52,7 +52,7 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
     }
     match internal.or(validation) {
         // For a lost device wgpu reports only the consequences: "... is invalid".
-        Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
+        Some(_) if is_lost(device) => Err(GpuError::Lost("no buffer can be created".into())),
         Some(error) => Err(GpuError::Refused(error.to_string())),
         None => value,
     }

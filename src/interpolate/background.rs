@@ -29,7 +29,7 @@ impl Background {
     /// Makes a background of a mesh.
     ///
     /// # Errors
-    /// Those of [`Topology::new`], and [`MeshError::Infeasible`] if triangles are inverted or flat.
+    /// [`MeshError::Infeasible`] if triangles are inverted or flat, or an error of [`Topology::new`].
     pub(crate) fn new(mesh: &Mesh) -> Result<Self, MeshError> {
         let topology = Topology::new(mesh)?.into_owned();
         let triangles = topology.bad_triangles(&mesh.points)?;

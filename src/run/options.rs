@@ -146,9 +146,9 @@ impl Options {
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")
         } else if self.derivatives != Derivatives::Analytic {
-            Some("it needs exact derivatives")
+            Some("it needs analytic derivatives")
         } else if self.inner != 1 {
-            Some("it takes one Newton step a visit")
+            Some("it needs one Newton step per visit: set inner to 1")
         } else {
             None
         }
@@ -162,7 +162,7 @@ impl Options {
             return Err(SmoothError::Option {
                 option,
                 value,
-                remedy: "with targets take exact ones",
+                remedy: "targets need analytic derivatives",
             });
         }
         Ok(())

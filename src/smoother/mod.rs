@@ -203,7 +203,7 @@ impl<'a> Smoother<'a> {
     /// so far is then returned.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub fn run_observed(
         &self,
         options: &Options,
@@ -221,7 +221,8 @@ impl<'a> Smoother<'a> {
     /// checkpoint was taken on the CPU continues there, with any backend.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run), and [`SmoothError::Checkpoint`] if the checkpoint is from another run.
+    /// [`SmoothError::Checkpoint`] if the checkpoint is from another run; [`SmoothError::Option`] or [`SmoothError::Gpu`]
+    /// under the conditions that [`run`](Self::run) gives.
     pub fn run_kept(
         &self,
         options: &Options,
@@ -244,7 +245,7 @@ impl<'a> Smoother<'a> {
     /// future is `Send`.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub async fn run_async(&self, options: &Options, gpu: &Gpu) -> Result<Outcome, SmoothError> {
         self.run_async_observed(options, gpu, &mut unobserved).await
     }
@@ -253,7 +254,7 @@ impl<'a> Smoother<'a> {
     /// state so far is then returned. The future is `Send` if `observe` is.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub async fn run_async_observed(
         &self,
         options: &Options,
@@ -278,7 +279,8 @@ fn unobserved(_: &Progress) -> ControlFlow<()> {
 /// vertex triples in either winding. The boundary stays fixed. Returns the positions in the order of `points`.
 ///
 /// # Errors
-/// Those of [`Smoother::new`] and [`Smoother::run`].
+/// [`SmoothError::Mesh`] under the conditions that [`Smoother::new`] gives, [`SmoothError::Option`] or
+/// [`SmoothError::Gpu`] under those of [`Smoother::run`].
 pub fn smooth(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],

@@ -48,11 +48,11 @@ impl<'s> Ways<'s> {
             altitude::check(options, is_continued)?;
         }
         if has_field && slides {
-            let remedy = "set one of the two, or targets of vertices";
+            let remedy = "leave out one of the two, or set targets of vertices";
             return refuse("target field", "with sliding vertices", remedy);
         }
         if has_field && options.keep_altitude {
-            return refuse("keep altitude", "on", "it does not go with targets of places");
+            return refuse("keep altitude", "on", "it cannot be combined with a target field");
         }
         Ok(())
     }

@@ -42,7 +42,8 @@ impl<'m> Topology<'m> {
     /// does not depend on the vertices inside.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
     pub fn by_area(mesh: &'m Mesh) -> Result<Self, MeshError> {
         Self::wound(mesh, Majority::OfArea)
     }

@@ -87,7 +87,7 @@ pub(crate) fn restore(
 pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
     let option = "keep altitude";
     if options.max_move.is_some() {
-        let (value, remedy) = ("with a bound on moves".to_owned(), "set one of the two");
+        let (value, remedy) = ("with a bound on moves".to_owned(), "leave out one of the two");
         return Err(SmoothError::Option { option, value, remedy });
     }
     in_rounds::check(option, options, is_continued)

@@ -16,16 +16,16 @@ pub(crate) fn check(
 ) -> Result<(), SmoothError> {
     let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
     if options.scheme.period() > 1 || !options.scheme.is_monotone() {
-        return refuse("it needs one metric other than edge: take imr, say");
+        return refuse("it needs one metric other than edge, such as imr");
     }
     if options.derivatives != Derivatives::Analytic {
-        return refuse("it needs exact derivatives");
+        return refuse("it needs analytic derivatives");
     }
     if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
-        return refuse("the desired f is not sought in such a run: give its value");
+        return refuse("such a run cannot search for the desired f: give its value");
     }
     match is_continued {
-        true => refuse("such a run is not continued from a checkpoint: start anew"),
+        true => refuse("such a run cannot continue from a checkpoint: start it without one"),
         false => Ok(()),
     }
 }

@@ -43,11 +43,11 @@ impl<'s> Places<'s> {
         if options.goal.is_some() {
             return refuse(
                 "with a goal",
-                "targets that change have no desired f: set one of the two",
+                "targets that change have no desired f: leave out one of the two",
             );
         }
         if options.max_move.is_some() {
-            return refuse("with a bound", "set one of the two, or targets of vertices");
+            return refuse("with a bound", "leave out one of the two, or set targets of vertices");
         }
         in_rounds::check(option, options, is_continued)
     }

@@ -25,7 +25,8 @@ impl Gpu {
     /// it blocks, as `open` does, while the arithmetic is checked.
     ///
     /// # Errors
-    /// Those of [`open`](Self::open).
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] or another [`GpuError`] if the device
+    /// fails; [`open`](Self::open) gives the conditions.
     pub async fn open_async(name: Option<&str>) -> Result<Self, GpuError> {
         let adapters = ranked_adapters_async().await;
         let has_name = |adapter: &&wgpu::Adapter| {

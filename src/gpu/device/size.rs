@@ -1,4 +1,4 @@
-//! How much memory a mesh takes on a device, known before anything is allocated.
+//! Computes the memory that a mesh takes on a device, before anything is allocated.
 
 use crate::error::GpuError;
 use crate::gpu::kernels::pipelines::storage_bindings;

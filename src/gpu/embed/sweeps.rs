@@ -71,7 +71,7 @@ impl Sweeps {
     /// completes once the application has polled the device; otherwise it completes at once.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub async fn new_async(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         Self::by(mesh, options, Ending::Never, Waiting::Await).await
     }
@@ -88,7 +88,7 @@ impl Sweeps {
     /// followed by an evaluation of f, which takes about a sixth of its time.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub fn until_converged(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Judged, Waiting::Block))
     }
@@ -97,7 +97,7 @@ impl Sweeps {
     /// be corrected, the future completes once the application has polled the device; otherwise it completes at once.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub async fn until_converged_async(
         mesh: &DeviceMesh,
         options: &Options,
