@@ -39,7 +39,7 @@ pub struct Smoother<'a> {
     topology: Topology<'a>,
     problem: Problem,
     sliding: Option<Sliding>,
-    /// Number of pairs that slide, and of pairs that do not move because the motion of the others does not fit them.
+    /// Number of pairs that slide, and of pairs that do not move, as the motion of the others does not fit them.
     pairs: [usize; 2],
     /// The field of targets, if targets belong to points of the plane and not to vertices.
     field: Option<TargetField>,
@@ -122,7 +122,7 @@ impl<'a> Smoother<'a> {
     }
 
     /// Returns the number of pairs of vertices ([`Slide::periodic`]) that slide, and the number of pairs that do not
-    /// move because the translation or rotation of most pairs in their list does not fit them.
+    /// move, as the translation or rotation of most pairs in their list does not fit them.
     pub fn pairs(&self) -> [usize; 2] {
         self.pairs
     }

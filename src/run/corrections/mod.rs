@@ -89,7 +89,7 @@ pub(crate) struct Corrections<'a> {
     fitted: usize,
     /// The latest estimates of the share of f that is left to gain, infinite if there is none.
     estimates: [f64; ESTIMATES],
-    /// The error if there are no corrections because the engine has no room for the levels.
+    /// The error if there are no corrections, as the engine has no room for the levels.
     left_out: Option<GpuError>,
     /// Whether the engine had no room for the levels before the run continued from a saved state.
     was_left_out: bool,
@@ -105,7 +105,7 @@ enum Stage {
     /// `proposed` the number of corrections tried in this stage, and `refused` the number of refused ones in a row at
     /// the end.
     Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
-    /// Sweeps alone by the base metric to the end, because corrections do not help or the engine has no room for the
+    /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the
     /// levels.
     Without { since: usize },
 }
@@ -186,12 +186,12 @@ impl<'a> Corrections<'a> {
         self.taken
     }
 
-    /// Returns the error if the run has no corrections because the engine has no room for the levels.
+    /// Returns the error if the run has no corrections, as the engine has no room for the levels.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         self.left_out.as_ref()
     }
 
-    /// Whether the run has no corrections because the engine has no room for the levels.
+    /// Whether the run has no corrections, as the engine has no room for the levels.
     pub(crate) fn is_left_out(&self) -> bool {
         self.was_left_out || self.left_out.is_some()
     }
@@ -318,7 +318,7 @@ impl<'a> Corrections<'a> {
             }
             None => (here, last_length, refused + 1),
         };
-        // A direction may fail because of the secant pairs, so these are dropped.
+        // The secant pairs may be the reason why a direction fails, so they are dropped.
         let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
         self.accelerated = (self.accelerated || slow) && refused == 0;
         self.slope = Some(slope);
