@@ -172,7 +172,7 @@ impl Timed<'_> {
     /// Ends the timing and encodes the copy of the times into a buffer. Without this call only the times are lost.
     ///
     /// # Errors
-    /// A [`GpuError`](crate::error::GpuError) if the device fails or is out of memory.
+    /// A [`GpuError`] if the device fails or is out of memory.
     pub fn resolve(self) -> Result<Spans, GpuError> {
         self.timestamps.resolve(self.encoder)
     }
