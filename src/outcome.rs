@@ -18,7 +18,7 @@ pub struct Outcome {
     /// Number of sweeps done.
     pub sweeps: u32,
     /// Number of sweeps in which the metrics of the scheme took turns. The sweeps after them were by the base metric,
-    /// each followed by a correction.
+    /// so that corrections could follow.
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,

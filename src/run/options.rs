@@ -35,7 +35,7 @@ pub enum Method {
 pub enum Guard {
     /// With a metric that has a barrier, no limit but the objective. With other metrics, a step may leave no triangle
     /// with an inverse mean ratio larger than that of the worst triangle with a free vertex before the run, nor larger
-    /// than 30.
+    /// than 30, unless the patch already had a worse one.
     #[default]
     ByMetric,
     /// With any metric, a step may leave no triangle worse than the worst triangle with a free vertex before the run,

@@ -161,8 +161,8 @@ impl Sweeps {
         self.encode(&mut encoder.passes(LABEL), sweeps);
     }
 
-    /// Encodes as many sweeps as a budget has time for, and returns their number. The device measures them if the
-    /// budget is [timed](Budget::timed_by) by it.
+    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget
+    /// is [timed](Budget::timed_by) by the device.
     pub fn encode_within(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

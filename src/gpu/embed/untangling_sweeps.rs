@@ -153,8 +153,8 @@ impl UntanglingSweeps {
     /// Encodes at most this many sweeps. When the command buffer runs, they end as soon as no triangle is inverted or
     /// flat.
     ///
-    /// Each sweep begins with a check of all triangles. Sweeps that have moved vertices count as a change of the mesh:
-    /// sweeps [`until_converged`](crate::Sweeps::until_converged) begin again.
+    /// Each sweep begins with a check of all triangles. Sweeps that find inverted triangles count as a change of the
+    /// mesh: sweeps [`until_converged`](crate::Sweeps::until_converged) begin again.
     pub fn encode_untangle(&self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth untangling");
         let Dispatches { triangles, vertices, .. } = &self.dispatches;
