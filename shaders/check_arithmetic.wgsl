@@ -1,5 +1,5 @@
-// Runs the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and the test of areas
-// on areas that are not numbers. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
+// Runs the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and `is_positive` on
+// areas that are NaN or infinite. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
 
 // Two positions as pairs of floats, xy + zw.
 struct ArithmeticInput {
@@ -11,7 +11,7 @@ struct ArithmeticResult {
     two_sum: vec2<f32>,
     pair_add: vec2<f32>,
     edge: vec2<f32>,
-    // pair_difference of x.
+    // The result of pair_difference for the x coordinates of a and b.
     difference: f32,
     // 1 if the triangle of the origin, a and b has a positive area, else 0.
     is_positive: f32,

@@ -1,13 +1,13 @@
-// Directions of descent.
+// The direction of descent of a Newton step.
 
-// The direction -H⁻¹g with H made positive definite by absolute eigenvalues with a floor, and the
-// slope g·d along it; a slope of zero where there is no descent.
+// Returns the direction -H⁻¹g, with H made positive definite by absolute eigenvalues with a floor, and behind it the
+// slope g·d along this direction. The slope is zero where there is no descent.
 fn descent(gradient: vec2<f32>, hessian: vec3<f32>) -> vec3<f32> {
     let scale = max(abs(hessian.x), max(abs(hessian.y), abs(hessian.z)));
     if !(scale > 0.0 && scale < 3.0e38) {
         return vec3(0.0);
     }
-    // Before any product: the determinant of an ordinary bad patch overflows.
+    // Scaled before any product: the determinant of an ordinary bad patch overflows.
     let g = gradient / scale;
     let h = hessian / scale;
     let mean = 0.5 * (h.x + h.z);

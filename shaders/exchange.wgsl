@@ -1,4 +1,4 @@
-// Positions between this library's buffer and a vertex buffer of the application.
+// Declarations of the kernels that copy positions between this library's buffer and an application's vertex buffer.
 
 struct Exchange {
     // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
@@ -18,14 +18,14 @@ struct Exchange {
 // The application's number of each vertex.
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> vertex_buffer: array<f32>;
-// How often a vertex was moved, and how often the host changed what may move.
+// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
 @group(0) @binding(4) var<storage, read_write> changes: array<atomic<u32>, 2>;
 
 fn runtime_zero() -> u32 {
     return exchange.zero;
 }
 
-// A position in the unit of the application, rounded to single precision.
+// A position in the application's units, rounded to single precision.
 fn exported(p: vec4<f32>) -> vec2<f32> {
     let high = p.xy * exchange.inverse_scale;
     let low = p.zw * exchange.inverse_scale;

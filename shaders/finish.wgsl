@@ -1,9 +1,9 @@
-// Ends a sweep: adds up the partial sums, writes the history, and decides whether the run is over by
-// the rule of StopRule::judge in src/run/stop.rs. One workgroup.
+// Ends a sweep: adds up the partial sums, writes the history, and applies the stop rule of StopRule::judge in
+// src/run/stop.rs. Runs in one workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
-// The base metric's sum of an evaluation.
+// The sum of the base metric at the given evaluation.
 fn base_sum(evaluation: u32) -> vec2<f32> {
     return control.history[(evaluation % HISTORY) * SLOTS + params.base];
 }
@@ -12,7 +12,7 @@ fn gain(earlier: u32, later: u32) -> f32 {
     return pair_difference(base_sum(earlier), base_sum(later));
 }
 
-// What a geometric decay would still gain, from the gains of two successive windows.
+// Estimates what is still to be gained if gains decay geometrically, from the gains of two successive windows.
 fn remaining(last: u32, window: u32) -> f32 {
     let before = gain(last - 2u * window, last - window);
     let now = gain(last - window, last);
@@ -48,8 +48,8 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
-// Joins the values of two parts of the triangles: their sum, or in the last slot, that of the worst, the larger; of equal
-// ones, that of the first triangle.
+// Combines the values of two parts of the triangles. Most slots take the sum. The last one, which holds the worst
+// triangle, takes the larger value, and of equal values that of the triangle with the lower number.
 fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     if tracked == TRACKED {
         let is_first = bitcast<u32>(a.y) < bitcast<u32>(b.y);
@@ -65,7 +65,7 @@ fn finish(@builtin(local_invocation_index) local: u32) {
     let evaluation = control.evaluated;
     let partials = params.partials;
     for (var i = 0u; i <= TRACKED; i++) {
-        // No triangle is better than a part without any.
+        // The worst value starts below that of any triangle.
         var sum = select(vec2(0.0), vec2(-1.0, 0.0), i == TRACKED);
         for (var k = local; k < partials; k += FINISH_WORKGROUP) {
             sum = joined(i, sum, partial_sums[i * partials + k]);

@@ -1,5 +1,5 @@
-// Value, gradient and Hessian of the active metric by forward differences of width h, with the 16
-// value evaluations for each element that Mesquite spends (see DISPLACEMENTS in src/run/line_search.rs).
+// Value, gradient and Hessian of the active metric by forward differences of width h. Like Mesquite, it evaluates the
+// value 16 times for each element (see DISPLACEMENTS in src/run/line_search.rs).
 
 fn differences(t: Corner, h: f32) -> Derivatives {
     var displacements = DISPLACEMENTS;

@@ -15,7 +15,8 @@ fn import_positions(
     }
     let at = exchange.offset + numbers[vertex] * exchange.stride;
     let given = vec2(vertex_buffer[at], vertex_buffer[at + 1u]);
-    // A vertex the application has not moved keeps the bits that its floats do not hold.
+    // A vertex that the application has not moved keeps its position, which has more digits than the application's
+    // floats.
     if all(given == exported(position(vertex))) {
         return;
     }

@@ -2,9 +2,10 @@
 
 const TARGET_W: f32 = 0.57735026919; // 1/√3
 
-// The Rust struct Invariants (src/metric/corner.rs) and the area less the mean. The excess is √3/6 times the sum of the
-// squared lengths, less the doubled area; it is computed as a sum of squares. The area is doubled, and so is the mean
-// area. Of that, single precision has seven digits, an error that all triangles share, so area - mean takes the pair.
+// The same invariants as the Rust struct Invariants (src/metric/corner.rs), and the area minus the mean area. Both
+// areas are doubled. The excess is √3/6 times the sum of the squared lengths, minus the doubled area; it is computed as
+// a sum of squares. A mean area rounded to single precision would give all triangles the same error, so area - mean
+// uses the pair of floats.
 struct Invariants {
     excess: f32,
     area: f32,
@@ -12,8 +13,9 @@ struct Invariants {
     area_less_mean: f32,
 }
 
-// The value of a function of the invariants, and its partial derivatives by the invariants times unit, one over an area:
-// they have no dimension, and nothing overflows. They are named by their variables.
+// The value of a function of the invariants, and its partial derivatives by them, each named by its variables. The
+// derivatives are for invariants multiplied by `unit`, the inverse of an area: so they have no dimension, and nothing
+// overflows.
 struct Slopes {
     unit: f32,
     value: f32,
@@ -24,7 +26,7 @@ struct Slopes {
     area_area: f32,
 }
 
-// T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3], W equilateral.
+// Returns T00 - T11 and T01 + T10 of the matrix T = A W⁻¹ = [a, (2b - a)/√3], with W the equilateral triangle.
 fn distortion(t: Corner) -> vec2<f32> {
     let s = (2.0 * t.b - t.a) * TARGET_W;
     return vec2(t.a.x - s.y, s.x + t.a.y);
@@ -53,7 +55,7 @@ fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
     );
 }
 
-// Metrics of shape and size in a balance, ε / τ + weight (τ - 1)² / τ with ε = excess / mean and τ = area / mean.
+// Metrics that balance shape and size: ε / τ + weight (τ - 1)² / τ with ε = excess / mean and τ = area / mean.
 
 fn shape_and_size_value(t: Invariants, weight: f32) -> f32 {
     let off = t.area_less_mean / t.mean;

@@ -1,17 +1,17 @@
-// What a map shows, and derivatives through it.
+// Edges and triangles transformed by target maps, and derivatives through them.
 
 fn mapped(map: vec3<f32>, e: vec2<f32>) -> vec2<f32> {
     return vec2(map.x * e.x + map.y * e.y, map.y * e.x + map.z * e.y);
 }
 
-// The shape of the map of a vertex: the map scaled to keep areas. Levels see moves and gradients as it shows them, which makes
-// neighbors in a layer of stretched triangles as near across as along it.
+// The shape of a vertex's target map: the map scaled to keep areas. The coarser levels use coordinates transformed by
+// it. In a layer of stretched triangles, neighbors are then as near across the layer as along it.
 fn shape_of(v: u32) -> vec3<f32> {
     let map = target_of(v);
     return map * inverseSqrt(map.x * map.z - map.y * map.y);
 }
 
-// A triangle as a metric sees it.
+// A triangle transformed by a target map, as metrics see it.
 fn shown(t: Corner, map: vec3<f32>) -> Corner {
     if MAPPED {
         return Corner(mapped(map, t.a), mapped(map, t.b), t.mean_area);
@@ -19,7 +19,8 @@ fn shown(t: Corner, map: vec3<f32>) -> Corner {
     return t;
 }
 
-// The gradient and the Hessian by a vertex of the plane, from those by the vertex as the map shows it: S g and S H S.
+// Returns the gradient S g and the Hessian S H S by a vertex of the plane, given g and H by the transformed vertex,
+// with S the map.
 fn pulled_back(d: Derivatives, map: vec3<f32>) -> Derivatives {
     if !MAPPED {
         return d;

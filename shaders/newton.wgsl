@@ -1,8 +1,8 @@
-// One sweep over the free vertices of a color: local feasible Newton (Park & Shontz, Section 2.1),
-// the same steps as src/cpu/newton.rs.
+// Visits the free vertices of one color by local feasible Newton steps (Park & Shontz, Section 2.1), the same steps as
+// in src/cpu/newton.rs.
 
-// Sum of the metric's model over the patch with the vertex moved by d; x is the sum, y is 0 if a
-// triangle is inverted, has an area that is not a number, or breaks the shape guard.
+// Returns in x the sum of the metric's model over the patch with the vertex moved by d, and in y whether the position
+// is feasible: 0 if a triangle is inverted, has an area that is not finite, or breaks the shape guard, else 1.
 fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var sum = 0.0;
     var a = ring_edge(p, p.end - 1u) - d;
@@ -53,7 +53,8 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
         a = b;
     }
     let inverse = inverse_of(p.own * p.map_unit);
-    // The floor of eigenvalues is for triangles that are nearly equilateral: as the map of the vertex shows them.
+    // The floor of the eigenvalues is meant for nearly equilateral triangles, so it is applied in the coordinates of
+    // the vertex's target map.
     let sum = pulled_back(Derivatives(value, gradient, hessian), inverse);
     var down = descent(sum.gradient, sum.hessian);
     if MAPPED {

@@ -1,4 +1,4 @@
-// In place of targets.wgsl for a mesh without targets, whose triangles a metric sees as they are.
+// Replaces targets.wgsl for a mesh without targets: metrics see its triangles as they are.
 
 const MAPPED: bool = false;
 

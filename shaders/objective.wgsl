@@ -1,12 +1,13 @@
-// Partial sums over the triangles: of q² - ideal² for each tracked metric, and the number of inverted triangles. After
-// them comes the worst imr² - 1, with the triangle that has it. Each invocation strides over the triangles and leaves a pair of floats for each of
-// these; finish.wgsl joins them. Further parts of the triangles continue the sums of the parts before. There is no
-// barrier, as barriers are slow on software adapters.
+// Computes partial sums over the triangles: q² - ideal² for each tracked metric, and the number of inverted triangles.
+// Behind them comes the largest imr² - 1, with the triangle that has it. Each invocation strides over the triangles and
+// leaves one pair of floats for each of these values; finish.wgsl combines them. A dispatch for a further part of the
+// triangles continues the sums of the part before. There is no barrier, as barriers are slow on software adapters.
 
-// The value of a triangle whose edges are no finite numbers. A metric may pass over them, as maxima and minima do.
+// The value of a triangle whose edges are not finite. A metric may not notice that, as maxima and minima ignore NaN.
 const NOT_FINITE: f32 = 3.0e38;
 
-// The number of a triangle as a float that is neither zero nor denormal, infinite or NaN: those may change on their way.
+// The number of a triangle as the bits of a normal float. Drivers may change zeros, denormals, infinities and NaNs when
+// they copy floats.
 fn as_float(triangle: u32) -> f32 {
     return bitcast<f32>(triangle + LEAST_NORMAL);
 }
@@ -25,7 +26,7 @@ fn objective(
     }
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, TRACKED>;
-    // Less than that of any triangle.
+    // The worst value starts below that of any triangle.
     var worst = vec2(-1.0, 0.0);
     if part.first != 0u {
         for (var i = 0u; i < TRACKED; i++) {
@@ -44,7 +45,7 @@ fn objective(
         for (var i = 0u; i < TRACKED; i++) {
             sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], seen));
         }
-        // No triangle is worse than an inverted one.
+        // An inverted triangle is the worst possible.
         let sound = seen && values[TRACKED - 1u] == 0.0;
         let excess = select(NOT_FINITE, shape_excess(corner), sound);
         if excess > worst.x {

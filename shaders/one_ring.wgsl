@@ -1,13 +1,14 @@
 // A free vertex and the triangles around it.
 
-// A patch, its edges in units near their own length so that nothing overflows or vanishes.
+// A patch: a free vertex `at` with its one-ring, `ring[start..end]`. Edges are multiplied by `unit`, which brings them
+// near length one, so that nothing overflows or vanishes.
 struct Patch {
     start: u32,
     end: u32,
     at: vec4<f32>,
     unit: f32,
     mean_area: vec2<f32>,
-    // The target map of the vertex, and what brings it near one.
+    // The target map of the vertex, and the factor that brings its entries near one.
     own: vec3<f32>,
     map_unit: f32,
 }
@@ -42,7 +43,7 @@ fn patch_of(vertex: u32) -> Patch {
     return p;
 }
 
-// The map of the triangle before the neighbor i, near one.
+// The target map of the triangle between neighbor i and the neighbor before it, scaled near one.
 fn map_around(p: Patch, i: u32) -> vec3<f32> {
     if !MAPPED {
         return p.own;

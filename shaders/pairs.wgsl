@@ -1,16 +1,16 @@
 // Arithmetic in pairs of floats, and the numbering of invocations. Needs `runtime_zero`.
 //
-// Compilers may treat floats as real numbers: they reorder sums, take (a + b) - a for b, and assume that there are no
-// infinities and NaNs. WGSL permits it, and Metal does it by default. A pair would then lose its low part. So every
-// sum that has to be rounded just as it is written passes through `opaque`, and tests of numbers go by their bits.
-// tests/fast_math simulates such a compiler; check_arithmetic.wgsl checks the compiler of each adapter.
+// Compilers may treat floats as real numbers: they reorder sums, simplify (a + b) - a to b, and assume that there are
+// no infinities and NaNs. WGSL permits it, and Metal does it by default. A pair would then lose its low part. So every
+// sum that must be rounded just as it is written passes through `opaque`, and tests for NaN or infinity look at the
+// bits. tests/fast_math simulates such a compiler; check_arithmetic.wgsl checks the compiler of each adapter.
 
 // The bits of x. The exclusive or with a zero that is only known at run time keeps a compiler from relating them to x.
 fn opaque_bits(x: f32) -> u32 {
     return bitcast<u32>(x) ^ runtime_zero();
 }
 
-// x, as a number whose origin the compiler does not know.
+// Returns x as a value that the compiler cannot simplify.
 fn opaque(x: f32) -> f32 {
     return bitcast<f32>(opaque_bits(x));
 }
@@ -43,7 +43,7 @@ fn pair_add(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     return two_sum(s.x, s.y + (a.y + b.y));
 }
 
-// A pair plus a float, as a term of a long sum. Cheaper than pair_add; the low part is not kept small.
+// Adds a float to a pair, as a term of a long sum. Cheaper than pair_add, but the low part is not renormalized.
 fn pair_accumulate(sum: vec2<f32>, term: f32) -> vec2<f32> {
     let s = two_sum(sum.x, term);
     return vec2(s.x, sum.y + s.y);
@@ -65,7 +65,7 @@ fn advanced(at: vec4<f32>, d: vec2<f32>) -> vec4<f32> {
     return vec4(x.x, y.x, x.y, y.y);
 }
 
-// The number of an invocation in a dispatch folded to two dimensions.
+// The index of an invocation in a dispatch folded to two dimensions.
 fn invocation(id: vec3<u32>, groups: vec3<u32>) -> u32 {
     return id.x + id.y * groups.x * WORKGROUP;
 }

@@ -1,15 +1,16 @@
-// Constants of a run, for every kernel but those that exchange positions with an application.
+// Constants of a run, for all kernels except those that exchange positions with an application.
 //
-// Constants in CAPITALS that are declared in no shader are put in front by src/gpu/kernels/source.rs.
+// Constants in CAPITALS that no shader declares are defined by src/gpu/kernels/source.rs, in front of the source.
 
 struct Params {
     // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
     zero: u32,
     triangles: u32,
-    // Invocations of the objective kernel.
+    // Number of invocations of the objective kernel.
     partials: u32,
     inner: u32,
-    // The rest but mean_area is for finish.wgsl, which ends a run. Sums are of q² - ideal² over all triangles.
+    // The members from here to `tolerance` are for the stop rule in finish.wgsl. Sums are of q² - ideal² over all
+    // triangles.
     base: u32,
     window: u32,
     max_sweeps: u32,
@@ -17,9 +18,9 @@ struct Params {
     target_sum: vec2<f32>,
     ideal_sum: f32,
     tolerance: f32,
-    // A pair: the mean area rounded to single precision, and what that left out.
+    // A pair of floats: the mean area rounded to single precision, and the rounding error.
     mean_area: vec2<f32>,
-    // Where target maps begin in the positions.
+    // Index of the first target map in the positions.
     targets: u32,
 }
 

@@ -1,14 +1,14 @@
-// Triangles as a metric sees them, and edges between positions held as pairs.
+// The corner of a triangle as metrics see it, and edges between positions held as pairs.
 
-// The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the mean
-// area of the mesh's triangles in the same unit, squared, as a pair of floats.
+// The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the mean area of the mesh's
+// triangles as a pair of floats, in the squared unit of the edges.
 struct Corner {
     a: vec2<f32>,
     b: vec2<f32>,
     mean_area: vec2<f32>,
 }
 
-// A value and its derivatives with respect to the vertex that the edges start from. The Hessian is xx, xy, yy.
+// A value and its derivatives with respect to the vertex that the edges start from. The Hessian holds xx, xy and yy.
 struct Derivatives {
     value: f32,
     gradient: vec2<f32>,
@@ -39,7 +39,7 @@ fn squared_length_sum(t: Corner) -> f32 {
     return dot(t.a, t.a) + dot(t.b, t.b) + dot(c, c);
 }
 
-// The corner seen from its vertex moved by d.
+// The corner after its vertex has moved by d.
 fn displaced(t: Corner, d: vec2<f32>) -> Corner {
     return Corner(t.a - d, t.b - d, t.mean_area);
 }

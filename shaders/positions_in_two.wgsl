@@ -1,6 +1,6 @@
-// Positions of a mesh that is too large for one binding: as in positions.wgsl, but with the high parts of all vertices
-// in one binding and the low parts in another. Half of the vertices in each would take twice the loads on adapters
-// that follow both branches.
+// Replaces positions.wgsl for a mesh that is too large for one binding: one binding has the high parts of all vertices,
+// another one the low parts. Half of the vertices in each binding would take twice the loads on adapters that execute
+// both branches.
 
 @group(0) @binding(POSITIONS) var<storage, read_write> high_positions: array<vec2<f32>>;
 @group(0) @binding(LOW_POSITIONS) var<storage, read_write> low_positions: array<vec2<f32>>;

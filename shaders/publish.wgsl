@@ -1,22 +1,22 @@
-// Writes the objectives of the last evaluation into a buffer of the application, as the Rust struct
-// ObjectiveValues has them.
+// Writes the objectives of the last evaluation into a buffer of the application, laid out as the Rust struct
+// ObjectiveValues.
 
 struct Publish {
-    // In words, from the start of the binding.
+    // Where the values begin, in words from the start of the binding.
     offset: u32,
     triangles: u32,
-    // Whether the sweeps are judged, so that the run that follows has a stop and a count of sweeps.
+    // Not zero if the sweeps are judged by the stop rule, and so have a reason to stop and a count of sweeps.
     judged: u32,
     padding: u32,
-    // ideal² of each metric, which the sums leave out of each triangle; 0 for a metric that is not tracked.
+    // ideal² of each metric, which the sums leave out for each triangle; 0 for a metric that is not tracked.
     ideal_squared: array<vec4<f32>, SLOT_VECTORS>,
 }
 
 @group(0) @binding(0) var<uniform> publish_to: Publish;
 @group(0) @binding(1) var<storage, read> control: Control;
-// The control of the sweeps themselves.
+// The control of the sweeps; `control` is that of the evaluation.
 @group(0) @binding(2) var<storage, read> sweeps: Control;
-// How often a vertex was moved, and how often the host changed what may move.
+// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
 @group(0) @binding(3) var<storage, read> changes: array<u32, 2>;
 @group(0) @binding(4) var<storage, read_write> destination: array<u32>;
 
@@ -30,7 +30,7 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
     if slot == INVERTED {
         word = u32(sum.x) + u32(i32(sum.y));
     } else if slot == WORST {
-        // Infinity is written by its bits: compilers may assume that there is no such number.
+        // Infinity is written by its bits, as compilers may assume that there are no infinities.
         let is_tangled = control.history[last + INVERTED].x > 0.0;
         word = select(bitcast<u32>(sqrt(1.0 + sum.x)), INFINITY, is_tangled);
     } else {
@@ -39,7 +39,7 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
     }
     destination[publish_to.offset + slot] = word;
     if slot == 0u {
-        // Not of a run that the next sweeps will begin anew.
+        // If the mesh has changed since, the next sweeps begin a new run, and the stop of the old one means nothing.
         let holds = publish_to.judged != 0u && sweeps.changes == changes[0] + changes[1];
         destination[publish_to.offset + SLOTS] = select(0u, sweeps.done, holds);
         let done = max(sweeps.evaluated, 1u) - 1u;

@@ -1,4 +1,4 @@
-// Keeps the positions of a mesh that is valid, and puts them back where it is not.
+// Saves the positions of a mesh if it is valid, and restores the saved ones if it is not.
 
 struct Restore {
     // Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
@@ -11,9 +11,9 @@ struct Restore {
 
 @group(0) @binding(0) var<uniform> restore: Restore;
 @group(0) @binding(2) var<storage, read_write> valid_positions: array<vec4<f32>>;
-// Of an evaluation just before.
+// Holds the number of inverted triangles from an evaluation encoded just before.
 @group(0) @binding(3) var<storage, read> control: Control;
-// How often a vertex was moved, and how often the host changed what may move.
+// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
 @group(0) @binding(4) var<storage, read_write> changes: array<atomic<u32>, 2>;
 
 fn runtime_zero() -> u32 {

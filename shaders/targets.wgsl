@@ -1,5 +1,5 @@
-// Target maps (TargetMap in src/metric/target.rs): symmetric matrices as xx, xy, yy, behind the positions, one for each
-// vertex. A metric sees a triangle as the mean of the maps at its corners shows it.
+// Target maps (TargetMap in src/metric/target.rs), one for each vertex: symmetric matrices as xx, xy, yy, stored behind
+// the positions. A metric sees a triangle transformed by the mean of the maps at its corners.
 
 const MAPPED: bool = true;
 

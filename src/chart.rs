@@ -1,5 +1,5 @@
-//! A mesh in longitude and latitude whose triangles reach across the line where longitudes start again, or have a corner at a pole,
-//! laid out side by side.
+//! Charts of meshes in longitude and latitude: longitudes are continued across the line where they jump by a full turn,
+//! and triangles at a pole get corners of their own.
 
 use std::collections::HashMap;
 
@@ -9,12 +9,14 @@ use crate::mesh::{Mesh, Precision};
 /// A full turn, in degrees.
 const TURN: f64 = 360.0;
 
-/// A mesh in longitude and latitude, in degrees, with longitudes continued across the line where they start again: 180, or 0 where
-/// they go up to 360. So the triangles across that line have the shape in coordinates that they have on the sphere.
+/// A mesh in longitude and latitude, in degrees, with longitudes continued across the line where they jump by a full
+/// turn: at 180, or at 0 where they go up to 360. Triangles across that line then get the shape in coordinates that
+/// triangles elsewhere have.
 ///
-/// A part of the mesh that closes around the globe is cut along that line, and around a pole at which triangles meet. Vertices there
-/// stand in the chart's mesh several times: once under their own number, and as copies after all others. As the chart's mesh ends
-/// there, none of them moves. Triangles keep their numbers.
+/// A part of the mesh that closes around the globe is cut along that line, and around a pole at which triangles meet. A
+/// vertex on a cut has copies, which come after all other vertices of the chart's mesh; the vertex itself keeps its
+/// number. Cuts are part of the boundary of the chart's mesh, so vertices on them do not move. Triangles keep their
+/// numbers.
 ///
 /// ```
 /// use gpu_smooth::{Chart, Mesh, Precision};
@@ -36,25 +38,26 @@ pub struct Chart {
     /// The mesh as it was given.
     given: Mesh,
     stored: Precision,
-    /// The vertex that each copy is of.
+    /// The vertex of the given mesh that each copy stands for.
     owners: Vec<u32>,
-    /// The vertices of the chart that stay because it is cut there, ascending.
+    /// The vertices on cuts of the chart, copies included, which do not move. Ascending.
     held: Vec<u32>,
     across: usize,
     polar: usize,
 }
 
-/// A corner of a triangle in the chart: a vertex, and by how many turns its longitude is continued. `None` for a vertex at a pole,
-/// which goes to the middle of the other two corners.
+/// A corner of a triangle in the chart: a vertex, and the number of turns to be added to its longitude. `None` for a
+/// vertex at a pole, whose longitude becomes the mean of those of the other two corners.
 type Turned = (u32, Option<i32>);
 
 impl Chart {
-    /// The chart of a mesh whose coordinates are stored with so many digits; `None` if every triangle has its shape in the
-    /// coordinates as they are.
+    /// Makes the chart of a mesh whose coordinates are stored with the given precision. Returns `None` if the mesh
+    /// needs no chart, as no triangle is across the line or at a pole, and for a mesh with vertices that do not exist
+    /// or coordinates that are not finite.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if there is a pole inside of a
-    /// triangle or on its edge. Of a mesh with vertices that are not there, or coordinates that are not finite, there is no chart.
+    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside a
+    /// triangle or on its edge.
     pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
         let Mesh { points, triangles, .. } = mesh;
         let has_point = |&v: &u32| points.get(v as usize).is_some_and(|[x, y]| (x + y).is_finite());
@@ -83,7 +86,7 @@ impl Chart {
         [across, polar]: [usize; 2],
     ) -> Self {
         let mut mesh = given.clone();
-        // A vertex itself is where its longitude is continued least; elsewhere there are copies of it.
+        // A vertex itself takes the number of turns nearest to 0; for others it gets copies.
         let mut own: Vec<Option<i32>> = vec![None; given.points.len()];
         for &(v, turns) in corners.as_flattened() {
             let (Some(turns), own) = (turns, &mut own[v as usize]) else { continue };
@@ -131,7 +134,7 @@ impl Chart {
         Self { mesh, given: given.clone(), stored, owners, held, across, polar }
     }
 
-    /// The mesh with its longitudes continued: its vertices, and then the copies.
+    /// The mesh with its longitudes continued: the given vertices, and behind them the copies.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
@@ -141,28 +144,29 @@ impl Chart {
         &self.given
     }
 
-    /// The vertices of the chart's mesh that do not move because it is cut there, copies among them. Ascending.
+    /// The vertices of the chart's mesh that do not move because they are on a cut, copies included. Ascending.
     pub fn held(&self) -> &[u32] {
         &self.held
     }
 
-    /// The vertex of the given mesh that each copy is of.
+    /// The vertex of the given mesh that each copy stands for, in the order of the copies.
     pub fn owners(&self) -> &[u32] {
         &self.owners
     }
 
-    /// How many triangles reach across the line where longitudes start again.
+    /// Number of triangles that reach across the line where longitudes jump by a full turn.
     pub fn across(&self) -> usize {
         self.across
     }
 
-    /// How many triangles have a corner at a pole.
+    /// Number of triangles with a corner at a pole.
     pub fn polar(&self) -> usize {
         self.polar
     }
 
-    /// The chart's points for these points of the given mesh, each continued to where it is nearest to its own place. Points
-    /// that are left out, or too many, are as in the chart.
+    /// Returns the points of the chart's mesh for new points of the given mesh, in degrees. Each is continued by the
+    /// number of turns that brings it nearest to the chart's point for this vertex. Missing points are as in the chart,
+    /// and points beyond the number of vertices are ignored.
     pub fn continued(&self, given: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut points = self.mesh.points.clone();
         let count = self.given.points.len();
@@ -174,7 +178,7 @@ impl Chart {
         }
         let (points_of_vertices, copies) = points.split_at_mut(count);
         for (copy, &owner) in copies.iter_mut().zip(&self.owners) {
-            // Where somebody has moved a vertex that has copies, they go with it.
+            // The copies of a vertex that was moved go with it.
             if !same(owner as usize) && !is_pole(&self.given.points, owner) {
                 let [x, y] = points_of_vertices[owner as usize];
                 let turns = ((copy[0] - x) / TURN).round();
@@ -184,20 +188,21 @@ impl Chart {
         points
     }
 
-    /// The same chart of another state of the given mesh; see [`continued`](Self::continued).
+    /// The chart with the given mesh moved to other positions; see [`continued`](Self::continued).
     pub(crate) fn moved(&self, given: &Mesh) -> Self {
         let mesh = Mesh { points: self.continued(&given.points), ..self.mesh.clone() };
         Self { mesh, given: given.clone(), ..self.clone() }
     }
 
-    /// Values of the given mesh's vertices, so many each, for those of the chart's mesh: copies have those of their vertices.
+    /// Extends data of the given mesh's vertices, `each` numbers per vertex, to the vertices of the chart's mesh. A
+    /// copy gets the data of its vertex.
     pub fn extended(&self, values: &[f64], each: usize) -> Vec<f64> {
         let of = |&v: &u32| values.iter().skip(v as usize * each).take(each).copied();
         values.iter().copied().chain(self.owners.iter().flat_map(of)).collect()
     }
 
-    /// The points of the given mesh for these points of the chart's: longitudes in the range that they had, and those that have not
-    /// moved with the same bits as before.
+    /// Returns the points of the given mesh, in degrees, for points of the chart's mesh. Longitudes are brought back to
+    /// the range of the given mesh. Points that have not moved keep their bits.
     pub fn given(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let all = || self.given.points.iter().map(|point| point[0]);
         let range = [[-180.0, 180.0], [0.0, TURN]];
@@ -228,29 +233,31 @@ fn is_pole(points: &[[f64; 2]], v: u32) -> bool {
     points[v as usize][1].abs() == 90.0
 }
 
-/// Which corner of a triangle is at a pole, if one alone is.
+/// The corner of a triangle that is at a pole, if it is the only one.
 fn pole_of(points: &[[f64; 2]], t: &[u32; 3]) -> Option<usize> {
     let mut at = (0..3).filter(|&i| is_pole(points, t[i]));
     at.next().filter(|_| at.next().is_none())
 }
 
-/// The edges of a triangle, but for those of a corner that alone is at a pole, where all longitudes are one point.
+/// The edges of a triangle. Those at a single corner at a pole are left out, as all longitudes are the same point
+/// there.
 fn edges<'t>(points: &[[f64; 2]], t: &'t [u32; 3]) -> impl Iterator<Item = [u32; 2]> + 't {
     let pole = pole_of(points, t);
     (0..3).filter(move |&i| pole.is_none_or(|at| at == (i + 2) % 3)).map(|i| [t[i], t[(i + 1) % 3]])
 }
 
-/// How far the longitudes of a triangle are apart.
+/// The largest difference of longitudes along an edge of the triangle.
 fn span(points: &[[f64; 2]], t: &[u32; 3]) -> f64 {
     let apart = |[a, b]: [u32; 2]| (points[a as usize][0] - points[b as usize][0]).abs();
     edges(points, t).map(apart).fold(0.0, f64::max)
 }
 
-/// The corners of all triangles, continued such that the longitudes of a triangle are less than half a turn apart: over the whole
-/// of a part where that is possible, else only in triangles across the line where longitudes start again.
+/// Finds the turns of all corners so that longitudes in a triangle differ by less than half a turn. A connected part of
+/// the mesh is continued as a whole where that is possible, else only in triangles across the line where longitudes
+/// jump.
 fn turned(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<[Turned; 3]>, MeshError> {
     let x = |v: u32| points[v as usize][0];
-    // By how many turns the second longitude is continued to be less than half a turn from the first.
+    // The number of turns to add to the second longitude to bring it within half a turn of the first.
     let turns = |a: u32, b: u32| ((x(a) - x(b)) / TURN).round() as i32;
     let mut parts = Parts::new(points.len());
     for (triangle, t) in triangles.iter().enumerate() {
@@ -282,11 +289,11 @@ fn turned(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<[Turned; 3]
     Ok(triangles.iter().map(&mut corners).collect())
 }
 
-/// Vertices joined by edges to parts, in which each has its number of turns.
+/// Union-find of vertices joined by edges. In each part every vertex has a number of turns.
 struct Parts {
-    /// For each vertex another one of its part, or itself, and how many turns it has more than that one.
+    /// For each vertex another vertex of its part, or itself, and how many more turns it has than that one.
     toward: Vec<(u32, i32)>,
-    /// Whether a part, told by its least vertex, closes around the globe.
+    /// Whether a part, identified by its least vertex, closes around the globe.
     is_closed: Vec<bool>,
 }
 
@@ -295,7 +302,7 @@ impl Parts {
         Self { toward: (0..count as u32).map(|v| (v, 0)).collect(), is_closed: vec![false; count] }
     }
 
-    /// The least vertex of a vertex's part, and how many turns the vertex has more than that one.
+    /// Returns the least vertex of a vertex's part, and how many more turns the vertex has than that one.
     fn find(&mut self, v: u32) -> (u32, i32) {
         let (mut at, mut turns) = (v, 0);
         loop {
@@ -303,14 +310,14 @@ impl Parts {
             if next == at {
                 return (at, turns);
             }
-            // Half as far the next time.
+            // Halves the path for the next search.
             let (over, beyond) = self.toward[next as usize];
             self.toward[at as usize] = (over, more + beyond);
             (at, turns) = (over, turns + more + beyond);
         }
     }
 
-    /// Joins two vertices, of which the second has so many turns more.
+    /// Joins two vertices, the second of which has `turns` more turns.
     fn join(&mut self, a: u32, b: u32, turns: i32) {
         let ((least, of_a), (other, of_b)) = (self.find(a), self.find(b));
         let between = of_a + turns - of_b;
@@ -330,7 +337,8 @@ mod tests {
     use super::*;
     use crate::topology::Topology;
 
-    /// A grid of fields of 20 by 10 degrees, from one longitude and latitude on, each vertex's longitude as `written` has it.
+    /// A grid of cells of 20 by 10 degrees, from a given longitude and latitude on. `written` turns each longitude into
+    /// the one that the mesh stores.
     fn grid(
         [columns, rows]: [u32; 2],
         [west, south]: [f64; 2],
@@ -380,7 +388,7 @@ mod tests {
             assert_eq!((chart.across(), chart.polar()), (6, 0));
             assert_eq!(chart.given(&chart.mesh().points), mesh.points);
             assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
-            // Places that have moved across the line and back are written within the file's range.
+            // Vertices that moved across the line and back are written within the file's range.
             for by in [-25.0, 25.0] {
                 let mut moved = chart.mesh().points.clone();
                 moved.iter_mut().for_each(|point| point[0] += by);
@@ -437,7 +445,7 @@ mod tests {
             Err(MeshError::Target { vertex: 1, .. })
         ));
         assert_eq!(of([[0.0, 80.0], [10.0, 80.0], [5.0, 85.0]]), Ok(false));
-        // What is wrong otherwise is for others to say.
+        // Other faults of a mesh are reported elsewhere.
         assert_eq!(of([[0.0, f64::NAN], [10.0, 80.0], [-175.0, 85.0]]), Ok(false));
     }
 }

@@ -56,9 +56,10 @@ impl Backend {
         Self::auto_tried(size, options, || Ok(()))
     }
 
-    /// As [`auto`](Self::auto), but the drivers are tried before one is started in this process, which a driver that crashes
-    /// would end. `try_drivers` may start them in a process of its own and watch it, as the `gpu-smooth` command does; if it
-    /// returns an error, such as [`GpuError::Crashed`], the CPU is taken. It is not called where no driver would be started.
+    /// Chooses like [`auto`](Self::auto), but has the drivers tried first, as a driver that crashes would end this
+    /// process. `try_drivers` may start them in a separate process and watch it, as the `gpu-smooth` command does. If
+    /// it returns an error, such as [`GpuError::Crashed`], the CPU is chosen. It is not called if no driver would be
+    /// started.
     pub fn auto_tried(
         size: MeshSize,
         options: &Options,
@@ -133,7 +134,7 @@ fn gpu_updates(kind: &str) -> Option<f64> {
 
 /// The work that a run is likely to take, in sweeps, corrections included.
 fn expected_sweeps(options: &Options) -> f64 {
-    // By EDGE, which is not smooth, corrected runs take as long as others.
+    // With EDGE as its base, which is not smooth, a run with corrections takes as many sweeps as one without.
     let is_short = options.is_multilevel() && options.scheme.base().is_smooth();
     let usual = if is_short { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
     usual.min(options.max_sweeps.into())

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::{fmt, io};
 
-/// A place in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
+/// A position in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// One-based line of a text file.
@@ -24,12 +24,12 @@ impl fmt::Display for Location {
 /// A mesh file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}. {remedy}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
         /// What the user can do about it.
         remedy: String,
@@ -61,12 +61,12 @@ pub enum ReadError {
 /// A file could not be written. A file that was there before is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}. {remedy}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
         /// What the user can do about it.
         remedy: String,
@@ -91,23 +91,23 @@ pub enum WriteError {
     },
 }
 
-/// What was named is not a single group of a mesh file.
+/// A name does not stand for exactly one group of a mesh file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GroupError {
-    /// No group is spelled so.
+    /// No group has this name.
     #[error("{}", unknown(spelling, known))]
     Unknown {
-        /// What was named.
+        /// The name that was given.
         spelling: String,
-        /// The spelling of each group that there is, the nearest first.
+        /// The names of all groups, the most similar first.
         known: Vec<String>,
     },
-    /// Several groups are spelled so.
+    /// Several groups have this name.
     #[error("'{spelling}' is ambiguous: it may be {}", first_of(spellings, " or "))]
     Ambiguous {
-        /// What was named.
+        /// The name that was given.
         spelling: String,
-        /// The spelling of each of them that no other group shares.
+        /// For each of these groups, a spelling that no other group shares.
         spellings: Vec<String>,
     },
 }
@@ -119,7 +119,7 @@ fn unknown(spelling: &str, known: &[String]) -> String {
     }
 }
 
-/// The first names of a list, and how many more there are.
+/// Joins the first names of a list, and says how many more there are.
 fn first_of(names: &[String], between: &str) -> String {
     const TOLD: usize = 12;
     let told = names[..names.len().min(TOLD)].join(between);
@@ -196,7 +196,7 @@ pub enum MeshError {
     OverlappingStar {
         /// The first such vertex.
         vertex: u32,
-        /// How many times the triangles wind around it.
+        /// Number of times that the triangles wind around it.
         turns: u32,
     },
     /// The objective of the mesh is not a finite number, because of a triangle that is too flat, or too small beside the
@@ -211,7 +211,7 @@ pub enum MeshError {
         /// The name of the metric that judges the run.
         metric: &'static str,
     },
-    /// What is wanted at a vertex makes no sense as a target; see [`Targets`](crate::Targets).
+    /// The target given for a vertex is not a valid one; see [`Targets`](crate::Targets).
     #[error("vertex {vertex} has no target: {problem}")]
     Target {
         /// The first such vertex.
@@ -219,7 +219,7 @@ pub enum MeshError {
         /// What is wrong there.
         problem: &'static str,
     },
-    /// A pole of the sphere is inside of a triangle or on its edge, where longitudes have no direction; see
+    /// A pole of the sphere is inside a triangle or on its edge, where longitudes have no direction; see
     /// [`Chart`](crate::Chart).
     #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
     Pole {
@@ -229,9 +229,9 @@ pub enum MeshError {
     /// A list of positions does not have exactly one for each vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {
-        /// How many vertices the mesh has.
+        /// Number of vertices of the mesh.
         expected: usize,
-        /// How many points were given.
+        /// Number of points that were given.
         given: usize,
     },
     /// A list of data does not have as many numbers as the vertices of the mesh need.
@@ -303,7 +303,7 @@ pub enum SmoothError {
         /// What the value should be.
         remedy: &'static str,
     },
-    /// A checkpoint is not of this run.
+    /// The checkpoint is from another run.
     #[error("the checkpoint cannot be used: {0}")]
     Checkpoint(String),
     /// The GPU engine failed.
@@ -328,16 +328,17 @@ pub enum GpuError {
     NoDevice {
         /// The adapter.
         adapter: String,
-        /// What wgpu said.
+        /// wgpu's message.
         message: String,
     },
-    /// A driver ended the process that tried it, or never answered; see [`Backend::auto_tried`](crate::Backend::auto_tried).
+    /// A driver crashed the process that tried it, or never answered; see
+    /// [`Backend::auto_tried`](crate::Backend::auto_tried).
     #[error("the driver of the GPU failed when it was tried: {0}")]
     Crashed(String),
     /// A limit of the device is too low.
     #[error("{what} needs {needed}, but the device's {limit} is {available}")]
     Limit {
-        /// What does not fit.
+        /// The resource that does not fit.
         what: String,
         /// The value of the limit that is needed.
         needed: u64,
@@ -371,10 +372,10 @@ pub enum GpuError {
         /// Which operation failed, and how.
         operation: &'static str,
     },
-    /// The device was made without a feature that is needed.
+    /// The device was created without a feature that is needed.
     #[error("{what} needs a device made with the feature {feature}")]
     Feature {
-        /// What needs the feature.
+        /// The use that needs the feature.
         what: &'static str,
         /// The feature's name in wgpu.
         feature: &'static str,
@@ -382,11 +383,10 @@ pub enum GpuError {
     /// The device is out of memory.
     #[error("the device is out of memory: {0}")]
     OutOfMemory(String),
-    /// A buffer of the application does not have the size, usage or layout that is needed, was destroyed, or is of another
-    /// device.
+    /// A buffer of the application lacks the needed size, usage or layout, was destroyed, or belongs to another device.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
-    /// The queue is not the queue of the device that it was given with.
+    /// The queue does not belong to the device that it was given with.
     #[error("the queue is not that of the device: both must come from one call of request_device")]
     Queue,
     /// The call would block the thread, which a page in a browser cannot do.
@@ -394,10 +394,10 @@ pub enum GpuError {
         "a browser cannot wait in a blocking call: use the call of this name that ends in _async"
     )]
     WouldBlock,
-    /// wgpu refused a call: a bug in this library, or a device made with limits other than those required.
+    /// wgpu refused a call: a bug in this library, or a device created with limits other than those required.
     #[error("the device refused: {0}")]
     Refused(String),
-    /// A sweep made the objective a number that is not finite, which no sweep should.
+    /// A sweep made the objective infinite or NaN, which no sweep should.
     #[error("sweep {sweep} made a number that is not finite")]
     NotFinite {
         /// The sweep.

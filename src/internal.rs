@@ -1,4 +1,4 @@
-//! For benchmarks, experiments and this library's own tests. It changes without notice.
+//! Functions for benchmarks, experiments and this library's own tests. They change without notice.
 
 use glam::DVec2;
 
@@ -33,8 +33,8 @@ pub fn run_on_gpu<'a>(
     Ok(StepwiseRun::new(engine, plan))
 }
 
-/// The energy that untangling lowers, of a triangle that `edges` span from a corner and that should have the area `target`:
-/// its value, gradient and Hessian (xx, xy, yy) by the position of the corner.
+/// Returns the energy that untangling lowers, for a triangle spanned by `edges` from a corner, which should have the
+/// area `target`: its value, gradient (x, y) and Hessian (xx, xy, yy) by the position of the corner.
 pub fn untangling_energy(edges: [[f64; 2]; 2], target: f64, epsilon: f64) -> [f64; 6] {
     let corner = Corner { edges: edges.map(DVec2::from), target };
     let found = corner.expansion(epsilon);

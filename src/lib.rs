@@ -26,19 +26,18 @@
 //! # Ok::<(), gpu_smooth::SmoothError>(())
 //! ```
 //!
-//! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one mesh prepared, and serves any
-//! number of runs while the triangles stay the same. A run is one call of [`Smoother::run`] with
-//! [`Options`], and returns an [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; a
-//! [`Conversion`] writes a mesh in another format, and an [`Interpolation`] takes data of vertices to new places; what may move is
-//! what [`Mesh::fixed`] does not list ([`MeshFile::fix`], [`select`]). [`Measured`] tells how good triangles
-//! are by each [`Measure`] of the field, and [`Quality`] what smoothing has made of a mesh.
+//! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
+//! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
+//! [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; a [`Conversion`] writes a mesh in
+//! another format. An [`Interpolation`] takes data of vertices to their new positions. Vertices listed in
+//! [`Mesh::fixed`] do not move; [`MeshFile::fix`] and [`select`] help to list them. [`Measured`] evaluates triangles by
+//! each [`Measure`] of the field, and [`Quality`] compares a mesh before and after smoothing.
 //!
 //! # Inside an application
-//!
 //! A [`Gpu`] can be made from the application's own device. A [`DeviceMesh`] then stays on the device as long as its
-//! triangles stay the same, and [`Sweeps`] are encoded into the application's own command buffers: nothing is
-//! submitted, nothing waited for, and a vertex buffer is smoothed where it is drawn from. Everything that can fail,
-//! compile or allocate is done once; a frame only encodes.
+//! triangles stay the same, and [`Sweeps`] are encoded into the application's own command buffers. Nothing is
+//! submitted, nothing is waited for, and the vertex buffer that the application draws is the one that is smoothed.
+//! Everything that can fail, compile or allocate is done once; a frame only encodes.
 //!
 //! ```no_run
 //! # use gpu_smooth::*;
@@ -70,24 +69,25 @@
 //! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
 //!   [`Topology::move_clamped`] does so with positions on the host.
 //! - [`UntanglingSweeps`] turn back triangles that the application has inverted.
-//! - [`Sweeps::until_converged`] ends sweeps by themselves, on the device; a [`Budget`] chooses how many a frame has time for.
+//! - [`Sweeps::until_converged`] makes sweeps that end by the stop rule, on the device; a [`Budget`] chooses how many
+//!   sweeps a frame has time for.
 //! - A [`Readback`] reads objectives or vertices in each frame and never waits.
 //! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
 //! - [`Timestamps`] measure how long each kernel takes.
 //! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
 //! - [`Smoother::run_async`] does a whole run, with its stop rule, without blocking the thread.
 //!
-//! `docs/embedding.md` is the whole story: a frame, devices, precision, drags, pins, budgets, readbacks, other meshes and lost
-//! devices. `examples/embed`, `examples/moving_boundary` and `examples/outside` are complete applications.
+//! `docs/embedding.md` covers all of this: frames, devices, precision, drags, pins, budgets, readbacks, other meshes
+//! and lost devices. `examples/embed`, `examples/moving_boundary` and `examples/outside` are complete applications.
 //!
 //! # Limits
 //!
 //! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
 //! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles.
 //!
-//! On a GPU, buffers that are larger than a device can bind at once are bound part by part, which
-//! changes no bit of the result. Every kernel needs all positions, though, in two bindings at most: a device that
-//! binds 128 MiB at once takes 16 million vertices. [`Gpu::check_size`] checks this without allocating.
+//! On a GPU, buffers that are larger than a device can bind at once are bound part by part, which changes no bit of the
+//! result. But every kernel needs all positions, in two bindings at most: a device that binds 128 MiB at once takes 16
+//! million vertices. [`Gpu::check_size`] checks this without allocating.
 
 mod chart;
 mod choice;
@@ -120,17 +120,17 @@ pub mod validity {
     pub use crate::topology::{certify, infeasible};
 }
 
-/// The safe file writing of [`MeshFile`], for other files that an application writes.
+/// The safe writing of files that [`MeshFile`] uses, for other files that an application writes.
 pub mod output {
     pub use crate::file::{check, replace, same_file};
 }
 
-/// Has the code of the chapter compiled with the tests.
+/// Compiles the code of docs/embedding.md with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/embedding.md")]
 mod embedding {}
 
-/// For benchmarks, experiments and this library's own tests. It changes without notice.
+/// Functions for benchmarks, experiments and this library's own tests. They change without notice.
 #[doc(hidden)]
 pub mod internal;
 

@@ -1,17 +1,17 @@
 //! The mesh that a caller supplies.
 
-/// How many digits the coordinates of a mesh are stored with.
+/// The precision with which the coordinates of a mesh are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
-    /// About seven digits, as in files of 32-bit floats.
+    /// Single precision: about seven digits, as in files of 32-bit floats.
     Single,
-    /// About sixteen digits.
+    /// Double precision: about sixteen digits.
     #[default]
     Double,
 }
 
 impl Precision {
-    /// How many bytes a number has in binary.
+    /// Number of bytes of a number in binary.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Precision::Single => 4,
@@ -19,7 +19,7 @@ impl Precision {
         }
     }
 
-    /// The number that is read back after this one was stored.
+    /// Returns the number that is read back after storing this one.
     pub fn rounded(self, number: f64) -> f64 {
         match self {
             Precision::Single => f64::from(number as f32),
@@ -30,7 +30,7 @@ impl Precision {
 
 /// A 2D triangle mesh: double-precision positions and vertex triples, in the order of their file or application.
 ///
-/// Nothing about it is checked here: windings may be mixed and vertices unused.
+/// Nothing about it is checked here: triangles may have either winding, and vertices may be unused.
 /// [`Topology`](crate::Topology) checks what smoothing needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -38,7 +38,7 @@ pub struct Mesh {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based, in either winding.
     pub triangles: Vec<[u32; 3]>,
-    /// Interior vertices that must not move: those on constraint lines, of elements that are not triangles,
-    /// and between regions. In any order, repeats allowed. Boundary vertices never move and need not be listed.
+    /// Interior vertices that must not move: those on constraint lines, those of elements that are not triangles, and
+    /// those between regions. In any order, repeats allowed. Boundary vertices never move and need not be listed.
     pub fixed: Vec<u32>,
 }

@@ -8,27 +8,27 @@ use crate::run::{Objectives, Stop, WorstBy};
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric, or the mesh before
-    /// the run if f of that state is not lower by more than rounding (1e-9 of f), nor its worst triangle better where those were
-    /// improved. No triangle is inverted or flat, by
-    /// exact predicates on these values.
+    /// Position of every vertex, in the mesh's order and units: the best state by the base metric. It is the mesh
+    /// before the run if f of that state is not lower by more than rounding (1e-9 of f), unless
+    /// [`Options::improve_worst`](crate::Options::improve_worst) has made the worst triangle better. By exact
+    /// predicates on these values, no triangle is inverted or flat.
     pub points: Vec<[f64; 2]>,
     /// Why the run ended.
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of sweeps in which the metrics of the scheme took turns. Those after it were by the base metric, for the corrections
-    /// that followed them.
+    /// Number of sweeps in which the metrics of the scheme took turns. The sweeps after them were by the base metric,
+    /// so that corrections could follow.
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
     /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
-    /// single precision: the first sweeps, or all if the first ones did not open every triangle.
+    /// single precision. These are the first sweeps, or all if the first ones did not open every triangle.
     pub opening_sweeps: u32,
-    /// Whether [`Method::Auto`](crate::Method::Auto) did without corrections because the coarser levels do not fit the
+    /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,
-    /// The sweep after which the mesh was as returned in `points`; 0 if it is the mesh before the run.
+    /// The sweep after which the mesh was as in `points`; 0 for the mesh before the run.
     pub best_sweep: u32,
     /// Objectives before the first sweep and after each.
     pub history: Vec<Objectives>,
@@ -36,66 +36,70 @@ pub struct Outcome {
     /// last sweeps, and at most what f is above its ideal; `None` if they do not decay or are too few. After a run by EDGE with
     /// corrections, it includes what EDGE's p-norm leaves of f.
     pub remaining: Option<f64>,
-    /// Number of vertices that the guard keeps from moving on at the end of a run that converged otherwise: by
-    /// [`Guard::Worst`](crate::Guard::Worst), or if that is why the run ended ([`Stop::HeldBack`]).
+    /// Number of vertices that a guard kept from moving further at the end of a run that has otherwise converged.
+    /// Counted with [`Guard::Worst`](crate::Guard::Worst), or if the run ended for this reason ([`Stop::HeldBack`]).
     pub held_back: usize,
-    /// The share of what the sweeps gained in f that is lost as positions are rounded to the digits that
-    /// coordinates have, and vertices are set back for it. Near 1 where a mesh is as fine as its numbers.
+    /// The share of the gain in f that is lost when positions are rounded to the digits that coordinates have, and
+    /// vertices are set back because of it. Near 1 for a mesh as fine as its numbers.
     pub lost: f64,
     /// How far the run went toward its goal, if it had one.
     pub goal: Option<GoalOutcome>,
-    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle, or made one flatter
-    /// than [`Options::keep_altitude`](crate::Options::keep_altitude) allows.
+    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle, or had
+    /// made its altitude smaller than [`Options::keep_altitude`](crate::Options::keep_altitude) allows.
     pub returned: usize,
-    /// What slid, if vertices might; see [`Smoother::set_slide`](crate::Smoother::set_slide).
+    /// The result for vertices on curves, if vertices were to slide; see
+    /// [`Smoother::set_slide`](crate::Smoother::set_slide).
     pub slid: Option<Slid>,
-    /// What improving the worst triangles did, if it was asked for; see [`Options::improve_worst`](crate::Options::improve_worst).
+    /// The result of improving the worst triangles, if it was asked for; see
+    /// [`Options::improve_worst`](crate::Options::improve_worst).
     pub improved: Option<Improved>,
-    /// The fault of the device after which the run went on on the CPU, if there was one.
+    /// The fault of the device after which the run continued on the CPU, if there was one.
     pub device_fault: Option<DeviceFault>,
-    /// Time spent in the run, the search for a desired objective included.
+    /// The duration of the run, including the search for a desired objective.
     pub smooth: Duration,
 }
 
-/// What improving the worst triangles did after the last sweep.
+/// The result of improving the worst triangles after the last sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improved {
-    /// The measure.
+    /// The measure that defines the worst.
     pub by: WorstBy,
-    /// Number of vertices that it moved.
+    /// Number of vertices that were moved.
     pub vertices: usize,
-    /// The worst triangle with a free vertex after the last sweep, and as returned: an inverse mean ratio, an angle in degrees, or an
-    /// altitude in the unit of the mesh.
+    /// The worst triangle with a free vertex after the last sweep, and as returned: an inverse mean ratio, an angle in
+    /// degrees, or an altitude in the unit of the mesh.
     pub worst: [f64; 2],
-    /// Number of triangles that are worse than that and have no vertex that is free or may slide, so that nothing can be done for them.
+    /// Number of triangles that are worse than that but cannot be improved, as they have no vertex that is free or may
+    /// slide.
     pub stuck: usize,
-    /// The objective by the base metric after the last sweep, and as returned.
+    /// The objective by the base metric: after the last sweep, and as returned.
     pub f: [f64; 2],
 }
 
-/// What slid in a run.
+/// The result of sliding in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slid {
-    /// Number of vertices that might slide.
+    /// Number of vertices that were allowed to slide.
     pub vertices: usize,
-    /// Number of those that have moved.
+    /// Number of these vertices that have moved.
     pub moved: usize,
-    /// Number of pairs among those that might slide, of which both move together; see [`Slide::periodic`](crate::Slide::periodic).
+    /// Number of pairs among these vertices that move together; see [`Slide::periodic`](crate::Slide::periodic).
     pub pairs: usize,
-    /// Number of rounds of sweeps over free vertices and along the curves.
+    /// Number of rounds, each of sweeps over free vertices and then along the curves.
     pub rounds: u32,
-    /// How far the lines between vertices are from those in the mesh before the run, in its unit.
+    /// The largest distance of the lines between vertices from those in the mesh before the run, in its unit.
     pub off: f64,
-    /// The change of the area of all triangles, as a share of it.
+    /// The change of the area of all triangles, as a share of that area.
     pub area: f64,
 }
 
-/// A fault of a device, after which a run went on on the CPU; see [`Keeper::goes_on_without`](crate::Keeper::goes_on_without).
+/// A fault of a device, after which a run continued on the CPU; see
+/// [`Keeper::goes_on_without`](crate::Keeper::goes_on_without).
 #[derive(Clone, Debug)]
 pub struct DeviceFault {
     /// The last sweep on the device whose result was kept.
     pub sweep: u32,
-    /// What was wrong.
+    /// The error of the device.
     pub error: GpuError,
 }
 
@@ -106,9 +110,9 @@ pub struct GoalOutcome {
     pub fraction: f64,
     /// The desired objective.
     pub desired: f64,
-    /// Where the desired objective comes from: "given", or a description of the runs that found it.
+    /// The origin of the desired objective: "given", or a description of the runs that found it.
     pub origin: String,
-    /// The share of the way from the initial to the desired objective that [`Outcome::points`] have gone; 1 if both
+    /// The share of the way from the initial to the desired objective that is reached by [`Outcome::points`]; 1 if both
     /// were equal from the start.
     pub best_fraction: f64,
 }

@@ -9,7 +9,7 @@ use crate::topology::predicates;
 
 /// Quality statistics of a mesh, in double precision. Exact predicates decide which triangles are inverted or flat.
 ///
-/// A triangle with a coordinate that is not a finite number counts as inverted.
+/// A triangle with a coordinate that is not finite counts as inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     f: [f64; Metric::ALL.len()],
@@ -32,7 +32,8 @@ pub struct Quality {
 #[derive(Clone)]
 struct Tally {
     sums: [f64; Metric::ALL.len()],
-    /// Least and largest cotangent of an angle. A cotangent falls as the angle grows, and needs no arc function.
+    /// Least and largest cotangent of an angle. A cotangent falls as its angle grows, and is computed without an arc
+    /// function.
     cotangents: [f64; 2],
     /// Largest inverse mean ratio, and its triangle.
     worst: (f64, usize),
@@ -65,7 +66,8 @@ impl Tally {
 }
 
 impl Quality {
-    /// Measures the triangles of `topology` with their vertices at `points`, one for each vertex of the mesh.
+    /// Measures the triangles of `topology` with their vertices at `points`, one point for each vertex of the mesh, in
+    /// any unit.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -73,8 +75,8 @@ impl Quality {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// Measures the triangles of `topology` where `points` are coordinates of a surface: lengths and angles are those on
-    /// the surface at the middle of each triangle.
+    /// Measures the triangles of `topology` with their vertices at `points`, which are coordinates on `surface`.
+    /// Lengths and angles are those on the surface at the middle of each triangle.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -85,7 +87,7 @@ impl Quality {
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
-        // Absolute areas: where large triangles are inverted, signed ones may cancel.
+        // Absolute areas, as signed ones may cancel if large triangles are inverted.
         let area = |t: &[u32; 3]| {
             let [x, y] = surface.lengths_in(points, t);
             0.5 * predicates::orientation(points, t).abs() * x * y
@@ -118,7 +120,7 @@ impl Quality {
         })
     }
 
-    /// The objective f = (1/n) Σ q² over all n triangles (Park & Shontz, equation 1). Infinite if a triangle is
+    /// Returns the objective f = (1/n) Σ q² over all n triangles (Park & Shontz, equation 1). Infinite if a triangle is
     /// inverted or flat and the metric has a barrier.
     pub fn f(&self, metric: Metric) -> f64 {
         self.f[metric as usize]
@@ -138,7 +140,8 @@ fn one(
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
     let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
-    // The exact predicate decides, not the rounded area: a ratio is infinite only if the triangle is inverted or flat.
+    // The exact predicate decides, not the rounded area. So a ratio is infinite only if the triangle is inverted or
+    // flat.
     let mut sums = Metric::every_excess(&corner);
     for (square, metric) in sums.iter_mut().zip(Metric::ALL) {
         *square += metric.ideal_squared();
@@ -178,7 +181,8 @@ struct Edges {
 }
 
 impl Edges {
-    /// The edges of a triangle whose exact orientation is known, with the lengths of a unit of each coordinate.
+    /// Computes the edges of a triangle whose exact orientation is given. `lengths` are those of a unit of each
+    /// coordinate.
     fn of(points: &[[f64; 2]], corners: &[u32; 3], lengths: [f64; 2], orientation: f64) -> Self {
         const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
         let [p, q, r] = corners.map(|v| points[v as usize]);
@@ -189,7 +193,8 @@ impl Edges {
         let edges = [to(p, q), to(p, r), to(q, r)];
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
         let unit = f64::from_bits(size.to_bits() & EXPONENT);
-        // Powers of two: this rounds nothing, and a division takes several times as long.
+        // The unit is a power of two, so multiplying by its inverse rounds nothing. Divisions take several times as
+        // long.
         let inverse = 1.0 / unit;
         let [a, b, c] = edges.map(|edge| edge.map(|x| x * inverse));
         let exact = orientation * inverse * inverse;
@@ -197,8 +202,8 @@ impl Edges {
         if (exact > 0.0) == (rounded > 0.0) {
             return Self { a, b, c, unit };
         }
-        // Rounding has changed the sign of the area. In coordinates along and across the first edge, that sign is the
-        // sign of a single coordinate, which takes the exact one.
+        // Rounding has changed the sign of the area. With axes along and across the first edge, that sign is the sign
+        // of a single coordinate, which is set to the exact one.
         let length = a[0].hypot(a[1]);
         let turned = |edge: [f64; 2]| [(a[0] * edge[0] + a[1] * edge[1]) / length, exact / length];
         Self { a: [length, 0.0], b: turned(b), c: turned(c), unit }

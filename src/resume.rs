@@ -1,4 +1,4 @@
-//! What ties a checkpoint to the run that it is of.
+//! Checks that a checkpoint belongs to the run that is to continue from it.
 
 use glam::DVec2;
 
@@ -6,12 +6,13 @@ use crate::error::SmoothError;
 use crate::mesh::Mesh;
 use crate::run::{About, Checkpoint, Options};
 
-/// What a checkpoint of a run on this mesh, with the target maps of its vertices, says of it.
+/// Describes a run on this mesh, with the target maps of its vertices, as its checkpoints do.
 pub(crate) fn about(mesh: &Mesh, targets: Option<&[[f32; 3]]>, options: &Options) -> About {
     About { mesh: hash(mesh, targets), options: format!("{options:#?}"), goal: None, opened: None }
 }
 
-/// Checks that a checkpoint is of a run on the same mesh, of which triangles use so many vertices, with the same options.
+/// Checks that a checkpoint is from a run with the same options on the same mesh, whose triangles use `vertices`
+/// vertices.
 pub(crate) fn check(
     own: &About,
     checkpoint: &Checkpoint,
@@ -40,14 +41,14 @@ pub(crate) fn check(
     }
 }
 
-/// The error of a checkpoint that is of another mesh.
+/// The error for a checkpoint from another mesh.
 pub(crate) fn foreign() -> SmoothError {
     SmoothError::Checkpoint(
-        "it is of another mesh, or vertices were held or targets set otherwise: go on with the mesh that the run began with".to_owned(),
+        "it is of another mesh, or other vertices were held or other targets set: continue with the mesh that the run began with".to_owned(),
     )
 }
 
-/// A hash of all that a run depends on in a mesh: FNV-1a over words of 64 bits.
+/// A hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
 fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>) -> u64 {
     let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
     let points = mesh.points.as_flattened().iter().map(|x| x.to_bits());
@@ -68,7 +69,7 @@ mod tests {
     use crate::run::{Keeper, Progress, Stop};
     use crate::{Backend, Gpu, GpuError, Outcome, Smoother, validity};
 
-    /// Takes the first checkpoint, and goes on on the CPU if asked to.
+    /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
     struct First {
         checkpoint: Option<Checkpoint>,
@@ -95,7 +96,7 @@ mod tests {
         ControlFlow::Continue(())
     }
 
-    /// A lattice of squares cut in two, its inner vertices moved about.
+    /// A lattice of squares cut in two, with its inner vertices moved.
     fn lattice(n: u32) -> Mesh {
         let mut points = Vec::new();
         for (row, column) in (0..=n).flat_map(|row| (0..=n).map(move |column| (row, column))) {
@@ -112,8 +113,8 @@ mod tests {
         Mesh { points, triangles: squares.flat_map(of_square).collect(), fixed: Vec::new() }
     }
 
-    /// A position that overflows comes in with a checkpoint, as if memory had failed. What shows it is undone, and the mesh
-    /// that is returned is no worse than before the run.
+    /// A position that overflows comes in with a checkpoint, as if memory had failed. The sweep that reveals it is
+    /// undone, and the mesh that is returned is no worse than before the run.
     #[test]
     fn a_sweep_that_makes_a_number_that_is_not_finite_is_undone() {
         let mesh = lattice(12);
@@ -151,7 +152,8 @@ mod tests {
         }
     }
 
-    /// Bytes that are no checkpoint's, under a checksum that is right: refused, or a run that ends with a sound mesh.
+    /// Bytes that are no valid checkpoint but have a correct checksum: they are refused, or the run ends with a sound
+    /// mesh.
     #[test]
     fn a_hostile_checkpoint_does_no_harm() {
         let mesh = lattice(6);
@@ -182,7 +184,7 @@ mod tests {
                     let word =
                         [0, 1, 7, u64::MAX, f64::NAN.to_bits(), 1e300_f64.to_bits(), 1 << 40]
                             [random(7)];
-                    // Half of them in what comes before the long lists.
+                    // Half of the changes are in the bytes before the long lists.
                     let most = if random(2) == 0 { hostile.len() } else { hostile.len().min(3000) };
                     let at = random(most - 8);
                     hostile[at..at + 8].copy_from_slice(&word.to_le_bytes());
@@ -209,7 +211,7 @@ mod tests {
         assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
     }
 
-    /// Keeps the latest checkpoint.
+    /// A keeper that keeps the latest checkpoint.
     #[derive(Default)]
     struct Latest(Option<Checkpoint>);
 

@@ -1,4 +1,4 @@
-//! Choosing vertices by where they are in the mesh and how good their triangles are: what to let move, or to hold.
+//! Selects vertices and triangles by position and quality, to choose which vertices move or are held.
 //!
 //! ```
 //! use gpu_smooth::{Mesh, Topology, select};
@@ -19,17 +19,17 @@
 use crate::metric::Corner;
 use crate::topology::Topology;
 
-/// The triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an equilateral
-/// triangle, and infinite for one that is flat or inverted, or not at finite `points`.
+/// Returns the triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an
+/// equilateral triangle, and infinite for one that is flat, inverted, or not at finite `points`.
 ///
-/// Points that are missing count as infinitely bad triangles.
+/// A triangle with a missing point counts as infinitely bad.
 pub fn triangles_above(points: &[[f64; 2]], topology: &Topology<'_>, limit: f64) -> Vec<u32> {
     let is_above = |corners: &[u32; 3]| inverse_mean_ratio(points, corners) > limit;
     let triangles = (0..).zip(topology.triangles());
     triangles.filter(|(_, corners)| is_above(corners)).map(|(triangle, _)| triangle).collect()
 }
 
-/// The largest inverse mean ratio of a triangle.
+/// Returns the largest inverse mean ratio of a triangle.
 pub fn worst(points: &[[f64; 2]], topology: &Topology<'_>) -> f64 {
     let ratios = topology.triangles().iter().map(|corners| inverse_mean_ratio(points, corners));
     ratios.fold(1.0, f64::max)
@@ -44,8 +44,8 @@ fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// The vertices of these triangles and of `rings` rings of triangles around them, ascending. Indices of no triangle are
-/// left out.
+/// Returns the vertices of the given triangles and of `rings` rings of triangles around them, ascending. Indices of
+/// triangles that do not exist are ignored.
 pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> Vec<u32> {
     let all = topology.triangles();
     let mut found = vec![false; topology.free().len()];
@@ -75,7 +75,8 @@ pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> 
     indices(&found)
 }
 
-/// The vertices all of whose triangles are among these, ascending. Vertices of no triangle are not among them.
+/// Returns the vertices whose triangles are all among the given ones, ascending. Vertices that no triangle uses are not
+/// included.
 pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     let all = topology.triangles();
     let mut chosen = vec![false; all.len()];
@@ -94,7 +95,7 @@ pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     indices(&inside)
 }
 
-/// The vertices at points in a box that two opposite corners span, on its sides too, ascending.
+/// Returns the vertices at points inside or on the sides of the box spanned by two opposite corners, ascending.
 pub fn vertices_in_box(points: &[[f64; 2]], corners: [[f64; 2]; 2]) -> Vec<u32> {
     let [a, b] = corners;
     let is_within = |axis: usize, x: f64| {
@@ -106,7 +107,7 @@ pub fn vertices_in_box(points: &[[f64; 2]], corners: [[f64; 2]; 2]) -> Vec<u32> 
     points.filter(|(_, point)| is_inside(point)).map(|(vertex, _)| vertex).collect()
 }
 
-/// The positions at which this holds.
+/// Returns the indices at which the flags are set.
 fn indices(flags: &[bool]) -> Vec<u32> {
     (0..).zip(flags).filter(|(_, flag)| **flag).map(|(index, _)| index).collect()
 }
@@ -116,7 +117,8 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// A strip of squares cut in two each: vertices 0 to 5 below, 6 to 11 above them, and one that no triangle uses.
+    /// A strip of squares, each cut in two: vertices 0 to 5 are below, 6 to 11 above them, and no triangle uses the
+    /// last one.
     fn strip() -> Mesh {
         let point = |i: u32| [f64::from(i % 6), f64::from(i / 6)];
         let square = |i: u32| [[i, i + 1, i + 7], [i, i + 7, i + 6]];
@@ -167,7 +169,7 @@ mod tests {
         // Right isosceles triangles have 2/√3 = 1.1547; one vertex is moved far along the strip.
         mesh.points[2][0] = 2.9;
         let topology = Topology::new(&mesh).unwrap();
-        // Two of its triangles come near to equilateral ones by that.
+        // This brings two of its triangles near to equilateral ones.
         assert_eq!(triangles_above(&mesh.points, &topology, 1.15), [0, 1, 3, 4, 6, 7, 8, 9]);
         assert_eq!(triangles_above(&mesh.points, &topology, 1.2), [4]);
         assert_eq!(triangles_above(&mesh.points, &topology, 6.0), []);

@@ -1,12 +1,12 @@
-// The share of their ways that vertices can go before a triangle gives way, as Topology::move_clamped on the host finds
-// it (src/topology/clamp.rs): the least root of a quadratic for each triangle, and then triangles are judged where they
-// would be. One workgroup.
+// Finds the largest share of their ways that vertices can go before a triangle inverts or gets too flat. As
+// Topology::move_clamped does on the host (src/topology/clamp.rs), it solves a quadratic for each triangle, and then
+// checks the triangles at their new positions. Runs in one workgroup.
 
-// By this share of an inverse mean ratio, times the ratio, its value in single precision may be wrong.
+// An inverse mean ratio in single precision has a relative error of up to this times the ratio.
 const ROUNDING: f32 = 4.76837158203125e-7; // 2^-21
-// Triangles flatter than this count as flat: their area is not known to be positive.
+// A triangle with a larger inverse mean ratio counts as flat: its area is not known to be positive.
 const FLATTEST: f32 = 5.0e5;
-// The first shortening of a share that is too long, and how much larger the next one is.
+// A share that is too long is first shortened by SHORTEN_FIRST, and then each time by SHORTEN_MORE times as much.
 const SHORTEN_FIRST: f32 = 9.5367431640625e-7; // 2^-20
 const SHORTEN_MORE: f32 = 16.0;
 
@@ -29,7 +29,7 @@ fn corners_of(t: u32) -> Corners {
     );
 }
 
-// The inverse mean ratio of the triangle that edges a and b span; 0 if it is inverted, flat or not a number.
+// The inverse mean ratio of the triangle that edges a and b span; 0 if it is inverted, flat or not finite.
 fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
     let t = Corner(a, b, vec2(0.0));
     let area = doubled_area(t);
@@ -40,7 +40,7 @@ fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
     return select(0.0, ratio, is_positive(ratio) && ratio <= FLATTEST);
 }
 
-// The inverse mean ratio that a triangle may get, given the one that it has.
+// The largest inverse mean ratio that a triangle may get by the movement, given its present one.
 fn limit_of(now: f32) -> f32 {
     return max(movement.worst_imr, now * (1.0 + now * ROUNDING));
 }
@@ -61,7 +61,7 @@ fn going(t: u32, corner: u32, from_: vec4<f32>, by: f32) -> vec4<f32> {
     return gone(way, from_, by);
 }
 
-// The least positive t with constant + slope t + bend t² = 0; above 1 if there is none.
+// The least positive root t of constant + slope t + bend t² = 0; 2 if there is none.
 fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
     let discriminant = slope * slope - 4.0 * bend * constant;
     if discriminant < 0.0 {
@@ -77,8 +77,8 @@ fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
     );
 }
 
-// The share at which a triangle's inverse mean ratio reaches its limit. With L the sum of the squared lengths and D the
-// doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic D - L / (2√3 limit).
+// The share at which a triangle's inverse mean ratio reaches its limit. The ratio is L / (2√3 D), with L the sum of the
+// squared lengths and D the doubled area, so the share is the least root of the quadratic D - L / (2√3 limit).
 fn gives_way(t: u32) -> f32 {
     let c = corners_of(t);
     let now = imr(edge(c.p, c.q), edge(c.p, c.r));
@@ -90,7 +90,7 @@ fn gives_way(t: u32) -> f32 {
     var f = edge(c.p, c.r);
     var de = way_vector(t, 1u, c.q) - dp;
     var df = way_vector(t, 2u, c.r) - dp;
-    // Divided by the largest difference of coordinates, so that nothing overflows.
+    // Scaled by the largest coordinate of these vectors, so that nothing overflows.
     let most = max(max(abs(e), abs(f)), max(abs(de), abs(df)));
     let unit = 1.0 / max(most.x, most.y);
     e *= unit;
@@ -107,7 +107,7 @@ fn gives_way(t: u32) -> f32 {
     );
 }
 
-// Whether a triangle keeps to its limit when its vertices have gone a share of their ways.
+// Whether a triangle keeps to its limit after its vertices have gone a share of their ways.
 fn holds(t: u32, by: f32) -> bool {
     let c = corners_of(t);
     let now = imr(edge(c.p, c.q), edge(c.p, c.r));

@@ -1,5 +1,5 @@
-// Begins the judged sweeps of an application anew where the mesh was changed. The evaluation that follows is that of the
-// mesh before the first sweep; a run that goes on passes it over.
+// Restarts the stop rule if the mesh was changed. The next evaluation is then that of the mesh before the first sweep.
+// A run in progress skips this evaluation.
 
 @compute @workgroup_size(1)
 fn reopen() {

@@ -1,4 +1,4 @@
-// Lets judged sweeps go on that have passed over the evaluation after reopen.wgsl.
+// Lets a run in progress continue after the evaluation that reopen.wgsl made it skip.
 
 @compute @workgroup_size(1)
 fn resume() {

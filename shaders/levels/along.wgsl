@@ -1,4 +1,5 @@
-// How far the correction is gone along: as the host says, or, if that is 0, the device's own line search.
+// The step length along the correction: as given by the host, or, where that is 0, as found by the line search on the
+// device.
 fn length_along() -> f32 {
     if op.a != 0.0 {
         return op.a;
@@ -6,7 +7,8 @@ fn length_along() -> f32 {
     return vectors[LENGTHS].x;
 }
 
-// How far a free vertex moves along the correction, which is as the shape of its target map shows it.
+// The displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's target map, and
+// is mapped back.
 fn move_of(v: u32) -> vec2<f32> {
     var d = direction[v];
     if MAPPED {

@@ -1,5 +1,5 @@
-// The root of the stiffness at a vertex: of the mean absolute eigenvalue of the Hessian of the sum of q² with respect to it, over the
-// number of its neighbors.
+// The square root of the stiffness at a vertex. The stiffness is the mean absolute eigenvalue of the Hessian of the sum
+// of q² with respect to the vertex, divided by the number of its neighbors.
 fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
     let mean = 0.5 * (hessian.x + hessian.z);
     let half = 0.5 * (hessian.x - hessian.z);

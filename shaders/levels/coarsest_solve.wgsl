@@ -1,4 +1,4 @@
-// The solution on the coarsest level: its inverse, stored row by row, times the right-hand side.
+// Solves the system of the coarsest level: multiplies its inverse, stored row by row, by the right-hand side.
 
 @compute @workgroup_size(WORKGROUP)
 fn coarsest_solve(@builtin(global_invocation_id) id: vec3<u32>) {

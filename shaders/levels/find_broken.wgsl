@@ -1,5 +1,5 @@
-// The correction, without the free vertices of triangles that it would break. It goes to `out`, as neighbors still read what it was;
-// leave_out_broken.wgsl puts it in place.
+// Computes the correction without the free vertices of triangles that it would break. The result goes to `out`, because
+// invocations for neighbors still read the old correction; leave_out_broken.wgsl then copies it.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_broken(

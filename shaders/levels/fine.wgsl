@@ -1,5 +1,5 @@
-// The mesh itself (its positions are in positions.wgsl), and two vectors on its free vertices: the gradient and the
-// correction.
+// Bindings of the mesh itself, with its positions in positions.wgsl, and of two vectors on its free vertices: the
+// gradient and the correction.
 
 @group(0) @binding(3) var<storage, read> ring_start: array<u32>;
 @group(0) @binding(4) var<storage, read> ring: array<u32>;

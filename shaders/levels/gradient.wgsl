@@ -1,5 +1,6 @@
-// The gradient of the sum of q² at each free vertex, by the vertex as the shape of its target map shows it; zero at one that is held.
-// Where the levels are to be fitted, the root of the stiffness comes along.
+// Computes the gradient of the sum of q² by each free vertex, in the coordinates of the shape of the vertex's target
+// map. It is zero at held vertices. Where the levels are to be fitted, the square root of the stiffness is computed
+// too.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_gradient(

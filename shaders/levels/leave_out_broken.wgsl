@@ -1,4 +1,5 @@
-// Puts in place the correction that find_broken.wgsl has left some vertices out of, and leaves their gradients out as well.
+// Replaces the correction by that of find_broken.wgsl, and sets the gradient to zero at the vertices which that has
+// left out.
 
 @compute @workgroup_size(WORKGROUP)
 fn leave_out_broken(

@@ -1,4 +1,4 @@
-// Moves each free vertex a times along the correction.
+// Moves each free vertex along the correction, multiplied by the step length.
 
 @compute @workgroup_size(WORKGROUP)
 fn move_along_correction(

@@ -1,6 +1,6 @@
-// Triangles with their vertices moved a times along the correction.
+// Triangles after their vertices have moved along the correction by the step length.
 
-// How far a vertex moves.
+// The displacement of a vertex, zero if it is not free.
 fn displacement(v: u32) -> vec2<f32> {
     if v >= op.free {
         return vec2(0.0);
@@ -8,13 +8,13 @@ fn displacement(v: u32) -> vec2<f32> {
     return move_of(v);
 }
 
-// An edge after its vertices have moved. A correction may carry both much farther than the edge is long.
+// An edge after both its vertices have moved. The displacements may be much longer than the edge, so their difference
+// is taken first.
 fn moved_edge(e: vec2<f32>, tail_displacement: vec2<f32>, head_displacement: vec2<f32>) -> vec2<f32> {
     return e + opaque2(head_displacement - tail_displacement);
 }
 
-// Whether a triangle is inverted or flat, has an area that is not a number, or breaks the shape guard and is worse
-// than it was.
+// Whether the moved triangle is inverted, flat or not finite, or breaks the shape guard and is worse than before.
 fn is_broken(here: Corner, there: Corner) -> bool {
     if !is_positive(doubled_area(there)) {
         return true;

@@ -1,4 +1,4 @@
-// The sum of `carried(k)`, which the kernel defines, over the free neighbors k of a free vertex.
+// Returns the sum of `carried(k)` over the free neighbors k of a free vertex. Each kernel defines `carried`.
 
 fn sum_over_neighbors(v: u32) -> vec2<f32> {
     var sum = vec2(0.0);

@@ -1,6 +1,8 @@
-// The objective, of which EDGE is replaced by its p-norm, here and with the vertices moved a times along the correction, the number of triangles that are broken
-// there, or here already, and the slope of the objective, from the gradient. Each invocation leaves four partial sums as pairs of floats,
-// which sum_along_correction.wgsl adds up. Further parts of the triangles continue the sums of the parts before.
+// Evaluates a trial step along the correction by four sums over the mesh: the objective before the step, the objective
+// after it, the number of triangles that are broken before or after it, and the slope of the objective along the
+// correction. For EDGE the objective is its p-norm. Each invocation leaves its partial sums as pairs of floats, which
+// sum_along_correction.wgsl adds up. A dispatch for a further part of the triangles continues the sums of the part
+// before.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective_along_correction(

@@ -1,5 +1,5 @@
-// The gradient, smoothed as the prolongation is, for restrict.wgsl. It is kept in `direction`, which holds nothing else
-// yet.
+// Applies the transpose of the prolongation's smoothing to the gradient, for restrict.wgsl. The result goes to
+// `direction`, which is not in use yet.
 
 fn carried(k: u32) -> vec2<f32> {
     return gradient[k] * (fit(k) * values[op.diagonal + k] * root(k));

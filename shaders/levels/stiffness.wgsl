@@ -1,4 +1,5 @@
-// The root of the stiffness at each free vertex, as the shape of its target map shows it, in both components of `gradient`.
+// Computes the square root of the stiffness at each free vertex, in the coordinates of the shape of its target map. The
+// result goes to both components of `gradient`.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_stiffness(

@@ -1,4 +1,4 @@
-// Completes the four sums of which objective_along_correction.wgsl left the parts, in one workgroup.
+// Adds up the partial sums of objective_along_correction.wgsl to its four sums. Runs in one workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 

@@ -1,5 +1,6 @@
-// Between the free vertices and the first coarse level. The graph Laplacian on the free vertices is never stored:
-// the weight of an edge is the product of the roots of its vertices, which are the `entries`.
+// Bindings and weights for the transfer between the free vertices and the first coarse level. The graph Laplacian on
+// the free vertices is never stored: the weight of an edge is the product of the roots of its two vertices, which are
+// in `entries`.
 
 @group(0) @binding(2) var<storage, read> ring_start: array<u32>;
 @group(0) @binding(3) var<storage, read> ring: array<u32>;
@@ -14,8 +15,9 @@ fn root(v: u32) -> f32 {
     return values[op.entries + v];
 }
 
-// What fits the levels to a vertex whose stiffness is another one now: the matrix of the free vertices is R M R with R the diagonal
-// matrix of the roots, so that its inverse is fitted to other roots by a factor on either side. 1 where the levels fit.
+// The factor that fits the levels to a vertex whose stiffness has changed. The matrix of the free vertices is R M R,
+// with R the diagonal matrix of the roots, so its inverse is fitted to other roots by a factor on either side. 1 where
+// the levels need no fit.
 fn fit(v: u32) -> f32 {
     if op.step == NONE {
         return 1.0;

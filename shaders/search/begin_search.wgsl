@@ -1,4 +1,4 @@
-// Begins the search of a correction. There is none if the sweeps have ended by themselves.
+// Begins the line search of a correction, or skips it if the sweeps have ended by the stop rule.
 
 @compute @workgroup_size(1)
 fn begin_search() {

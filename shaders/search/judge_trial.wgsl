@@ -1,8 +1,9 @@
-// Judges a trial and chooses the next length, by the rules of Search in src/run/multilevel/search.rs. After the last trial, or once a
-// length is good enough, the best one stays for the movement: 0 if none lowers the objective without breaking a triangle.
+// Judges a trial and chooses the next length, by the rules of Search in src/run/multilevel/search.rs. After the last
+// trial, or once a length is good enough, the best length is left for the movement: 0 if none lowers the objective
+// without breaking a triangle.
 
-// Ends the search. The next one starts from the length that was taken; from a longer one where that was short, as what was in the way
-// may be gone, and from a shorter one if none was taken.
+// Ends the search with the given length, and sets the length that the next search starts from. That is the length
+// taken; a longer one if it was short, as the obstacle may be gone; and a shorter one if none was taken.
 fn settle_on(length: f32, last_tried: f32) {
     var first = length;
     if length == 0.0 {
@@ -24,7 +25,7 @@ fn judge_trial() {
     let length = lengths.x;
     let here = vectors[TOTALS];
     let slope = vectors[TOTALS + 3u].x + vectors[TOTALS + 3u].y;
-    // Less than this share of the objective is lost in rounding.
+    // An expected decrease below NOISE times this scale is lost in rounding.
     let scale = max(here.x + params.ideal_sum, LEAST_SCALE * f32(params.triangles));
     if !is_positive(-slope - NOISE * scale) {
         vectors[LENGTHS] = vec2(0.0, lengths.y);

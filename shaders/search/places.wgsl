@@ -1,12 +1,12 @@
-// Places in `vectors`: the totals that sum_along_correction.wgsl leaves, and what the device knows of a line search of its own. A run
-// leaves the latter zero, as the host searches for it.
+// Indices in `vectors`: of the totals that sum_along_correction.wgsl leaves, and of the state of the line search on the
+// device. Where the host searches, that state stays zero.
 const TOTALS: u32 = 0u;
-// How far the next trial, or the movement at the end, goes along the correction; and the length that the next correction is tried
-// with first, 0 before there is one.
+// Two lengths: how far the next trial, or the final movement, goes along the correction; and the first trial length for
+// the next correction, 0 before the first correction.
 const LENGTHS: u32 = 4u;
-// The best length so far, and what it adds to the objective; zeros if there is none.
+// The best length so far, and the change of the objective at it; zeros if there is none.
 const BEST: u32 = 5u;
-// Not zero if the rest of the correction is to leave everything as it is; and the number of trials.
+// Two values: not zero if the rest of the correction must do nothing; and the number of trials so far.
 const PROGRESS: u32 = 6u;
 
 fn rests() -> bool {

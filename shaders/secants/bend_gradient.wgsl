@@ -1,4 +1,5 @@
-// The vector that the levels are given: the gradient, less what the pairs tell.
+// Replaces the gradient by the vector that the levels are applied to: the gradient minus what the secant pairs account
+// for.
 
 @compute @workgroup_size(WORKGROUP)
 fn bend_gradient(

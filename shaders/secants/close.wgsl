@@ -1,4 +1,4 @@
-// Closes the open pair, and leaves the partial sums of its products, as pairs of floats.
+// Completes the open secant pair, and computes the partial sums of its products as pairs of floats.
 
 @compute @workgroup_size(WORKGROUP)
 fn close_secant(

@@ -1,4 +1,4 @@
-// The partial sums of the products of both changes with the correction, as pairs of floats.
+// Computes the partial sums of the products of both gradient changes with the correction, as pairs of floats.
 
 @compute @workgroup_size(WORKGROUP)
 fn multiply_correction(

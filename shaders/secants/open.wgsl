@@ -1,5 +1,5 @@
-// Completes the correction and straightens the gradient again, if there are pairs. Then opens the next pair in the place of
-// the older one.
+// If there are secant pairs, completes the correction by them and restores the gradient. Then opens the next pair in
+// the slot of the older one.
 
 @compute @workgroup_size(WORKGROUP)
 fn open_secant(

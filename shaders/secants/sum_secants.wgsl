@@ -1,4 +1,4 @@
-// Completes the partial sums in one workgroup, and makes of them the factors of the two-loop recursion, as
+// Adds up the partial sums in one workgroup, and computes from them the factors of the two-loop recursion, as
 // src/run/secant.rs does.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
@@ -21,12 +21,12 @@ fn total(local: u32, i: u32) -> f32 {
     return whole;
 }
 
-// A product over a curvature, 0 if the pair does not count.
+// A product divided by a curvature, or 0 if the pair is not used.
 fn share(product: f32, curvature: f32) -> f32 {
     return select(0.0, product / curvature, curvature > 0.0);
 }
 
-// The factors aᵢ, from the products with the gradient.
+// Computes the factors aᵢ from the products with the gradient.
 fn find_before(along: vec2<f32>, curvature: f32, across: f32) {
     let slope_before = along.x - curvature;
     let counts = is_positive(curvature - LEAST_CURVATURE * abs(slope_before));
@@ -40,7 +40,8 @@ fn find_before(along: vec2<f32>, curvature: f32, across: f32) {
     sums[ACROSS] = vec2(across, 0.0);
 }
 
-// The factors cᵢ, from the products with the correction, which has the other sign than what the levels make of the vector.
+// Computes the factors cᵢ from the products with the correction. The correction is minus the result of the levels,
+// hence the signs.
 fn find_after(products: vec2<f32>) {
     let curvatures = sums[CURVATURES];
     let before = sums[BEFORE];
@@ -54,7 +55,7 @@ fn find_after(products: vec2<f32>) {
 fn sum_secants(@builtin(local_invocation_index) local: u32) {
     let newer = total(local, 0u);
     let second = total(local, 1u);
-    // Of no meaning after the levels, where there are two sums only.
+    // After the levels there are two sums only, and the next two totals are not used.
     let older = total(local, 2u);
     let across = total(local, 3u);
     if local == 0u {

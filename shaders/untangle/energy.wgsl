@@ -1,5 +1,6 @@
-// The inverse mean ratio with a regularized area, finite for inverted triangles too: s / χ(ε, d), d being the doubled
-// area, s the sum of the squared lengths over 2√3, and χ(ε, d) = (d + √(ε² + d²)) / 2. Here ε is in the unit of d.
+// The inverse mean ratio with a regularized area, s / χ(ε, d), which is finite for inverted triangles too. Here d is
+// the doubled area, s the sum of the squared lengths over 2√3, χ(ε, d) = (d + √(ε² + d²)) / 2, and ε is in the unit of
+// d.
 
 const PER_DOUBLED_AREA: f32 = 0.28867513459; // 1 / (2√3)
 
@@ -8,7 +9,7 @@ struct Regularized {
     root: f32,
 }
 
-// χ and √(ε² + d²), without cancellation; no square vanishes or overflows.
+// Computes χ and √(ε² + d²) without cancellation, and so that no square underflows or overflows.
 fn regularized(epsilon: f32, d: f32) -> Regularized {
     let unit = max(epsilon, abs(d));
     let e = epsilon / unit;
@@ -24,7 +25,8 @@ fn energy(t: Corner, epsilon: f32) -> f32 {
     return PER_DOUBLED_AREA * squared_length_sum(t) / regularized(epsilon, doubled_area(t)).chi;
 }
 
-// The energy and its derivatives by the vertex that the edges start from. 1/χ has the derivatives -1 / (χ √) and 2 / √³.
+// The energy and its derivatives by the vertex that the edges start from. With r = √(ε² + d²), the derivatives of 1/χ
+// by d are -1 / (χ r) and 2 / r³.
 fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let r = regularized(epsilon, doubled_area(t));
     let inverse = 1.0 / r.chi;
@@ -32,7 +34,7 @@ fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let s = PER_DOUBLED_AREA * squared_length_sum(t);
     let ds = (-2.0 * PER_DOUBLED_AREA) * (t.a + t.b);
     let ss = 4.0 * PER_DOUBLED_AREA * inverse;
-    // In units of the root, as areas may be far from one.
+    // Divided by the root, as areas may be far from one.
     let dd = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * per_root;
     let mixed = -inverse * ds;
     let second = 2.0 * s * per_root;

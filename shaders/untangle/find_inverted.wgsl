@@ -1,13 +1,13 @@
 // Counts the triangles that are inverted or flat, finds the most inverted one, and marks the vertices of all of them.
 
-// A larger depth counts as this one.
+// Larger depths are cut to this one.
 const MOST_DEPTH: f32 = 1.0e30;
 
 fn may_move(vertex: u32) -> bool {
     return vertex < part.free && (ring_start[vertex] & HELD) == 0u;
 }
 
-// How far beyond flat a triangle is, given its area.
+// How negative an area is: 0 for a flat triangle, MOST_DEPTH at most, and for an area that is not finite.
 fn depth_of(area: f32) -> f32 {
     if is_positive(-area) {
         return min(-area, MOST_DEPTH);
@@ -21,13 +21,13 @@ fn look_at(t: u32) {
     let a = edge(p, position(corners.y));
     let b = edge(p, position(corners.z));
     let map = map_of(corners);
-    // As objective.wgsl judges.
+    // Judged by the same area as in objective.wgsl.
     let area = doubled_area(shown(Corner(a, b, vec2(0.0)), map));
     if is_positive(area) {
         return;
     }
     if !(may_move(corners.x) || may_move(corners.y) || may_move(corners.z)) {
-        // No sweep can mend it.
+        // No sweep can repair this triangle.
         return;
     }
     atomicAdd(&tangle.inverted, 1u);

@@ -1,5 +1,5 @@
-// Begins a sweep where triangles are inverted: the ε of the energy follows from the most inverted one, as in
-// src/run/regularization.rs. Where none is, what is encoded behind does nothing.
+// Begins a sweep if triangles are inverted: computes the ε of the energy from the most inverted one, as in
+// src/run/regularization.rs. If none is inverted, sets `valid`, so that the kernels encoded behind do nothing.
 
 @compute @workgroup_size(1)
 fn regularize() {
@@ -10,14 +10,14 @@ fn regularize() {
     let depth = bitcast<f32>(atomicExchange(&tangle.depth, 0u));
     tangle.valid = select(0u, 1u, inverted == 0u);
     if inverted == 0u {
-        // Vertices that were reached in this tangle are not in the next one.
+        // Vertices that moved in this tangle do not count as reached in the next one.
         if tangle.sweep != tangle.since {
             tangle.sweep += 1u;
             tangle.since = tangle.sweep;
         }
         return;
     }
-    // No square overflows.
+    // Scaled so that no square overflows.
     let unit = max(depth, 1.0);
     let share = depth / unit;
     tangle.epsilon = unit * sqrt(LEAST_SQUARE / unit / unit + SQUARE_SHARE * share * share);

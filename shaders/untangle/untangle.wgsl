@@ -1,10 +1,11 @@
-// Moves the free vertices of a color by a Newton step that lowers the energy of their patch. Only vertices around inverted
-// triangles move; where that is not enough, in each sweep those one edge farther off join in.
+// Moves the free vertices of a color by a Newton step that lowers the energy of their patch. Only vertices around
+// inverted triangles move. Where that is not enough, each sweep adds the vertices one edge farther off.
 
-// How far a step goes at first. There is no barrier that it could be beyond; 1 was measured to take twice as many sweeps.
+// The first trial length of a step. The energy has no barrier that a long step could cross; 1 was measured to take
+// twice as many sweeps.
 const OVER_RELAXATION: f32 = 1.7;
 
-// Whether the vertex is among those that move, and marks it as one.
+// Returns whether the vertex is among those that move, and marks it if so.
 fn joins_in(vertex: u32, first: u32, end: u32) -> bool {
     let own = atomicLoad(&vertices[vertex].reached);
     if own >= tangle.since && own <= tangle.sweep {
@@ -20,7 +21,7 @@ fn joins_in(vertex: u32, first: u32, end: u32) -> bool {
     return false;
 }
 
-// The patch in a unit near its longest edge: another may have no length.
+// The patch, scaled by its longest edge, as other edges may have zero length.
 fn tangled_patch_of(vertex: u32) -> Patch {
     var p = patch_of(vertex);
     var longest = vec2(0.0);
@@ -31,8 +32,8 @@ fn tangled_patch_of(vertex: u32) -> Patch {
     return p;
 }
 
-// The longest step along an axis: a few edges, as they should be, or as long as the shortest edge is. So a vertex that is far
-// off comes home at once, and its neighbors do not follow it there.
+// The longest allowed step along an axis: twice the larger of the shortest edge and the desired edge length. So a
+// vertex that is far off comes back at once, and its neighbors do not follow it there.
 fn reach(p: Patch, vertex: u32) -> f32 {
     var shortest = 3.0e38;
     for (var i = p.start; i < p.end; i++) {
@@ -42,12 +43,12 @@ fn reach(p: Patch, vertex: u32) -> f32 {
     return 2.0 * max(shortest, sqrt(vertices[vertex].area) * p.unit);
 }
 
-// A triangle of the patch with the vertex moved by d, as its map shows it.
+// A triangle of the patch with the vertex moved by d, transformed by its target map.
 fn triangle_at(p: Patch, before: u32, i: u32, d: vec2<f32>, map: vec3<f32>) -> Corner {
     return shown(Corner(ring_edge(p, before) - d, ring_edge(p, i) - d, vec2(0.0)), map);
 }
 
-// ε in the unit of the triangle's doubled area. A number above zero, as nothing is divided by otherwise.
+// ε in the unit of the triangle's doubled area. It is at least 1e-30, so that nothing is divided by zero.
 fn epsilon_of(p: Patch, corners: vec3<u32>, map: vec3<f32>) -> f32 {
     let wanted = 2.0 * wanted_area(corners, map);
     return max((tangle.epsilon * p.unit) * (wanted * p.unit), 1.0e-30);

@@ -1,4 +1,4 @@
-//! Derivatives by forward differences, as Mesquite takes them: to test the cost model of Park & Shontz.
+//! Derivatives by forward differences, as in Mesquite, to test the cost model of Park & Shontz.
 
 use fearless_simd::prelude::*;
 
@@ -7,7 +7,7 @@ use crate::cpu::patch::Patches;
 use crate::metric::{Corner, Dual, Formulas, Real, Smoothing};
 use crate::run::line_search;
 
-/// The objectives of four patches with their derivatives, by forward differences.
+/// Returns the objectives of four patches with their derivatives, by forward differences.
 #[inline(always)]
 pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
     patches: &Patches<'_, S, MAPPED>,

@@ -24,7 +24,8 @@ pub(crate) struct CpuEngine<'a> {
     problem: &'a Problem,
     base: Metric,
     tracked: Vec<Metric>,
-    /// The base metric's step. Corrections use its shape guard and its exponent, which is that of the last correction.
+    /// The step of the base metric. Corrections use its shape guard, and its exponent, which is that of the last
+    /// correction.
     step: Step,
     positions: Vec<DVec2>,
     /// The positions of the best state, and the objective there; `None` if every sweep improves the mesh, so that the last state is
@@ -79,7 +80,7 @@ impl<'a> CpuEngine<'a> {
         values
     }
 
-    /// Tries the correction at a length.
+    /// Tries the correction with the given step length.
     fn proposal(&self, length: f64) -> Proposal {
         let Self { base, step, problem, positions, gradient, direction, .. } = self;
         let slope = dot(gradient, direction) / problem.triangles().len() as f64;
@@ -88,8 +89,8 @@ impl<'a> CpuEngine<'a> {
         Proposal { here, slope, there }
     }
 
-    /// Makes the correction and the gradient zero at the vertices of triangles that the correction would invert or bring to
-    /// break the shape guard.
+    /// Sets the correction and the gradient to zero at the vertices of triangles that the correction would invert or
+    /// make break the shape guard.
     fn leave_out_broken(&mut self, length: f64) {
         let Self { problem, positions, gradient, direction, .. } = self;
         let along = Along { positions, direction, length };
@@ -101,7 +102,7 @@ impl<'a> CpuEngine<'a> {
         }
     }
 
-    /// The mean excess at a length of the correction; see [`Engine::excess_along`].
+    /// Returns the mean excess after the correction with the given step length; see [`Engine::excess_along`].
     fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
@@ -109,7 +110,7 @@ impl<'a> CpuEngine<'a> {
     }
 }
 
-/// The correction from the levels, given the gradient at the free vertices.
+/// Computes the correction by the coarser levels from the gradient at the free vertices.
 fn correction(hierarchy: Option<&Hierarchy>, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     match hierarchy {
         Some(hierarchy) if problem.is_stretched() => {
@@ -121,8 +122,8 @@ fn correction(hierarchy: Option<&Hierarchy>, problem: &Problem, gradient: &[Vec2
     }
 }
 
-/// Vectors at the free vertices, multiplied by the inverse shapes of their target maps. So the levels see moves and
-/// gradients as targets show them, which makes neighbors in a layer of stretched triangles as near across as along it.
+/// Returns vectors at the free vertices multiplied by the inverse shapes of their target maps. The coarser levels use
+/// these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
 fn as_shown(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
     let targets = problem.targets().unwrap_or_default();
     collect(vectors.len(), |v| {

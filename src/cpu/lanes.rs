@@ -1,19 +1,20 @@
 //! SIMD lanes: four numbers at once, on any processor.
 //!
-//! Every operation rounds as that of `f64` does and none are fused, so results depend neither on
-//! the processor nor on which numbers share a vector.
+//! Every operation rounds as that of `f64` does, and none are fused, so results depend neither on the processor nor on
+//! which numbers share a vector.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x4, mask64x4};
 
 use crate::metric::Real;
 
-/// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instructions that the code is
-/// compiled for, and the constant `$mapped` to whether triangles are to be seen through target maps.
+/// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set that the
+/// code is compiled for, and the constant `$mapped` to whether triangles are transformed by target maps.
 ///
-/// Each copy of a sweep takes seconds to compile. So there is one for each usual metric on meshes without targets, with
-/// AVX2 on x86, one for soft-size on meshes that have some, which is half the time there, and one for all else. It looks the metric up
-/// for each triangle, which costs imr nothing that can be measured, and sees a mesh without targets through maps that change nothing.
+/// Each copy of a sweep takes seconds to compile, so only usual cases have a copy of their own, with AVX2 on x86: each
+/// usual metric on meshes without targets, and soft-size on meshes with targets, where it takes half the time of the
+/// general copy. The general copy serves all else. It looks up the metric for each triangle, which costs imr nothing
+/// measurable, and gives meshes without targets identity maps.
 macro_rules! with_lanes {
     ($problem:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
         'done: {

@@ -30,7 +30,7 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     at
 }
 
-/// The vertices whose step was so short that their visit ends.
+/// The vertices whose step was so short that their visit is over.
 #[inline(always)]
 fn settled<S: Simd, const MAPPED: bool>(
     patches: &Patches<S, MAPPED>,
@@ -62,7 +62,8 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     let floor = properties.eigenvalue_floor;
     let ([dx, dy], slope, descends) = match patches.inverse_map() {
         Some(inverse) if MAPPED => {
-            // The floor is for triangles that are nearly equilateral: as the target map shows them.
+            // The floor is meant for nearly equilateral triangles, so it is applied in the coordinates of the target
+            // map.
             let (direction, slope, descends) = descent(&inverse.pull_back(sum), floor);
             (inverse.apply(direction), slope, descends)
         }
@@ -88,7 +89,8 @@ fn newton_step<S: Simd, const MAPPED: bool>(
     }
     let mut searching = going & descends;
     let (mut end, mut found) = (at, Mask::splat(at[0].simd, false));
-    // A triangle may stay as bad as the patch's worst. Few trials break the guard, so that is found when one does.
+    // A triangle may stay as bad as the worst of the patch. Few trials break the guard, so the worst is computed when
+    // one does.
     let mut limit = at[0].constant(step.shape_guard);
     let guarded = step.shape_guard.is_finite();
     let mut worst_is_known = !guarded;

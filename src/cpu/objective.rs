@@ -53,8 +53,9 @@ pub(crate) struct Along<'a> {
     pub(crate) length: f64,
 }
 
-/// The mean at moved positions of what `step` minimizes: q² - ideal², or its smooth model. `None` if the move inverts or flattens
-/// a triangle, or makes an inverse mean ratio worse that is then above the step's shape guard.
+/// The mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model. `None` if the
+/// move inverts or flattens a triangle, or if it makes an inverse mean ratio both worse than before and larger than the
+/// step's shape guard.
 pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_>) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
@@ -66,8 +67,8 @@ pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_
     sum.map(|sum| sum / problem.triangles().len() as f64)
 }
 
-/// Of each free vertex, whether a triangle around it is inverted or flattened by the move, or gets a worse inverse mean ratio that is
-/// then above `guard`.
+/// Returns for each free vertex whether a triangle around it is broken by the move: inverted, flattened, or given an
+/// inverse mean ratio that is both worse than before and larger than `guard`.
 pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
     collect(along.direction.len(), |v| {
         let ring = problem.ring_of(v as u32);
@@ -80,7 +81,8 @@ pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bo
     })
 }
 
-/// The sum of q² - ideal² over some triangles at moved positions. `None` as in [`mean_excess_along`].
+/// The sum of q² - ideal² over some triangles at moved positions. `None` if the move breaks one of them, as defined at
+/// [`mean_excess_along`].
 #[inline(always)]
 fn excess_along<S: Simd, const MAPPED: bool>(
     simd: S,
@@ -138,7 +140,7 @@ fn map_of<S: Simd>(
     ])
 }
 
-/// Four triangles as their target maps show them.
+/// Four triangles transformed by their target maps.
 #[inline(always)]
 fn corner<S: Simd>(
     [p, q, r]: [Points<S>; 3],
@@ -165,7 +167,8 @@ impl Along<'_> {
         ([x, y], [x + dx * self.length, y + dy * self.length])
     }
 
-    /// Whether the move inverts or flattens a triangle, or makes its inverse mean ratio worse and above `guard`.
+    /// Whether the move inverts or flattens a triangle, or makes its inverse mean ratio both worse than before and
+    /// larger than `guard`.
     fn breaks(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
         let position = |v: u32| self.positions[v as usize];
         let now = problem.corner(triangle, |v| position(v) + self.step(v) * self.length);
@@ -246,7 +249,7 @@ mod tests {
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
             let there = mean_model(metric, step.smoothing(), &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
-            // Out of the hexagon through each of its sides, then along a direction that is NaN.
+            // Moves the vertex out of the hexagon through each of its sides, then along a direction that is NaN.
             for k in 0..6 {
                 let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
                 assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");

@@ -7,16 +7,17 @@ use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::layout::Problem;
 use crate::metric::{Corner, Dual, Formulas, Real, Smoothing, TargetMap};
 
-/// The one-rings of four free vertices with the same number of neighbors, seen through target maps if it is `MAPPED`.
+/// The one-rings of four free vertices with the same number of neighbors. If `MAPPED`, triangles are transformed by
+/// target maps.
 #[derive(Clone, Copy)]
 pub(crate) struct Patches<'a, S: Simd, const MAPPED: bool> {
     /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
     ring: &'a [Points<S>],
-    /// The target map of each triangle, if the mesh is seen through them.
+    /// The target map of each triangle, if the mesh has targets.
     maps: &'a [TargetMap<Lanes<S>>],
     /// The inverse of the target map of each vertex itself, if the mesh has targets.
     inverse_map: Option<TargetMap<Lanes<S>>>,
-    /// Mean area of the mesh's triangles, as its target maps show them.
+    /// Mean area of the mesh's triangles, after their target maps are applied.
     mean_area: f64,
 }
 
@@ -33,7 +34,7 @@ impl<S: Simd> Room<S> {
 }
 
 impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
-    /// Reads what is around `vertices` into `room`.
+    /// Reads the one-rings of `vertices`, and their target maps, into `room`.
     #[inline(always)]
     pub(crate) fn gather(
         simd: S,
@@ -83,14 +84,14 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
         &self.inverse_map
     }
 
-    /// The squared length of one edge at each vertex.
+    /// The squared length of one edge at each vertex: that to its first neighbor.
     #[inline(always)]
     pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
         let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
         x * x + y * y
     }
 
-    /// The triangle between the neighbors `i` and `i` + 1, seen from the vertices at `at`, as its target map shows it.
+    /// The triangle between the neighbors `i` and `i` + 1 with the vertices at `at`, transformed by its target map.
     #[inline(always)]
     pub(crate) fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);
@@ -131,8 +132,8 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
         worst
     }
 
-    /// The objectives of the patches, and which patches are feasible: no triangle is inverted or flat or, if they are
-    /// `guarded`, has an inverse mean ratio above `limit`.
+    /// The objectives of the patches, and which patches are feasible. A patch is feasible if no triangle is inverted or
+    /// flat, nor, if it is `guarded`, has an inverse mean ratio above `limit`.
     #[inline(always)]
     pub(crate) fn objective(
         &self,
@@ -148,7 +149,7 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
             let corner = self.corner(i, at);
             feasible &= corner.doubled_area().simd_gt(0.0);
             if guarded {
-                // Both sides times the area: a division costs as much as the rest of the guard.
+                // Both sides are multiplied by the area, as a division costs as much as the rest of the guard.
                 let (numerator, area) = formulas.inverse_mean_ratio(&corner);
                 feasible &= numerator.simd_le(limit * area);
             }
@@ -172,7 +173,7 @@ pub(crate) fn of_corners<S: Simd>(
     let [a, b, c, d] = vertices;
     let (a, b) = (&targets[a as usize], &targets[b as usize]);
     let (c, d) = (&targets[c as usize], &targets[d as usize]);
-    // Not by `map` of arrays, which is called here and not inlined: a third of a sweep.
+    // A loop over lanes instead of `map` of arrays, which is not inlined here and would take a third of a sweep.
     let lane = |i: usize| {
         let numbers = [f64::from(a[i]), f64::from(b[i]), f64::from(c[i]), f64::from(d[i])];
         Lanes::simd_from(simd, numbers)

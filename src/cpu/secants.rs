@@ -9,15 +9,16 @@ use crate::run::secant::Products;
 /// Number of vertices of one task.
 const CHUNK: usize = 1 << 12;
 
-/// The names of what a state of the engine holds of the pairs.
+/// The names under which a saved state of the engine holds the vectors of the pairs.
 const VECTORS: [&str; 5] = ["step", "older step", "change", "older change", "start, low"];
 const PRODUCTS: &str = "products of secants";
 const IS_OPEN: &str = "secant is open";
 
 /// Two secant pairs at the free vertices, the newer one first, in single precision.
 ///
-/// From one correction to the next, a pair is open: the high halves of the positions stand for its step, minus the
-/// gradient for its change. So two pairs and the low halves, 40 bytes a vertex, are all that is kept.
+/// From one correction to the next, a pair is open: its step holds the high parts of the positions, and its change
+/// minus the gradient. So two pairs and the low parts of the positions, 40 bytes for each free vertex, are all that is
+/// stored.
 #[derive(Default)]
 pub(crate) struct Secants {
     steps: [Vec<Vec2>; 2],
@@ -28,8 +29,8 @@ pub(crate) struct Secants {
 }
 
 impl Secants {
-    /// The direction from a gradient, given the correction -M⁻¹ v of the levels for any vector v. Closes the open pair,
-    /// and opens the next one.
+    /// Returns the direction for a gradient. `levels` gives the correction -M⁻¹ v of the coarser levels for any vector
+    /// v. Closes the open pair, and opens the next one.
     pub(crate) fn direction(
         &mut self,
         positions: &[DVec2],
@@ -49,7 +50,7 @@ impl Secants {
             });
             let mut direction = levels(&bent);
             drop(bent);
-            // The direction has the other sign than what the levels make of the vector.
+            // `levels` returns minus M⁻¹ v, hence the minus sign.
             let corrected = self.changes.each_ref().map(|change| -dot(change, &direction));
             let [newer, older] = self.products.after(before, corrected).map(|factor| factor as f32);
             let [new, old] = &self.steps;
@@ -66,7 +67,7 @@ impl Secants {
         direction
     }
 
-    /// Adds the pairs to a state of the engine.
+    /// Adds the pairs to a saved state of the engine.
     pub(crate) fn save(&self, state: &mut EngineState) {
         let Self { steps, changes, low, products, is_open } = self;
         let pairs = [&steps[0], &steps[1], &changes[0], &changes[1], low];
@@ -78,11 +79,11 @@ impl Secants {
         state.add(IS_OPEN, &[u8::from(*is_open)]);
     }
 
-    /// The pairs at so many free vertices that a state holds, if it does.
+    /// Returns the pairs of a saved state, if it holds pairs for this number of free vertices.
     pub(crate) fn saved_in(state: &EngineState, free: usize) -> Option<Self> {
         let vectors = |i: usize| {
             let name = VECTORS[i];
-            // A pair that has not been there yet is empty.
+            // A pair that has not existed yet is empty.
             let found = state.own::<[f32; 2]>(name, free).or_else(|| state.own(name, 0))?;
             Some(found.into_iter().map(Vec2::from_array).collect::<Vec<_>>())
         };
@@ -147,7 +148,7 @@ impl Secants {
     }
 }
 
-/// A value of a pair that may not be there yet.
+/// The value of a pair at a vertex, or zero if the pair does not exist yet.
 #[inline(always)]
 fn at(values: &[Vec2], v: usize) -> Vec2 {
     values.get(v).copied().unwrap_or_default()
@@ -165,8 +166,8 @@ pub(crate) fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// On a quadratic with a diagonal Hessian, and the identity for the levels, pairs make directions that converge, where
-    /// steps along the gradient alone would diverge.
+    /// On a quadratic function with a diagonal Hessian, and with the identity in place of the levels, directions with
+    /// pairs converge, where steps along the gradient alone would diverge.
     #[test]
     fn a_quadratic_is_minimized() {
         let stiffness = |v: usize| [0.1, 0.5, 2.0, 10.0][v % 4];

@@ -17,9 +17,9 @@ const CHUNK: usize = Problem::BLOCK;
 /// Number of positions that one task copies. Fewer are not worth a second thread.
 const COPY: usize = 1 << 14;
 
-/// The result of a visit at a vertex: the new position, or values that are found from the derivatives there.
+/// The result of a visit at a vertex: its new position, or a quantity computed from the derivatives there.
 trait Found: Send {
-    /// Whether the visit takes Newton steps. A constant, so that for each type only what it needs is compiled.
+    /// Whether the visit takes Newton steps. A constant, so that each type compiles only the code that it needs.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
@@ -40,11 +40,11 @@ impl Found for Vec2 {
     }
 }
 
-/// What a visit without Newton steps finds at a vertex, from the derivatives of Σ q² there.
+/// The quantity that a visit without Newton steps computes at a vertex, from the derivatives of Σ q² there.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sought {
     Gradient,
-    /// The root of the stiffness, see [`stiffness_roots`], in both components.
+    /// The square root of the stiffness, see [`stiffness_roots`], in both components.
     StiffnessRoot,
 }
 
@@ -77,8 +77,9 @@ pub(crate) fn gradient(
     find(Sought::Gradient, metric, problem, positions, smoothing, found);
 }
 
-/// The square root of the stiffness at each free vertex: the mean of the absolute eigenvalues of the Hessian of Σ q² with
-/// respect to the vertex, as the shape of its target map shows it, over the number of its neighbors.
+/// Returns the square root of the stiffness at each free vertex. The stiffness is the mean absolute eigenvalue of the
+/// Hessian of Σ q² with respect to the vertex, in the coordinates of the shape of its target map, divided by the number
+/// of its neighbors.
 pub(crate) fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
@@ -109,17 +110,17 @@ fn find(
         shape_guard: f64::INFINITY,
         longest: 1.0,
     };
-    // Color by color, as vertices with equally many neighbors are together within a color.
+    // Color by color, as within a color vertices with the same number of neighbors are together.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
         visit(problem, positions, color.start as usize, &step, sought, found);
     }
 }
 
-/// A vertex is held back if its step is shorter because of the shape guard by more than this share of an edge.
+/// A vertex counts as held back if the shape guard shortens its step by more than this share of an edge.
 const HELD_BACK: f64 = 1e-3;
 
-/// Number of free vertices that the shape guard of `step` keeps from moving on.
+/// Returns the number of free vertices that the shape guard of `step` holds back.
 pub(crate) fn held_back(problem: &Problem, positions: &[DVec2], step: &Step) -> usize {
     let free = Step { shape_guard: f64::INFINITY, ..*step };
     let (mut guarded, mut unguarded) = (Vec::new(), Vec::new());
@@ -156,7 +157,7 @@ fn visit<T: Found>(
     });
 }
 
-/// Visits the vertices from `first` on, and writes their new positions, or what is `sought`, to `found`.
+/// Visits the vertices from `first` on, and writes their new positions, or the quantity `sought`, to `found`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
 fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
@@ -179,7 +180,7 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
         while count < most && problem.ring_of(v + count).len() == degree {
             count += 1;
         }
-        // Lanes that are left over visit the last vertex again.
+        // Lanes without a vertex of their own visit the last vertex again.
         let last = v + count - 1;
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
         let patches = Patches::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut room);
@@ -208,7 +209,7 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
     }
 }
 
-/// The root of the stiffness; see [`stiffness_roots`].
+/// The square root of the stiffness; see [`stiffness_roots`].
 #[inline(always)]
 fn stiffness_root<S: Simd>(sum: &Dual<Lanes<S>>, degree: usize) -> Lanes<S> {
     let [xx, xy, yy] = sum.hessian;

@@ -9,7 +9,7 @@ use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHI
 /// Number of rows of one task.
 const GRAIN: usize = 512;
 
-/// The correction -P M⁻¹ Pᵀ g, given the gradient g of Σ q² at the free vertices. P is the prolongation from the
+/// Returns the correction -P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices. P is the prolongation from the
 /// aggregates of the free vertices, M⁻¹ one V-cycle over the coarse levels. The correction is a direction of descent.
 pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
@@ -19,7 +19,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let root = hierarchy.roots();
-    // `values` are already multiplied by the roots of their vertices.
+    // `values` are already multiplied by the square roots of the stiffness of their vertices.
     let around = |v: usize, values: &[Vec2]| -> Vec2 {
         root[v] * ring(v).fold(Vec2::ZERO, |sum, k| sum + values[k])
     };
@@ -46,7 +46,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
     })
 }
 
-/// One V-cycle over the coarse levels, starting from zero.
+/// Runs one V-cycle over the coarse levels, starting from zero.
 fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
     let Some((level, below)) = levels.split_first() else { return Vec::new() };
     let n = right.len();
@@ -75,7 +75,7 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
     rows(right.len(), |i| right[i] - times(&level.operator, i, x))
 }
 
-/// Two steps of the Chebyshev iteration, starting from `x` or from zero.
+/// Takes two steps of the Chebyshev iteration, starting from `x` or from zero.
 fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {
@@ -157,7 +157,7 @@ mod tests {
         Hierarchy::new(problem, roots(&stretched)).fitted_to(problem, roots(positions))
     }
 
-    /// Vectors that look random.
+    /// Pseudorandom vectors.
     fn noise(count: usize, seed: f64) -> Vec<Vec2> {
         let at =
             |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos()).as_vec2();
@@ -199,7 +199,7 @@ mod tests {
         // A wave over the whole square. Sweeps alone would take thousands to remove it.
         let problem = square();
         assert_corrects_a_wave(&problem, &hierarchy(&problem), 0.1);
-        // Stretching has changed shapes as well as sizes, which factors follow less closely.
+        // Stretching has changed shapes as well as sizes; factors at the vertices fit shapes less well.
         assert_corrects_a_wave(&problem, &fitted(&problem), 0.15);
     }
 

@@ -1,12 +1,13 @@
-//! Calls of wgpu whose failures become errors: those that it reports to error scopes, and those of which it panics.
+//! Runs calls of wgpu and turns their failures into errors: those reported to error scopes, and those on which wgpu
+//! panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::GpuError;
 
-/// Runs wgpu calls that panic where a driver reports what wgpu has no error for: a device that is lost while it is waited for, or memory
-/// that runs out while wgpu encodes something of its own. What was under way is given up, so nothing half done is seen. The error is what
-/// wgpu said, on one line.
+/// Runs wgpu calls that may panic. wgpu panics where a driver reports a failure for which it has no error: a device
+/// that is lost while it is waited for, or memory that runs out during wgpu's own encoding. The work of the calls is
+/// dropped, so nothing half done remains. The error is wgpu's message on one line.
 pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(calls)).map_err(|payload| {
         let text = match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
@@ -29,14 +30,14 @@ pub(crate) fn poll(
     polled.map_err(|error| GpuError::Lost(error.to_string()))
 }
 
-/// Runs wgpu calls. A browser answers what it reports of them later, and a page cannot wait for that: there it goes to the
-/// device's handler of uncaptured errors.
+/// Runs wgpu calls. A browser reports their errors later, and a page cannot wait for that. So errors go to the device's
+/// handler of uncaptured errors.
 #[cfg(target_arch = "wasm32")]
 pub(crate) fn scoped<T>(_: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     Ok(calls())
 }
 
-/// Runs wgpu calls and turns whatever wgpu reports of them into an error.
+/// Runs wgpu calls, and turns whatever wgpu reports into an error.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -50,14 +51,15 @@ pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Res
         return Err(GpuError::OutOfMemory(error.to_string()));
     }
     match internal.or(validation) {
-        // Of a lost device wgpu reports only the consequences: "... is invalid".
-        Some(_) if is_lost(device) => Err(GpuError::Lost("it makes no buffers any more".into())),
+        // For a lost device wgpu reports only the consequences: "... is invalid".
+        Some(_) if is_lost(device) => Err(GpuError::Lost("no buffer can be created".into())),
         Some(error) => Err(GpuError::Refused(error.to_string())),
         None => value,
     }
 }
 
-/// As [`scoped`], for calls that take a buffer of the application: what is refused is then the buffer.
+/// Runs wgpu calls like [`scoped`], for calls that take a buffer of the application: a refusal is reported as a fault
+/// of the buffer.
 pub(crate) fn scoped_to_buffer<T>(
     device: &wgpu::Device,
     calls: impl FnOnce() -> T,
@@ -70,8 +72,8 @@ pub(crate) fn scoped_to_buffer<T>(
     })
 }
 
-/// Whether the device is lost, found by trial: a lost device makes a buffer that cannot be mapped, and reports nothing
-/// to the error scopes.
+/// Whether the device is lost, found by a trial: on a lost device a new buffer cannot be mapped, and the error scopes
+/// report nothing.
 #[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);

@@ -1,4 +1,4 @@
-//! Values on one mesh, taken at any places.
+//! Values of one mesh at any points.
 
 use super::interpolation::linear;
 use super::locate::{Found, Locator};
@@ -7,10 +7,10 @@ use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// From so many vertices nearby a walk is tried.
+/// The most vertices nearby from which a walk to a point is tried.
 const TRIED: usize = 9;
 
-/// A mesh in which any places are found, such as one that carries the sizes wanted on another mesh.
+/// A mesh in which any points can be found, such as one that carries the sizes wanted on another mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
     topology: Topology<'static>,
@@ -18,16 +18,18 @@ pub(crate) struct Background {
     seeds: Seeds,
 }
 
-/// A place by the triangle of a background that it is in, or nearest to.
+/// A point, given by the triangle of a background that holds it, or by the nearest triangle.
 pub(crate) struct Spot {
     found: Found,
-    /// How far the place is outside of the mesh.
+    /// The distance of the point from the mesh, 0 inside it.
     pub(crate) outside: f64,
 }
 
 impl Background {
+    /// Makes a background of a mesh.
+    ///
     /// # Errors
-    /// Those of [`Topology::new`], and [`MeshError::Infeasible`] if triangles are inverted or flat.
+    /// [`MeshError::Infeasible`] if triangles are inverted or flat, or an error of [`Topology::new`].
     pub(crate) fn new(mesh: &Mesh) -> Result<Self, MeshError> {
         let topology = Topology::new(mesh)?.into_owned();
         let triangles = topology.bad_triangles(&mesh.points)?;
@@ -38,10 +40,10 @@ impl Background {
         Ok(Self { topology, points: mesh.points.clone(), seeds })
     }
 
-    /// Finds places, on all cores.
+    /// Finds points, on all cores.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] for a place that is not finite.
+    /// [`MeshError::NotFinite`] for a point that is not finite.
     pub(crate) fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
         if let Some(vertex) = places.iter().position(|place| !place.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
@@ -62,8 +64,8 @@ impl Background {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// The triangle that a place is in: reached by a walk from a vertex nearby, or, where the boundary is in the way, the nearest of
-    /// all triangles.
+    /// Returns the triangle that holds a point, found by a walk from a vertex nearby. If the boundary is in the way of
+    /// all walks, searches all triangles for the nearest.
     fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<Found> {
         let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
         if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
@@ -71,7 +73,7 @@ impl Background {
         }
         let mut best: Option<(f64, u32, [f64; 2])> = None;
         for (triangle, t) in (0..).zip(self.topology.triangles()) {
-            // Most triangles are farther for the box around them.
+            // Most triangles can be skipped, as their bounding box is farther off.
             let corners = t.map(|v| self.points[v as usize]);
             let apart = [0, 1].map(|axis| {
                 let [a, b, c] = corners.map(|corner| corner[axis]);
@@ -94,23 +96,23 @@ impl Background {
         best.map(|(_, triangle, nearest)| locator.within(triangle, nearest))
     }
 
-    /// The value at a place, of values for each vertex of the background.
+    /// Interpolates values of the background's vertices at a point.
     pub(crate) fn value(&self, spot: &Spot, of: impl Fn(u32) -> f64) -> f64 {
         linear(spot.found.corners.map(of), spot.found.weights)
     }
 
-    /// The least and the largest first coordinate of the background.
+    /// Returns the least and the largest x coordinate of the background.
     pub(crate) fn breadth(&self) -> [f64; 2] {
         [self.seeds.low[0], self.seeds.low[0] + self.seeds.size[0]]
     }
 
-    /// How long the background is in the longer of its directions.
+    /// Returns the larger of the background's width and height.
     pub(crate) fn extent(&self) -> f64 {
         self.seeds.size[0].max(self.seeds.size[1])
     }
 }
 
-/// A vertex near any place: a grid with one in each of its cells.
+/// A grid of cells with one vertex each, to find a vertex near any point.
 #[derive(Clone, Debug)]
 struct Seeds {
     low: [f64; 2],
@@ -131,7 +133,7 @@ impl Seeds {
             }
         }
         let size = [high[0] - low[0], high[1] - low[1]];
-        // About as many cells as vertices, as high as they are wide.
+        // About as many cells as vertices, with cells as high as they are wide.
         let wanted = (triangles.len() as f64 / 2.0).max(1.0);
         let share = |a: f64, b: f64| (wanted * a / b).sqrt().clamp(1.0, wanted);
         let counts = [share(size[0], size[1]), share(size[1], size[0])].map(|n| n.ceil() as usize);
@@ -169,13 +171,13 @@ impl Seeds {
         let [column, row] = [0, 1].map(|axis| {
             let share = (place[axis] - self.low[axis]) / self.size[axis];
             let last = self.counts[axis] - 1;
-            // Places outside count to the cell at the border.
+            // Points outside belong to the cell at the border.
             ((share * self.counts[axis] as f64) as usize).min(last)
         });
         row * self.counts[0] + column
     }
 
-    /// The vertices of the place's cell and of those around it.
+    /// Returns the vertices of the point's cell and of the cells around it.
     fn around(&self, place: [f64; 2]) -> impl Iterator<Item = u32> + '_ {
         let cell = self.cell(place);
         let (column, row) = (cell % self.counts[0], cell / self.counts[0]);
@@ -192,7 +194,7 @@ impl Seeds {
 mod tests {
     use super::*;
 
-    /// A square ring: 6 by 6 fields without the four in the middle.
+    /// A square ring: 6 by 6 cells without the four in the middle.
     fn ring() -> Mesh {
         let points = (0..49).map(|v| [f64::from(v % 7), f64::from(v / 7)]).collect();
         let is_hole = |c: u32, r: u32| (2..4).contains(&c) && (2..4).contains(&r);
@@ -222,7 +224,7 @@ mod tests {
                 assert!((value - wanted).abs() < 1e-12 && outside < 1e-12, "{place:?}: {value}");
             }
         }
-        // The nearest place of the ring, in the hole and around the ring.
+        // The nearest points of the ring, for points in the hole and outside the ring.
         for (place, [x, y], apart) in [
             ([2.5, 2.9], [2.0, 2.9], 0.5),
             ([-1.0, 3.3], [0.0, 3.3], 1.0),

@@ -1,15 +1,16 @@
-//! What the data of vertices become where the vertices move.
+//! Interpolates the data of vertices that have moved.
 
 use super::locate::{Found, Locator};
 use crate::error::MeshError;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// The places of moved vertices in the mesh as it was, found once for any number of data.
+/// The positions of moved vertices within the old mesh, found once for any number of data.
 ///
-/// Data of vertices, such as depths or a solution, no longer fit where vertices have moved. Taken from the old mesh at the
-/// new places, linear in each triangle, they do. A vertex that has not moved keeps its data to the bit, data that are linear
-/// over the mesh stay so up to rounding, and no value is above or below those of the triangle it is taken from.
+/// Data of vertices, such as depths or a solution, no longer fit where vertices have moved. This takes them from the
+/// old mesh at the new positions, linearly in each triangle. A vertex that has not moved keeps its data to the bit.
+/// Data that are linear over the mesh stay so up to rounding. No value is above or below those of the triangle from
+/// which it is taken.
 ///
 /// ```
 /// use gpu_smooth::{Interpolation, Mesh, Topology};
@@ -30,22 +31,22 @@ use crate::topology::Topology;
 #[derive(Clone, Debug)]
 pub struct Interpolation {
     vertices: usize,
-    /// Each vertex that has moved, ascending, and its place in the old mesh.
+    /// Each vertex that has moved, ascending, and where it is in the old mesh.
     moved: Vec<(u32, Found)>,
 }
 
 impl Interpolation {
-    /// Finds the new places of vertices in the old mesh, on all cores: each from the vertex's own triangles on, across edges
-    /// that triangles share, so that parts of a mesh that overlap are told apart. The triangle that holds a place is
-    /// found by exact predicates. Places outside of the mesh count as the nearest place of the triangles around that were
-    /// searched, some thousands.
+    /// Finds the new positions of vertices in the old mesh, on all cores. The search starts from the vertex's own
+    /// triangles and crosses edges that triangles share, so that overlapping parts of a mesh are told apart. Exact
+    /// predicates find the triangle that holds a position. A position outside of the mesh counts as the nearest point
+    /// of the triangles that were searched, up to 20,000.
     ///
     /// `old` and `new` have one point for each vertex, in any unit.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a new point that is
-    /// not finite, [`MeshError::Infeasible`] if the old mesh has inverted or flat triangles: a place may then be in
-    /// several triangles.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a new point
+    /// that is not finite, [`MeshError::Infeasible`] if the old mesh has inverted or flat triangles: several triangles
+    /// may then hold a position.
     pub fn new(
         topology: &Topology<'_>,
         old: &[[f64; 2]],
@@ -71,16 +72,16 @@ impl Interpolation {
         Ok(Interpolation { vertices: new.len(), moved: moved.concat() })
     }
 
-    /// How many vertices have moved.
+    /// Number of vertices that have moved.
     pub fn moved(&self) -> usize {
         self.moved.len()
     }
 
-    /// The data at the new places: `values` has `components` numbers for each vertex, and so has what is returned. A number
-    /// that is not finite makes those that are taken from it NaN.
+    /// Returns the data at the new positions. `values` has `components` numbers for each vertex, and so has the result.
+    /// A number that is not finite makes those computed from it NaN.
     ///
     /// # Errors
-    /// [`MeshError::ValueCount`] if there are not so many values.
+    /// [`MeshError::ValueCount`] if `values` does not have `components` numbers for each vertex.
     pub fn apply(&self, values: &[f64], components: usize) -> Result<Vec<f64>, MeshError> {
         let expected = self.vertices.saturating_mul(components);
         if values.len() != expected {
@@ -105,12 +106,12 @@ impl Interpolation {
     }
 }
 
-/// The value between three. Where they are equal it is theirs to the bit.
+/// Interpolates linearly between three values. If they are equal, the result is the same to the bit.
 pub(super) fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
     if ![a, b, c].iter().all(|value| value.is_finite()) {
         return f64::NAN;
     }
-    // Halves, as differences of large numbers may be too large for one.
+    // Uses halves, as a difference of two large numbers may overflow.
     let value = a + 2.0 * (to_b * (0.5 * b - 0.5 * a) + to_c * (0.5 * c - 0.5 * a));
     value.clamp(a.min(b).min(c), a.max(b).max(c))
 }

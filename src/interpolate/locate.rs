@@ -1,4 +1,4 @@
-//! Finds the triangle of a mesh that holds a place, from a triangle nearby.
+//! Finds the triangle of a mesh that holds a point, starting from a triangle nearby.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashSet};
@@ -6,18 +6,18 @@ use std::collections::{BinaryHeap, HashSet};
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// A straight walk takes no more steps than this before the search spreads instead. Vertices move by a few triangles.
+/// The most steps of a straight walk, before the search spreads instead. Vertices move by a few triangles.
 const STEPS: usize = 200;
-/// How many triangles a search spreads over before it takes the nearest of them.
+/// The most triangles that a search visits before it takes the nearest of them.
 const SPREAD: usize = 20_000;
 
-/// A mesh in which places are found. None of its triangles is inverted or flat.
+/// A mesh in which points are located. None of its triangles is inverted or flat.
 pub(super) struct Locator<'a> {
     pub(super) topology: &'a Topology<'a>,
     pub(super) points: &'a [[f64; 2]],
 }
 
-/// A place by a triangle of a mesh: a + (b - a) `weights[0]` + (c - a) `weights[1]` of its corners a, b, c.
+/// A point, given by a triangle of a mesh with corners a, b, c: a + (b - a) `weights[0]` + (c - a) `weights[1]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub(super) corners: [u32; 3],
@@ -25,8 +25,8 @@ pub(super) struct Found {
 }
 
 impl Locator<'_> {
-    /// Where a place is, which is searched from a vertex on, across edges that triangles share. Outside of the mesh it is
-    /// the nearest place that was met. None if the vertex has no triangle.
+    /// Locates a point. The search starts from a vertex and crosses edges that triangles share. For a point outside of
+    /// the mesh it returns the nearest point that it has met. `None` if the vertex has no triangle.
     pub(super) fn find(&self, vertex: u32, place: [f64; 2]) -> Option<Found> {
         let star = self.topology.star(vertex);
         let first = *star.first()?;
@@ -36,7 +36,8 @@ impl Locator<'_> {
         })
     }
 
-    /// Walks towards a place, each time across an edge that the place lies beyond. None if the boundary is in the way.
+    /// Walks toward a point, each time across an edge that has the point on its other side. `None` if the boundary is
+    /// in the way or the walk is too long.
     pub(super) fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
         let mut triangle = first;
         for step in 0..STEPS {
@@ -44,7 +45,7 @@ impl Locator<'_> {
             let mut beyond = false;
             let mut next = None;
             for k in 0..3 {
-                // Not the same edge first in each triangle: such a walk could go in circles.
+                // Each triangle starts with another edge, as otherwise the walk could go in circles.
                 let edge = edge_of(corners, (k + step) % 3);
                 if self.is_beyond(edge, place) {
                     beyond = true;
@@ -62,7 +63,7 @@ impl Locator<'_> {
         None
     }
 
-    /// Searches all around, triangles near the place first.
+    /// Searches in all directions, triangles near the point first.
     fn spread(&self, star: &[u32], place: [f64; 2]) -> Found {
         let candidate = |&triangle: &u32| {
             let (distance, nearest) = self.nearest(triangle, place);
@@ -93,7 +94,7 @@ impl Locator<'_> {
         }
     }
 
-    /// The weights of a place in a triangle; of one that rounding has put outside, those of a place on its edge.
+    /// Returns the weights of a point in a triangle. A point that rounding has put outside is moved to the edge.
     pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
         let corners = self.corners(triangle);
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
@@ -111,20 +112,20 @@ impl Locator<'_> {
         self.topology.triangles()[triangle as usize]
     }
 
-    /// Whether a place lies on the right of an edge, which has its triangle on the left. Exact.
+    /// Whether a point is on the right of an edge, which has its triangle on the left. Exact.
     fn is_beyond(&self, edge: [u32; 2], place: [f64; 2]) -> bool {
         let [from, to] = edge.map(|vertex| self.points[vertex as usize]);
         orientation(&[from, to, place], &[0, 1, 2]) < 0.0
     }
 
-    /// The other triangle at an edge.
+    /// Returns the other triangle at an edge.
     fn across(&self, triangle: u32, [from, to]: [u32; 2]) -> Option<u32> {
         let [a, b] = [from, to].map(|vertex| self.topology.star(vertex));
         let (star, end) = if a.len() <= b.len() { (a, to) } else { (b, from) };
         star.iter().copied().find(|&t| t != triangle && self.corners(t).contains(&end))
     }
 
-    /// The place in a triangle that is nearest to another, and the square of the distance.
+    /// Returns the point of a triangle that is nearest to a given one, and before it the square of their distance.
     pub(super) fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
         let corners = self.corners(triangle);
         let edges = [0, 1, 2].map(|k| edge_of(corners, k));
@@ -135,7 +136,7 @@ impl Locator<'_> {
             let [[ax, ay], [bx, by]] = edge.map(|vertex| self.points[vertex as usize]);
             let [dx, dy] = [bx - ax, by - ay];
             let along = ((place[0] - ax) * dx + (place[1] - ay) * dy) / (dx * dx + dy * dy);
-            // Not a number where the edge is too short for its square.
+            // `along` is NaN if the edge is so short that its square vanishes.
             let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
             let nearest = [ax + along * dx, ay + along * dy];
             let distance = (nearest[0] - place[0]).powi(2) + (nearest[1] - place[1]).powi(2);
@@ -146,12 +147,12 @@ impl Locator<'_> {
     }
 }
 
-/// The edge from a corner to the next.
+/// The edge from corner `k` to the next one.
 fn edge_of(corners: [u32; 3], k: usize) -> [u32; 2] {
     [corners[k], corners[(k + 1) % 3]]
 }
 
-/// A triangle to look into. Of several, the nearest is the greatest; among equals the one of the least index.
+/// A triangle to search. The order makes the nearest one the greatest, and among equals the one with the lowest index.
 struct Candidate {
     distance: f64,
     triangle: u32,

@@ -1,4 +1,4 @@
-//! Data of vertices taken from a mesh at other places: linear in the triangles of the mesh.
+//! Interpolates data of vertices from a mesh, linearly in its triangles, at other points.
 
 mod background;
 mod interpolation;

@@ -19,10 +19,10 @@ pub struct Coloring {
 /// Number of consecutive vertices along the curve that make a block. Numbers within a block fit 16 bits.
 const BLOCK: usize = 1 << 15;
 
-/// Blocks are used only if at most one in this many vertices lies between them.
+/// Blocks are used only if at most one in this many vertices is between them, with neighbors in several blocks.
 const MOST_BETWEEN: usize = 4;
 
-/// The most colors that smallest-last order takes on a planar graph.
+/// The most colors that the smallest-last order needs on a planar graph.
 const PLANAR: u32 = 6;
 
 impl Coloring {
@@ -36,7 +36,7 @@ impl Coloring {
         Self::in_blocks(topology, &numbering, BLOCK)
     }
 
-    /// Colors the free vertices as [`Self::new`] does, in blocks along a curve that contains all of them. Faster if
+    /// Colors the free vertices as [`Self::new`] does, but in blocks along a curve that contains all of them. Faster if
     /// most neighbors are near each other on the curve.
     pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
         match curve.len() {
@@ -83,14 +83,14 @@ impl Coloring {
     }
 }
 
-/// Stands for no place on the curve, at a vertex that is not free.
+/// The place of a vertex that is not free, as it is not on the curve.
 const NOWHERE: u32 = u32::MAX;
 
-/// The free vertices by their places on a curve. A place is an index in `curve`.
+/// The free vertices, numbered by their places on a curve. A place is an index in `curve`.
 struct Places<'a> {
     topology: &'a Topology<'a>,
     curve: &'a [u32],
-    /// The place of each vertex.
+    /// The place of each vertex on the curve.
     of: Vec<u32>,
 }
 
@@ -113,13 +113,13 @@ impl<'a> Places<'a> {
         self.topology.free()[self.curve[place as usize] as usize]
     }
 
-    /// The places of the free neighbors of the free vertex at a place.
+    /// Returns the places of the free neighbors of the free vertex at a place.
     fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let ring = self.topology.ring_of(self.curve[place as usize]);
         ring.map(|v| self.of[v as usize]).filter(|&place| place != NOWHERE)
     }
 
-    /// The places of the free neighbors, in the order of the triangles' numbers.
+    /// Returns the places of the free neighbors, in the order of the triangles' numbers.
     fn sorted_neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let vertex = self.curve[place as usize];
         let mut ring: Vec<(u32, u32)> =
@@ -147,7 +147,8 @@ impl<'a> Places<'a> {
             block.graph.save_colors(&block.order, count, colors)
         });
         let count = count.max(counts.into_iter().max().unwrap_or(0));
-        // A vertex of a block may have more than five neighbors that are colored already, as they lie between blocks.
+        // A vertex of a block may have more than five neighbors with a color, as those between blocks are colored
+        // first. So this may take more than six colors.
         if count <= PLANAR {
             return (colors, count);
         }
@@ -287,7 +288,7 @@ mod tests {
 
     #[test]
     fn what_is_not_planar_takes_more_colors() {
-        // The torus of seven vertices, each a neighbor of all others.
+        // The torus with seven vertices, each a neighbor of all others.
         let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
         let triangles = around.map(|t| t.map(|v| v % 7)).collect();
         let points = (0..7).map(|i| [f64::from(i), f64::from(i * i)]).collect();

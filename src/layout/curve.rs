@@ -1,4 +1,4 @@
-//! Vertices along a space-filling curve: most vertices that are near each other are also near in this order.
+//! Orders vertices along a space-filling curve: most vertices that are near each other are also near in this order.
 
 use glam::DVec2;
 use rayon::slice::ParallelSliceMut;
@@ -14,10 +14,10 @@ const PER_CELL: usize = 8;
 /// Number of cells that one task sorts.
 const CELLS: usize = 1 << 8;
 
-/// A cell of this many vertices is sorted by several threads.
+/// A cell with this many vertices or more is sorted by several threads.
 const CROWD: usize = 1 << 14;
 
-/// The vertices that some triangle uses, in the order of their positions along a Z-order curve.
+/// Returns the vertices that some triangle uses, in the order of their positions along a Z-order curve.
 pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
     let (low, high) = bounds(mesh, topology);
     let scale = f64::from(u32::MAX) / (high - low).max_element();
@@ -25,7 +25,7 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
         let cell = (DVec2::from(mesh.points[v as usize]) - low) * scale;
         z_order(cell.x as u32, cell.y as u32)
     };
-    // First into cells of the plane, then within each cell.
+    // Sorts first into cells of the plane, then within each cell.
     let bits = (mesh.points.len() / PER_CELL).max(2).ilog2().min(22);
     let unused = 1 << bits;
     let mut cells = Groups::new(mesh.points.len(), unused + 1, |v| {
@@ -58,7 +58,7 @@ fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(
     }
 }
 
-/// The bounding box of the vertices that some triangle uses: its lower and upper corner.
+/// Returns the bounding box of the vertices that some triangle uses: its lower and upper corner.
 pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn all_vertices_in_use_stand_along_the_curve() {
-        // A third of the points all over the plane, the others in a corner. The last 300 are of no triangle.
+        // A third of the points is all over the plane, the others are in a corner. No triangle uses the last 300.
         let mut points: Vec<[f64; 2]> = Vec::new();
         for k in 0..3000 {
             let [x, y] = [k * 7919 % 3001, k * 104_729 % 2999].map(f64::from);

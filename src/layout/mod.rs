@@ -1,4 +1,4 @@
-//! From a mesh to the [`Problem`] of the engines: free vertices are colored and renumbered, positions normalized.
+//! Makes the [`Problem`] of the engines from a mesh: free vertices are colored and renumbered, positions normalized.
 
 mod coloring;
 mod curve;

@@ -1,4 +1,4 @@
-//! Preparing a mesh for the engines.
+//! Prepares a mesh for the engines.
 
 use crate::error::MeshError;
 use crate::layout::Coloring;
@@ -7,7 +7,7 @@ use crate::layout::curve::along_curve;
 use crate::mesh::Mesh;
 use crate::topology::Topology;
 
-/// Checks a mesh, colors it and lays it out, as [`Smoother::new`](crate::Smoother::new) does, for code that drives runs
+/// Checks a mesh, colors it and lays it out, as [`Smoother::new`](crate::Smoother::new) does. For code that drives runs
 /// itself.
 ///
 /// # Errors

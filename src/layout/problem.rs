@@ -17,18 +17,18 @@ use crate::topology::predicates::orientation;
 
 /// Number of vertices or triangles of one task.
 const CHUNK: usize = 1 << 12;
-/// Number of vertices of one task when they are sorted by color. Longer than [`CHUNK`], as every task has a counter for
+/// Number of vertices of one task when they are sorted by color. Larger than [`CHUNK`], as every task has a counter for
 /// each color.
 const LONG: usize = 1 << 14;
 
 /// A mesh laid out for sweeping. Vertices are renumbered: first the free ones, color by color, then the fixed ones that
-/// some triangle uses. Within a color they are in blocks along a space-filling curve, and within a block by the number
-/// of their neighbors.
+/// some triangle uses. Within a color they are in blocks along a space-filling curve, and within a block they are
+/// ordered by the number of their neighbors.
 ///
-/// Positions are scaled by a power of two such that the mean area of the triangles is in [0.5, 2], and the center of a
-/// mesh far from the origin is subtracted. Neither rounds, so elements keep all digits that the mesh has, however
-/// small they are. Single precision serves meshes of any size at any place, and areas far
-/// below or above the mean neither vanish nor overflow.
+/// Positions are scaled by a power of two so that the mean area of the triangles is in [0.5, 2], and the center of a
+/// mesh far from the origin is subtracted. Neither rounds, so elements keep all digits that the mesh has, however small
+/// they are. Single precision then suffices for meshes of any size and position, and areas far below or above the mean
+/// neither underflow nor overflow.
 #[derive(Clone, Debug)]
 pub struct Problem {
     positions: Vec<DVec2>,
@@ -36,7 +36,8 @@ pub struct Problem {
     ring_start: Vec<u32>,
     ring: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// The target map of each vertex, if the mesh has targets. Of single precision, so that both engines have the same.
+    /// The target map of each vertex, if the mesh has targets. In single precision, so that both engines use the same
+    /// values.
     targets: Option<Vec<[f32; 3]>>,
     /// Whether targets are longer in one direction than in another.
     is_stretched: bool,
@@ -47,8 +48,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Number of vertices in a block. Blocks are sorted by the number of neighbors, so that vertices visited at
-    /// once have equally many. Larger blocks have fewer exceptions; smaller ones keep vertices closer together.
+    /// Number of vertices in a block. Blocks are sorted by the number of neighbors, so that vertices visited at once
+    /// have the same number. In larger blocks that holds for more of them; smaller ones keep vertices closer together.
     pub(crate) const BLOCK: usize = 512;
 
     /// Lays out a mesh with its topology and coloring.
@@ -106,15 +107,16 @@ impl Problem {
         }
     }
 
-    /// Gives the mesh targets: a target map for each of its vertices, in any unit. Maps are scaled together such that the
-    /// mean area of the triangles, as they show them, is 1.
+    /// Sets the target maps of all vertices of the mesh, in any unit. The maps are scaled by a common factor so that
+    /// the mean area of the triangles, after their maps are applied, is 1.
     pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
         let positions = std::mem::take(&mut self.positions);
         self.set_targets_at(maps, &positions);
         self.positions = positions;
     }
 
-    /// The same, where the vertices have moved to these normalized positions.
+    /// Sets target maps as [`set_targets`](Self::set_targets) does, scaled for vertices at the given normalized
+    /// positions.
     pub(crate) fn set_targets_at(&mut self, maps: &[Tensor], positions: &[DVec2]) {
         let map = |v: u32| maps[v as usize].0;
         let area = |t: &[u32; 3]| {
@@ -132,7 +134,8 @@ impl Problem {
         self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
     }
 
-    /// Takes on the targets of another problem of the same mesh, given the number there of each vertex of the mesh.
+    /// Copies the targets of another problem of the same mesh. `number` gives the number there of each vertex of the
+    /// mesh.
     pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
         self.targets = other.targets().map(|maps| {
             let of = |&v: &u32| maps[number[v as usize] as usize];
@@ -146,7 +149,7 @@ impl Problem {
         &self.positions
     }
 
-    /// The range of free vertices that each color has.
+    /// The range of free vertices for each color.
     pub fn colors(&self) -> &[Range<u32>] {
         &self.colors
     }
@@ -189,7 +192,7 @@ impl Problem {
         self.is_stretched
     }
 
-    /// A triangle as a metric sees it: as its target map shows it, if the mesh has targets.
+    /// A triangle as metrics see it: transformed by its target map, if the mesh has targets.
     #[inline(always)]
     pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
         let [p, q, r] = t.map(position);
@@ -200,12 +203,12 @@ impl Problem {
         }
     }
 
-    /// Mean area of all triangles, in normalized units; as target maps show them, if the mesh has targets.
+    /// Mean area of all triangles in normalized units, after target maps are applied if the mesh has any.
     pub fn mean_area(&self) -> f64 {
         self.mean_area
     }
 
-    /// The number that each vertex has in the mesh.
+    /// The number of each vertex in the mesh.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
@@ -222,7 +225,7 @@ impl Problem {
         self.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
-    /// The normalized positions of points in the mesh's order and units. Uses the memory of `room`.
+    /// Returns the normalized positions of points given in the mesh's order and units. Reuses the memory of `room`.
     pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
         room.resize(self.vertices.len(), DVec2::ZERO);
         for_each_chunk(&mut room, CHUNK, |first, positions| {
@@ -233,8 +236,8 @@ impl Problem {
         room
     }
 
-    /// Converts normalized positions to the mesh's order and units. A vertex that is fixed or did
-    /// not move keeps exactly its position in the mesh.
+    /// Converts normalized positions to the mesh's order and units. A vertex that is fixed or has not moved keeps
+    /// exactly its position in the mesh.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();
         let free = self.vertices[..self.free_count()].iter();
@@ -247,12 +250,12 @@ impl Problem {
     }
 }
 
-/// The center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
+/// Returns the center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
 /// scaling by it.
 fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let (low, high) = bounds(mesh, topology);
     let center = DVec2::new(exact_center(low.x, high.x), exact_center(low.y, high.y));
-    // Areas of the original points, in units of the bounding box, where their sum cannot overflow.
+    // Uses the original points, in units of the bounding box, in which the sum of areas cannot overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
     let mean = sum(topology.triangles(), relative) / topology.triangles().len() as f64;
@@ -261,9 +264,10 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     (center, scale, (length * scale).powi(2))
 }
 
-/// A number within the bounds of coordinates that can be subtracted from all of them without rounding: their
-/// center if none is more than twice another (Sterbenz' lemma), else 0. Elsewhere subtracting it would cost the digits of
-/// elements that are small and near the origin; and there are none to win, as no coordinate is more than twice the extent.
+/// Returns a number that can be subtracted without rounding from all coordinates between `low` and `high`. That is
+/// their center if no coordinate is more than twice another (Sterbenz' lemma). Otherwise it is 0: subtracting the
+/// center would cost digits of small elements near the origin, and would gain little, as coordinates are then at most
+/// twice the extent.
 fn exact_center(low: f64, high: f64) -> f64 {
     let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
     if low.signum() == high.signum() && most <= 2.0 * least { low * 0.5 + high * 0.5 } else { 0.0 }
@@ -275,7 +279,8 @@ fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
     sums.iter().sum()
 }
 
-/// The one-rings of the free `vertices`, by new numbers: where each starts, with one past the last, and all neighbors.
+/// Returns the one-rings of the free `vertices`, by new numbers: where each starts, with one past the last, and all
+/// neighbors.
 fn rings(
     topology: &Topology<'_>,
     vertices: &[u32],
@@ -286,8 +291,8 @@ fn rings(
     let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
-    // Along the curve, where most triangles around a vertex are also around the vertices before it and so are cached.
-    // No two tasks write one entry; entries are atomic only because the rows of a task are scattered.
+    // Goes along the curve: most triangles around a vertex are also around the vertices before it, and so are cached.
+    // No two tasks write the same entry; entries are atomic only because the rows of a task are scattered.
     for_each_part(curve.chunks(CHUNK), |_, chunk| {
         for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
@@ -299,8 +304,9 @@ fn rings(
     (start, plain(ring))
 }
 
-/// All triangles by the new numbers of their `vertices` vertices, sorted by least corner. So they follow the curve of
-/// the vertices, which keeps reads for the objective cached, and their order does not depend on that of the mesh.
+/// Returns all triangles by the new numbers of their vertices, `vertices` in all, sorted by their least corner. So they
+/// follow the vertices along the curve, which keeps reads for the objective cached, and their order does not depend on
+/// that of the mesh.
 fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
@@ -313,7 +319,8 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
         }
     });
     let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
-    // Chunks for sorting triangles of equal least corners. None ends among triangles with the same one.
+    // Cuts the list into chunks, in which triangles with the same least corner are then sorted. No chunk ends between
+    // such triangles.
     let mut rest = &mut all[..];
     let runs = std::iter::from_fn(|| {
         let mut end = rest.len().min(CHUNK);
@@ -328,7 +335,7 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
     all
 }
 
-/// The vertices in the order that [`Problem`] documents, and the range of each color.
+/// Returns the vertices in the order that [`Problem`] documents, and the range of each color.
 fn order(
     topology: &Topology<'_>,
     coloring: &Coloring,

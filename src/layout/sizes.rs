@@ -7,14 +7,14 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 
-/// Triangles up to this inverse mean ratio tell their size.
+/// A triangle is sound if its inverse mean ratio is below this. Only sound triangles give sizes.
 const SOUND: f64 = 10.0;
 
-/// Rounds of averaging over neighbors where sizes are interpolated.
+/// Number of rounds in which interpolated sizes are averaged over neighbors.
 const ROUNDS: usize = 20;
 
-/// The target area at each vertex; that of a triangle is the mean of its vertices'. Their sum over all triangles is
-/// the area that the boundary encloses.
+/// Returns the target area at each vertex. That of a triangle is the mean of those at its vertices. The sum over all
+/// triangles is the area that the boundary encloses.
 pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
     let triangles = problem.triangles();
     let mut size = known(problem, positions);
@@ -37,10 +37,10 @@ pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
     areas
 }
 
-/// The logarithm of the area of elements at each vertex, where the mesh tells it.
+/// Returns the logarithm of the area of elements at each vertex where the mesh gives one.
 fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
-    /// Logarithms of areas at a vertex: their sum and number, those from boundary edges, and whether all triangles are
-    /// sound.
+    /// Logarithms of areas at a vertex, each as sum and number: those of sound triangles and those estimated from fixed
+    /// edges. Also whether any triangle is unsound.
     #[derive(Clone, Copy, Default)]
     struct Vertex {
         sound: (f64, u32),
@@ -61,7 +61,7 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
                 vertex.sound = (vertex.sound.0 + area.ln(), vertex.sound.1 + 1);
             }
         }
-        // Edges between vertices that stay.
+        // Edges between vertices that do not move.
         for [k, l] in
             [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|edge| edge.map(|v| v as usize))
         {
@@ -96,8 +96,8 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
     all.iter().enumerate().map(of).collect()
 }
 
-/// Gives every vertex without a size the mean of its neighbors that have one, layer by layer. Returns these
-/// vertices. If no vertex has a size, all are left without.
+/// Gives every vertex without a size the mean of its neighbors that have one, layer by layer. Returns these vertices.
+/// If no vertex has a size, none gets one.
 fn spread(triangles: &[[u32; 3]], size: &mut [Option<f64>]) -> Vec<u32> {
     let mut found: Vec<u32> = Vec::new();
     let is_open =
@@ -133,7 +133,7 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::topology::Topology;
 
-    /// A square of `n` times `n` cells, the vertices inside moved by a function of their number.
+    /// A square of `n` times `n` cells. `inside` moves the vertices inside, given their numbers and positions.
     fn square(n: u32, inside: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Mesh {
         let mut mesh = Mesh::default();
         for k in 0..(n + 1) * (n + 1) {
@@ -164,7 +164,7 @@ mod tests {
         let mut mesh = square(8, |_, at| at);
         mesh.points.iter_mut().for_each(|p| *p = p.map(|x| (0.5 * x).exp()));
         let of = targets(&mesh);
-        // Cells grow by e from corner to corner of two cells, in both directions.
+        // Cells grow by the factor e over two cells, in both directions.
         let ratio = of[6 * 9 + 6] / of[2 * 9 + 2];
         assert!((ratio / 4f64.exp() - 1.0).abs() < 0.2, "{ratio}");
     }
@@ -173,7 +173,7 @@ mod tests {
     fn sizes_inside_a_collapsed_mesh_come_from_its_boundary() {
         for inside in [[4.0, 4.0], [100.0, -3.0]] {
             let of = targets(&square(8, |_, _| inside));
-            // The two triangles that cut a corner are sound and larger or smaller than others.
+            // The two triangles that cut off a corner are sound, and larger or smaller than others.
             assert!(of.iter().all(|area| (0.2..2.0).contains(area)), "{of:?}");
             assert!(of.iter().filter(|area| (0.9..1.1).contains(*area)).count() > 70, "{of:?}");
         }

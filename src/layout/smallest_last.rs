@@ -1,4 +1,4 @@
-//! Colors of a graph, taken greedily in smallest-last order (Matula and Beck 1983).
+//! Colors a graph greedily in smallest-last order (Matula and Beck 1983).
 
 /// The color of a vertex that is not free.
 pub const UNCOLORED: u32 = u32::MAX;
@@ -33,8 +33,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         &self.neighbors[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
     }
 
-    /// Removes a vertex of least remaining degree until none is left. Returns the order of removal, and empties
-    /// `degrees`.
+    /// Removes vertices, each time one of least remaining degree, until none is left. Returns the order of removal, and
+    /// empties `degrees`.
     pub(crate) fn smallest_last_order(&self, degrees: &mut Degrees) -> Vec<u32> {
         let Degrees { of, buckets } = degrees;
         for (v, &degree) in of.iter().enumerate().rev().filter(|(_, degree)| **degree != STAYS) {
@@ -80,7 +80,7 @@ impl<I: Copy + Into<u32>> Graph<I> {
         count
     }
 
-    /// Tries to do without colors above the first four, which few vertices have, by recoloring one vertex at a time.
+    /// Tries to eliminate colors above the first four, which few vertices have, by recoloring one vertex at a time.
     /// Returns the number of colors.
     pub(crate) fn save_colors(&self, order: &[u32], count: u32, colors: &mut [u32]) -> u32 {
         for color in (FOUR..count).rev() {
@@ -103,19 +103,19 @@ impl<I: Copy + Into<u32>> Graph<I> {
         let taken = self.colors_around(v, colors).chain([but]);
         let taken = taken.filter(|&c| c < 64).fold(0u64, |set, c| set | 1 << c);
         let mut color = (!taken).trailing_zeros();
-        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but 64 only if every
-        // vertex of some part of it has 64 neighbors.
+        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but 64 only if every vertex
+        // of a part of it has at least 64 neighbors.
         while color >= 64 && self.colors_around(v, colors).chain([but]).any(|c| c == color) {
             color += 1;
         }
         color
     }
 
-    /// Gives a vertex the lower color of a neighbor, if no other neighbor has it and that neighbor can take another
-    /// color below the vertex's own.
+    /// Gives a vertex a lower color that a single neighbor has, if that neighbor can take another color below the
+    /// vertex's own.
     fn lower(&self, v: u32, colors: &mut [u32]) {
         let color = colors[v as usize];
-        // The colors of neighbors, and the colors that several neighbors share.
+        // Bit sets of the colors of neighbors, and of the colors that several neighbors have.
         let (mut taken, mut shared) = (0u64, 0u64);
         for c in self.colors_around(v, colors).filter(|&c| c < 64) {
             shared |= taken & 1 << c;
@@ -124,8 +124,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         for &u in self.row(v) {
             let u = u.into();
             let wanted = colors[u as usize];
-            // Vertices between blocks have no row in the graph and keep their colors. Those with many neighbors keep
-            // theirs too: each neighbor might try them, which takes time proportional to the number of neighbors.
+            // Vertices between blocks have no row in the graph and keep their colors. Neighbors with many neighbors
+            // keep theirs too: each of those might try to recolor them, which takes time proportional to their number.
             if wanted < color.min(64)
                 && shared & 1 << wanted == 0
                 && (1..=MANY).contains(&self.row(u).len())
@@ -147,10 +147,10 @@ const FOUR: u32 = 4;
 /// A vertex with more neighbors than this is not recolored.
 const MANY: usize = 64;
 
-/// Stands for the degree of a vertex that is removed already, or is not to be removed.
+/// The degree of a vertex that is removed already, or is not to be removed.
 const STAYS: u32 = u32::MAX;
 
-/// Vertices by degree, the number of their neighbors that are not removed yet.
+/// Vertices by degree: the number of their neighbors that are not removed yet.
 #[derive(Default)]
 pub(crate) struct Degrees {
     of: Vec<u32>,

@@ -1,8 +1,9 @@
-//! The altitude of a triangle, by which explicit solvers bound their time step.
+//! The altitude of a triangle, from which explicit solvers bound their time step.
 
 use glam::DVec2;
 
-/// The least altitude of a counterclockwise triangle, in the unit of its corners; negative if it is inverted.
+/// Returns the least altitude of a triangle, in the unit of its corners; negative if the corners are not
+/// counter-clockwise.
 pub(crate) fn altitude([p, q, r]: [DVec2; 3]) -> f64 {
     let longest =
         (q - p).length_squared().max((r - q).length_squared()).max((p - r).length_squared());

@@ -1,4 +1,4 @@
-//! What a run changed: how far vertices moved, and how sizes of elements changed.
+//! How far vertices moved in a run, and how sizes of elements changed.
 
 use crate::error::MeshError;
 use crate::mesh::Precision;
@@ -8,37 +8,38 @@ use crate::topology::Topology;
 /// What is different between two states of a mesh, at its free vertices and at those on lines that have slid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// How far vertices moved, in the mean length of their edges before.
+    /// How far vertices moved, divided by the mean length of their edges before.
     pub moved: Spread,
-    /// By what factor the size of elements at a vertex changed, up or down: 1 or more. The size is the root of the
-    /// geometric mean of the areas of the triangles there.
+    /// The factor by which the size of elements at a vertex changed, up or down: 1 or more. The size is the square root
+    /// of the geometric mean of the areas of the triangles there.
     pub size: Spread,
-    /// The least altitude of a triangle before and after, which bounds the time step of explicit solvers.
+    /// The least altitude of a triangle before and after, in the unit of the points. It bounds the time step of
+    /// explicit solvers.
     pub least_altitude: [f64; 2],
 }
 
 /// How a number is spread over vertices; all zero if there are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Half of the vertices have no more.
+    /// The median: half of the vertices have at most this.
     pub median: f64,
-    /// Of twenty vertices nineteen have no more.
+    /// The 95th percentile: nineteen of twenty vertices have at most this.
     pub most_of_twenty: f64,
     /// The largest.
     pub most: f64,
 }
 
-/// What the triangles around a vertex add up to.
+/// Sums over the triangles around a vertex.
 #[derive(Clone, Copy, Default)]
 struct Around {
-    /// The sum of the logarithms of areas, and of the lengths of the edges at the vertex.
+    /// The sum of the logarithms of the areas; `lengths` is the sum of the lengths of edges at the vertex.
     logarithms: f64,
     lengths: f64,
     triangles: u32,
 }
 
 impl Change {
-    /// Compares the mesh with its vertices at `before` and at `after`.
+    /// Compares the mesh with its vertices at `before` and at `after`, one point for each vertex, in any unit.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -78,7 +79,7 @@ impl Change {
     }
 }
 
-/// The mean length of the edges at each vertex; not a number at vertices of no triangle.
+/// Returns the mean length of the edges at each vertex; NaN at vertices that no triangle uses.
 pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
     let (around, _) = around(topology, points);
     around.iter().enumerate().map(|(v, around)| mean_edge(topology, points, v, around)).collect()
@@ -137,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_vertex_moved_by_a_third_of_an_edge() {
-        // The middle of a square of side 2, moved from the center by half of 1.
+        // The middle vertex of a square with side 2 moves from the center by half of 1.
         let points = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let mesh = Mesh { points, triangles, fixed: vec![] };

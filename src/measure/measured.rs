@@ -38,7 +38,8 @@ pub struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    /// The triangles of `topology` with their vertices at `points`, one for each vertex of the mesh.
+    /// Takes the triangles of `topology` with their vertices at `points`, one point for each vertex of the mesh, in any
+    /// unit.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -46,8 +47,8 @@ impl<'a> Measured<'a> {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// The same where `points` are coordinates of a surface: lengths and angles are those on the surface at the middle of each
-    /// triangle.
+    /// Takes the triangles of `topology` with their vertices at `points`, which are coordinates on `surface`, one for
+    /// each vertex of the mesh. Lengths and angles are those on the surface at the middle of each triangle.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -78,16 +79,17 @@ impl<'a> Measured<'a> {
         self.topology.triangles().len()
     }
 
-    /// Finds out what takes all triangles together, before any of them is measured by these. Not done where it is first
-    /// needed: a thread that waits for it could be given the task of another that waits for it.
+    /// Computes the data of all triangles that `measures` need, before any triangle is measured. This is not done when
+    /// the data are first needed: a thread waiting for them could be given the task of another thread that waits for
+    /// them.
     pub(crate) fn prepare(&self, measures: &[Measure]) {
         if measures.contains(&Measure::SizeRatio) && self.size_ratios.get().is_none() {
-            // Another caller may have been faster, with the same result.
+            // If another caller was faster, its result is the same.
             let _ = self.size_ratios.set(size_ratios(self.surface, self.points, self.topology));
         }
     }
 
-    /// A triangle to be measured by what [`Self::prepare`] was called for.
+    /// Returns a triangle for the measures that [`Self::prepare`] was called with.
     #[inline]
     pub(crate) fn triangle(&self, index: usize) -> Triangle {
         let corners = &self.topology.triangles()[index];
@@ -97,13 +99,13 @@ impl<'a> Measured<'a> {
         Triangle::new(points, lengths, self.mean_area, size_ratio)
     }
 
-    /// The value of a measure for triangle `index`; NaN if there is no such triangle.
+    /// Returns the value of a measure for triangle `index`; NaN if there is no such triangle.
     pub fn value(&self, measure: Measure, index: usize) -> f64 {
         self.prepare(&[measure]);
         if index < self.count() { measure.value(&self.triangle(index)) } else { f64::NAN }
     }
 
-    /// The value of a measure for each triangle, in the order of the mesh.
+    /// Returns the value of a measure for each triangle, in the order of the mesh.
     pub fn values(&self, measure: Measure) -> Vec<f64> {
         self.prepare(&[measure]);
         collect(self.count(), |t| measure.value(&self.triangle(t)))

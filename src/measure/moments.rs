@@ -1,6 +1,6 @@
-//! Extremes, mean and deviation of many values.
+//! Extremes, mean and standard deviation of many values.
 
-/// Of some values: how many, their mean, their squared distances from it, the least and the largest.
+/// The number of some values, their mean, the sum of their squared distances from it, the least and the largest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moments {
     pub(crate) count: usize,
@@ -13,7 +13,7 @@ pub(crate) struct Moments {
     pub(crate) most: (f64, usize),
 }
 
-/// Adds up in four lanes, none of which waits for another.
+/// Adds up in four lanes, which do not depend on each other.
 #[inline]
 fn four_lanes(values: &[f64], start: f64, f: impl Fn(f64, f64) -> f64) -> [f64; 4] {
     let mut lanes = [start; 4];
@@ -36,7 +36,7 @@ impl Moments {
         most: (f64::NEG_INFINITY, 0),
     };
 
-    /// Of the values of a chunk.
+    /// Returns the moments of the values of a chunk.
     pub(crate) fn of(values: &[f64], chunk: usize) -> Self {
         if values.is_empty() {
             return Self::NONE;
@@ -58,7 +58,8 @@ impl Moments {
         }
     }
 
-    /// Of these values and others, which come after them (Chan, Golub & LeVeque, Am. Stat. 37, 1983).
+    /// Returns the moments of these values together with others, which come after them (Chan, Golub & LeVeque, Am.
+    /// Stat. 37, 1983).
     pub(crate) fn and(self, other: &Self) -> Self {
         if self.count == 0 || other.count == 0 {
             return if self.count == 0 { *other } else { self };
@@ -97,7 +98,7 @@ mod tests {
 
     #[test]
     fn parts_make_the_whole() {
-        // Far from zero, where the difference of two sums would have lost all digits.
+        // These values are far from zero, where a difference of two sums would lose all digits.
         let values: Vec<f64> = (0..1000).map(|i| 1e9 + f64::from(i * i % 37)).collect();
         let whole = Moments::of(&values, 0);
         let parts = values.chunks(130).enumerate();

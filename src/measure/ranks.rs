@@ -1,30 +1,31 @@
-//! The value of a rank among many, found in one pass that keeps few of them.
+//! Finds the value of a given rank among many, in one pass that stores few of them.
 //!
-//! A sample tells between which two values the wanted one will be. The pass counts the values below that bracket and keeps
-//! those inside. Values are rounded to single precision, so that equal ones but for rounding are equal.
+//! A sample gives a bracket: two values between which the wanted one probably is. The pass counts the values below the
+//! bracket and stores those inside. Values are rounded to single precision, so that values which differ only by
+//! rounding are equal.
 
-/// Number of values of a sample.
+/// Number of values in a sample.
 pub(crate) const SAMPLE: usize = 1 << 13;
 
-/// A number whose order is that of the values, from single precision.
+/// Returns an integer that orders like the value, rounded to single precision.
 #[inline]
 pub(crate) fn key(value: f64) -> u32 {
     let bits = (value as f32).to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// The value of a key.
+/// Returns the value of a key, the inverse of [`key`].
 pub(crate) fn value(key: u32) -> f64 {
     let bits = if key >> 31 == 1 { key & !(1 << 31) } else { !key };
     f64::from(f32::from_bits(bits))
 }
 
-/// The rank, counted from zero, of the least value that a share of all does not exceed.
+/// Returns the rank, counted from zero, of the least value that the given share of all values does not exceed.
 pub(crate) fn rank(share: f64, count: usize) -> usize {
     ((share * count as f64).ceil() as usize).clamp(1, count.max(1)) - 1
 }
 
-/// Two values and what was met about them.
+/// A bracket between two keys, and the keys counted below, at and inside it.
 #[derive(Clone)]
 pub(crate) struct Bracket {
     low: u32,
@@ -32,13 +33,13 @@ pub(crate) struct Bracket {
     below: usize,
     at_low: usize,
     at_high: usize,
-    /// The keys between the two, without them.
+    /// The keys inside, without those equal to `low` or `high`.
     inside: Vec<u32>,
 }
 
 impl Bracket {
-    /// The bracket for the value that a share of all does not exceed, by the sorted keys of a sample. Six standard
-    /// deviations wide to either side: it misses the value once in a billion times.
+    /// Makes the bracket for the value that the given share of all does not exceed, from the sorted keys of a sample.
+    /// It reaches six standard deviations to either side, and so misses the value once in a billion times.
     pub(crate) fn new(sample: &[u32], share: f64) -> Self {
         let last = sample.len().saturating_sub(1);
         let middle = share * sample.len() as f64;
@@ -52,7 +53,7 @@ impl Bracket {
         let Self { low, high, .. } = *self;
         self.below += keys.iter().map(|&key| u32::from(key < low)).sum::<u32>() as usize;
         for &key in keys {
-            // Most keys are outside: one comparison for them.
+            // Most keys are outside, so they take a single comparison.
             if key.wrapping_sub(low) <= high - low {
                 match key {
                     key if key == low => self.at_low += 1,
@@ -63,7 +64,7 @@ impl Bracket {
         }
     }
 
-    /// Adds what was met elsewhere.
+    /// Adds the counts and keys of another bracket with the same bounds.
     pub(crate) fn add(&mut self, other: &Self) {
         self.below += other.below;
         self.at_low += other.at_low;
@@ -71,7 +72,7 @@ impl Bracket {
         self.inside.extend_from_slice(&other.inside);
     }
 
-    /// The key of a rank, unless it is outside the bracket.
+    /// Returns the key of a rank, or `None` if it is outside the bracket.
     pub(crate) fn find(&mut self, rank: usize) -> Option<u32> {
         let rank = rank.checked_sub(self.below)?;
         let Some(rank) = rank.checked_sub(self.at_low) else { return Some(self.low) };
@@ -117,7 +118,7 @@ mod tests {
             assert!(sum.inside.len() < keys.len() / 2);
             let rank = rank(share, keys.len());
             assert_eq!(sum.find(rank), Some(sorted[rank]), "{share}");
-            // Ranks that the sample was wrong about.
+            // Ranks for which the sample gave a wrong bracket.
             assert!([0, keys.len() - 1].iter().any(|&rank| sum.find(rank).is_none()));
         }
     }

@@ -1,4 +1,4 @@
-//! Triangles by the values of a measure: how many there are, and the worst.
+//! Finds triangles by the values of a measure: how many there are, and the worst.
 
 use std::cmp::Ordering;
 
@@ -9,8 +9,9 @@ use crate::parallel::map_ranges;
 const CHUNK: usize = 1 << 12;
 
 impl Measured<'_> {
-    /// How many triangles have their value in each of the intervals between `edges`, which ascend: from each edge to the
-    /// next, without the next but for the last interval. Values outside all of them are not counted.
+    /// Counts the triangles with their value in each of the intervals between `edges`, which ascend. An interval
+    /// includes its lower edge; only the last one includes its upper edge. Values outside all intervals are not
+    /// counted.
     pub fn histogram(&self, measure: Measure, edges: &[f64]) -> Vec<usize> {
         let Some(bins) = edges.len().checked_sub(1) else { return Vec::new() };
         self.prepare(&[measure]);
@@ -31,8 +32,8 @@ impl Measured<'_> {
         sum
     }
 
-    /// The `most` worst triangles by a measure with their values, the worst first; of equally bad ones those that come
-    /// first in the mesh.
+    /// Returns the `most` worst triangles by a measure with their values, the worst first. Of equally bad triangles,
+    /// those first in the mesh come first.
     pub fn worst(&self, measure: Measure, most: usize) -> Vec<(usize, f64)> {
         self.prepare(&[measure]);
         let order = |a: &(usize, f64), b: &(usize, f64)| match measure.is_worse(a.1, b.1) {
@@ -50,7 +51,8 @@ impl Measured<'_> {
         let parts = map_ranges(self.count(), CHUNK, |range| {
             keep(range.map(|t| (t, measure.value(&self.triangle(t)))).collect())
         });
-        // Folded part by part, so that no more than twice what is wanted, and a part, is held.
+        // Combined part by part, so that at most twice the wanted number of triangles, and one part, are held in
+        // memory.
         let mut worst = Vec::new();
         for part in parts {
             worst.extend(part);
@@ -63,7 +65,7 @@ impl Measured<'_> {
         worst
     }
 
-    /// How many triangles have a value for which `test` holds, and the first of them.
+    /// Counts the triangles with a value for which `test` holds, and returns the first of them too.
     pub fn count_where(
         &self,
         measure: Measure,

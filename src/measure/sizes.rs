@@ -5,7 +5,7 @@ use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// The areas of triangles on a surface, doubled and without their signs.
+/// Returns the areas of triangles on a surface, doubled and without their signs.
 pub(crate) fn doubled_areas(
     surface: Surface,
     points: &[[f64; 2]],
@@ -18,8 +18,8 @@ pub(crate) fn doubled_areas(
     })
 }
 
-/// For each triangle, the largest ratio of its area to that of a triangle across one of its edges, or the other way
-/// round; 1 if it has no neighbor, infinite if it or one of them is flat.
+/// Returns for each triangle the largest ratio of its area to that of a triangle across one of its edges, or the
+/// inverse ratio if that is larger. 1 if it has no neighbor, infinite if it or a neighbor is flat.
 pub(crate) fn size_ratios(
     surface: Surface,
     points: &[[f64; 2]],
@@ -27,7 +27,7 @@ pub(crate) fn size_ratios(
 ) -> Vec<f64> {
     let areas = doubled_areas(surface, points, topology);
     let triangles = topology.triangles();
-    // Stars that were forgotten are found again here, not by the first of many threads.
+    // Finds dropped stars again here, before many threads need them.
     topology.star(0);
     collect(triangles.len(), |t| {
         let mut most = 1.0;
@@ -36,7 +36,7 @@ pub(crate) fn size_ratios(
             for_each_across(topology, t, edge, |other| {
                 let (own, other) = (areas[t], areas[other]);
                 let ratio = own.max(other) / own.min(other);
-                // 0 / 0 and infinite areas are no numbers.
+                // 0 / 0 and ratios of infinite areas are NaN.
                 most = if ratio.is_nan() { f64::INFINITY } else { ratio.max(most) };
             });
         }
@@ -46,8 +46,8 @@ pub(crate) fn size_ratios(
 
 /// Calls `visit` with the triangle across an edge of triangle `t`, which starts and ends at the given vertices.
 ///
-/// Looks around the vertex that has fewer triangles: for all edges this takes linear time, however many some
-/// vertices have.
+/// It searches around the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however many
+/// triangles some vertices have.
 #[inline]
 fn for_each_across(
     topology: &Topology<'_>,
@@ -59,7 +59,8 @@ fn for_each_across(
     let from_start = at_start.len() <= at_end.len();
     let (vertex, star) = if from_start { (start, at_start) } else { (end, at_end) };
     if topology.free()[vertex as usize] {
-        // Counter-clockwise around the vertex: the triangle before this one is across the edge that starts there.
+        // The star is counter-clockwise around the vertex: the triangle before this one is across the edge that starts
+        // there.
         if let Some(at) = star.iter().position(|&other| other as usize == t) {
             let step = if from_start { star.len() - 1 } else { 1 };
             visit(star[(at + step) % star.len()] as usize);

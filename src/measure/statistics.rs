@@ -12,10 +12,10 @@ use crate::parallel::map_parts;
 /// The shares of the triangles for which [`Statistics::quantiles`] are given.
 pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Triangles that are measured at once; their values fit a processor's cache.
+/// Number of triangles that are measured at once. Their values fit a processor's cache.
 const CHUNK: usize = 1024;
 
-/// Chunks of a part, which a thread measures.
+/// Number of chunks in a part, which one thread measures.
 const PART: usize = 64;
 
 /// Statistics of a measure over triangles.
@@ -23,29 +23,29 @@ const PART: usize = 64;
 pub struct Statistics {
     /// The measure.
     pub measure: Measure,
-    /// Number of triangles. If it is 0, the other fields say nothing.
+    /// Number of triangles. If it is 0, the other fields have no meaning.
     pub count: usize,
     /// The least value.
     pub min: f64,
-    /// The mean; infinite if a value is.
+    /// The mean; infinite if any value is.
     pub mean: f64,
     /// The largest value.
     pub max: f64,
-    /// The standard deviation of the values (divided by their number); infinite if a value is.
+    /// The standard deviation of the values (divided by their number); infinite if any value is.
     pub deviation: f64,
     /// For each share of [`QUANTILES`], the least value that this share of the triangles does not exceed. It is the
     /// value of a triangle, not interpolated, with the seven digits of single precision.
     pub quantiles: [f64; 3],
-    /// Index of the worst triangle, the first of several.
+    /// Index of the worst triangle, the first if there are several.
     pub worst: usize,
 }
 
 /// The triangles that are measured.
 #[derive(Clone, Copy)]
 enum Selection<'s> {
-    /// All of so many.
+    /// All triangles, of which there are this many.
     All(usize),
-    /// Those of these indices.
+    /// The triangles with these indices.
     Of(&'s [u32]),
 }
 
@@ -66,7 +66,7 @@ impl Selection<'_> {
     }
 }
 
-/// What was met of one measure.
+/// The results for one measure.
 #[derive(Clone)]
 struct Tally {
     moments: Moments,
@@ -74,18 +74,18 @@ struct Tally {
 }
 
 impl Measured<'_> {
-    /// Statistics of some measures over all triangles, in the order of `measures`.
+    /// Computes statistics of some measures over all triangles, in the order of `measures`.
     ///
-    /// No list of values is kept: the memory beside the mesh is 8 bytes per triangle for `size-ratio` and some
+    /// No list of values is stored: the memory beside the mesh is 8 bytes per triangle for `size-ratio` and some
     /// megabytes.
     pub fn statistics(&self, measures: &[Measure]) -> Vec<Statistics> {
         self.prepare(measures);
         self.statistics_of(measures, Selection::All(self.count()))
     }
 
-    /// Statistics of some measures over the triangles of each region: a list for each region below `count`, each in the
-    /// order of `measures`. `regions` has the region of each triangle; triangles of other regions, and those that
-    /// `regions` does not have, are left out.
+    /// Computes statistics of some measures over the triangles of each region: a list for each region below `count`,
+    /// each in the order of `measures`. `regions` has the region of each triangle. Triangles of other regions, and
+    /// triangles beyond the end of `regions`, are left out.
     pub fn statistics_by_region(
         &self,
         measures: &[Measure],
@@ -93,7 +93,7 @@ impl Measured<'_> {
         count: usize,
     ) -> Vec<Vec<Statistics>> {
         self.prepare(measures);
-        // The last group takes what is left out.
+        // The last group is for the triangles that are left out.
         let region =
             |t: usize| regions.get(t).map_or(count, |&region| (region as usize).min(count));
         let groups = Groups::new(self.count(), count + 1, |t| [region(t) as u32]);
@@ -101,7 +101,7 @@ impl Measured<'_> {
         (0..count).map(of_one).collect()
     }
 
-    /// Statistics of each of some measures over the selected triangles, in the order of `measures`.
+    /// Computes statistics of some measures over the selected triangles, in the order of `measures`.
     fn statistics_of(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Statistics> {
         let new = self.sampled(measures, selection);
         let tallies = self.tallies(measures, selection, &new);
@@ -109,10 +109,11 @@ impl Measured<'_> {
         measures.iter().zip(tallies).map(one).collect()
     }
 
-    /// Empty tallies, with brackets from a sample.
+    /// Makes empty tallies, with brackets from a sample.
     fn sampled(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Tally> {
         let count = selection.len();
-        // At random places, as regular ones may fall in with the order of a regular mesh: one in each of equal parts.
+        // Samples one random triangle from each of many equal ranges. Regular samples might coincide with the order of
+        // a regular mesh.
         let taken = count.min(SAMPLE);
         let place = |i: usize| {
             let (start, end) = (i * count / taken, (i + 1) * count / taken);
@@ -133,7 +134,8 @@ impl Measured<'_> {
         samples.into_iter().map(tally).collect()
     }
 
-    /// One pass over all. Parts do not depend on the number of threads, and are put together in order.
+    /// Measures all selected triangles in one pass. Parts do not depend on the number of threads, and are combined in
+    /// order.
     fn tallies(&self, measures: &[Measure], selection: Selection<'_>, new: &[Tally]) -> Vec<Tally> {
         let size = PART * CHUNK;
         let parts = (0..selection.len().div_ceil(size)).map(|part| part * PART..(part + 1) * PART);
@@ -162,7 +164,7 @@ impl Measured<'_> {
         sums
     }
 
-    /// Puts the values of a chunk of the selected triangles into a list for each measure.
+    /// Appends the values of a chunk of the selected triangles to a list for each measure.
     fn measure(
         &self,
         measures: &[Measure],
@@ -208,7 +210,7 @@ impl Measured<'_> {
         }
     }
 
-    /// The values of some ranks by a list of all: where a sample was wrong.
+    /// Returns the values of some ranks from a list of all values, for a sample that gave a wrong bracket.
     #[cold]
     fn ranked(&self, measure: Measure, selection: Selection<'_>, ranks: [usize; 3]) -> [f64; 3] {
         let value = |i| measure.value(&self.triangle(selection.at(i)));
@@ -220,7 +222,7 @@ impl Measured<'_> {
     }
 }
 
-/// The triangles of a chunk, as places in the selection.
+/// The triangles of a chunk, as indices in the selection.
 fn range(chunk: usize, selection: Selection<'_>) -> Range<usize> {
     let end = selection.len();
     (chunk * CHUNK).min(end)..((chunk + 1) * CHUNK).min(end)
@@ -232,7 +234,7 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::topology::Topology;
 
-    /// Where a sample was wrong, a list of all values takes its place.
+    /// If a sample gave a wrong bracket, a list of all values is used instead.
     #[test]
     fn a_wrong_sample_changes_nothing() {
         let points = (0..31 * 31).map(|i| {
@@ -248,7 +250,7 @@ mod tests {
         let found = &measured.statistics(&[Measure::Shape])[0];
         let ranks = QUANTILES.map(|share| rank(share, found.count));
         assert_eq!(measured.ranked(Measure::Shape, all, ranks), found.quantiles);
-        // A sample of other values, which are all too high.
+        // A sample of other values, all of them too high.
         let bracket = Bracket::new(&[key(7.0); 100], 0.5);
         let brackets = [bracket.clone(), bracket.clone(), bracket];
         let wrong = Tally { moments: Moments::NONE, brackets };

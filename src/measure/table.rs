@@ -4,29 +4,29 @@
 use crate::measure::triangle::Triangle;
 use crate::metric::Metric;
 
-/// Which values of a measure are better.
+/// Whether large or small values of a measure are better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
-    /// Large ones: the worst triangle has the least value.
+    /// Large values are better: the worst triangle has the least value.
     Higher,
-    /// Small ones: the worst triangle has the largest value.
+    /// Small values are better: the worst triangle has the largest value.
     Lower,
 }
 
-/// What a measure is, for people.
+/// The description of a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Definition {
     /// The name on the command line.
     pub name: &'static str,
     /// The formula, as text. L are edge lengths, S is the area, r the inradius and R the circumradius.
     pub formula: &'static str,
-    /// What follows a value: ° for angles, nothing for ratios.
+    /// The unit written after a value: ° for angles, empty for ratios.
     pub unit: &'static str,
-    /// The least and the largest value that a triangle can have; inverted ones included.
+    /// The least and the largest value that a triangle can have, including inverted triangles.
     pub range: [f64; 2],
     /// The value of the best triangle.
     pub ideal: f64,
-    /// Which values are better.
+    /// Whether large or small values are better.
     pub better: Better,
     /// The publication that defines the measure.
     pub source: &'static str,
@@ -39,9 +39,9 @@ macro_rules! measures {
     ($($(#[$doc:meta])* $variant:ident = $value:expr, $definition:expr;)*) => {
         /// A quality measure of a triangle. The ideal triangle is equilateral.
         ///
-        /// Inverted and flat triangles have the values that the Verdict library gives them: ratios and angles know no
+        /// Inverted and flat triangles have the values that the Verdict library gives them. Ratios and angles know no
         /// orientation, so that an inverted triangle counts as its mirror image; `scaled-jacobian` becomes negative,
-        /// `condition` infinite and `shape` 0. What grows without bound is infinite for a flat triangle.
+        /// `condition` infinite and `shape` 0. A measure that grows without bound is infinite for a flat triangle.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Measure {
             $($(#[$doc])* $variant,)*
@@ -54,7 +54,7 @@ macro_rules! measures {
             /// The measures that are not metrics.
             const OWN: &'static [Measure] = &[$(Measure::$variant,)*];
 
-            /// What the measure is.
+            /// Returns the description of the measure.
             pub const fn definition(self) -> Definition {
                 match self {
                     $(Measure::$variant => $definition,)*
@@ -62,7 +62,7 @@ macro_rules! measures {
                 }
             }
 
-            /// The value for a triangle.
+            /// Returns the value for a triangle.
             #[inline]
             pub(crate) fn value(self, triangle: &Triangle) -> f64 {
                 match self {
@@ -95,7 +95,7 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// The longest over the shortest edge.
+    /// The longest edge divided by the shortest.
     EdgeRatio = Triangle::edge_ratio, Definition {
         name: "edge-ratio",
         formula: "Lmax / Lmin",
@@ -105,7 +105,7 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// The longest edge over the inradius, scaled to 1 for the equilateral triangle. Not the metric `ar`.
+    /// The longest edge divided by the inradius, scaled to 1 for the equilateral triangle. Not the metric `ar`.
     AspectRatio = Triangle::aspect_ratio, Definition {
         name: "aspect-ratio",
         formula: "Lmax / (2√3 r) = Lmax (L1 + L2 + L3) / (4√3 S)",
@@ -115,7 +115,7 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// The circumradius over twice the inradius.
+    /// The circumradius divided by twice the inradius.
     RadiusRatio = Triangle::radius_ratio, Definition {
         name: "radius-ratio",
         formula: "R / (2 r) = L1 L2 L3 (L1 + L2 + L3) / (16 S²)",
@@ -125,8 +125,8 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// Twice the signed area over the largest product of two edges, scaled to 1 for the equilateral triangle: the least
-    /// sine of an angle, over that of 60°.
+    /// Twice the signed area divided by the largest product of two edges, scaled to 1 for the equilateral triangle: the
+    /// least sine of an angle, divided by that of 60°.
     ScaledJacobian = Triangle::scaled_jacobian, Definition {
         name: "scaled-jacobian",
         formula: "(2/√3) 2 S / max(L1 L2, L2 L3, L3 L1)",
@@ -136,7 +136,7 @@ measures! {
         better: Better::Higher,
         source: VERDICT,
     };
-    /// The condition number of the map from the equilateral triangle, over 2. Equal to the metric `imr`.
+    /// Half the condition number of the map from the equilateral triangle. Equal to the metric `imr`.
     Condition = Triangle::condition, Definition {
         name: "condition",
         formula: "(L1² + L2² + L3²) / (4√3 S)",
@@ -146,7 +146,7 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// One over the condition; also called the mean ratio.
+    /// The inverse of `condition`, also called the mean ratio.
     Shape = Triangle::shape, Definition {
         name: "shape",
         formula: "4√3 S / (L1² + L2² + L3²)",
@@ -166,8 +166,8 @@ measures! {
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: equiangle skewness; Verdict as of 2019, equiangle_skew",
     };
-    /// How much larger or smaller a triangle is than a neighbor: the ratio of the larger to the smaller area, the most
-    /// of the triangles across its edges. 1 for a triangle without neighbors.
+    /// How much the area changes to a neighbor: the ratio of the larger to the smaller area, for the worst of the
+    /// triangles across its edges. 1 for a triangle without neighbors.
     SizeRatio = |t| t.size_ratio, Definition {
         name: "size-ratio",
         formula: "max over the neighbors N across an edge of max(S / S_N, S_N / S)",
@@ -185,7 +185,7 @@ const fn of_metric(metric: Metric) -> Definition {
         name: row.name,
         formula: row.formula,
         unit: "",
-        // Metrics of size have their ideal at the mean size, and values below it for smaller triangles.
+        // Metrics that depend on size are ideal at the mean size, and may be below that for smaller triangles.
         range: [if row.scale_invariant { row.ideal } else { 0.0 }, f64::INFINITY],
         ideal: row.ideal,
         better: Better::Lower,
@@ -194,7 +194,7 @@ const fn of_metric(metric: Metric) -> Definition {
 }
 
 impl Measure {
-    /// Every measure: those of the field, then the metrics that smoothing minimizes.
+    /// Every measure: first those that are not metrics, then the metrics that smoothing minimizes.
     pub const ALL: &'static [Measure] = &{
         let mut all = [Measure::MinAngle; Self::OWN.len() + Metric::ALL.len()];
         let mut i = 0;
@@ -238,12 +238,12 @@ impl std::str::FromStr for Measure {
     }
 }
 
-/// A name that is not the name of a measure.
+/// The error for a name that no measure has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no measure is called '{0}'; there are {names}", names = names())]
 pub struct UnknownMeasure(pub String);
 
-/// The names of all measures, for the error message.
+/// Lists the names of all measures, for the error message.
 fn names() -> String {
     Measure::ALL.iter().map(|measure| measure.name()).collect::<Vec<_>>().join(", ")
 }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn the_ideal_is_the_good_end_of_the_range() {
-        // But for rms, the ideal of which is that of the triangle of mean size.
+        // Except for rms, whose ideal is that of a triangle of mean size.
         for measure in Measure::ALL.iter().filter(|measure| measure.name() != "rms") {
             let Definition { range: [least, most], ideal, better, .. } = measure.definition();
             assert!(least < most);

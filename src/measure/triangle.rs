@@ -7,24 +7,26 @@ use crate::topology::predicates::orientation;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// What measures are functions of. Lengths are divided by a power of two near the size of the triangle, so that no
-/// product of them overflows or vanishes; all measures but `size_ratio` and some metrics do not depend on the size.
+/// The quantities of a triangle from which measures are computed. Lengths are divided by a power of two near the size
+/// of the triangle, so that no product of them overflows or vanishes. All measures except `size_ratio` and some metrics
+/// do not depend on the size.
 pub(crate) struct Triangle {
-    /// From the first corner to the second, from the first to the third, from the second to the third.
+    /// The edge vectors: from the first corner to the second, from the first to the third, and from the second to the
+    /// third.
     edges: [[f64; 2]; 3],
     lengths: [f64; 3],
     /// Twice the signed area. Its sign is exact.
     doubled_area: f64,
-    /// The mean area of the mesh, and one over the unit of lengths.
+    /// The mean area of the mesh, and the inverse of the unit of lengths.
     mean_area: f64,
     per_unit: f64,
-    /// The smallest and the largest once they were asked for; they take longer than all else.
+    /// The smallest and the largest angle, computed when first needed, as they take longer than all else.
     angles: OnceCell<[f64; 2]>,
     /// The value of the measure `size-ratio`, which depends on the neighbors.
     pub(crate) size_ratio: f64,
 }
 
-/// The power of two at or below a positive number, as far as one over it is a number.
+/// The power of two at or below a positive number, as far as its inverse is finite.
 #[inline]
 fn power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
@@ -46,7 +48,7 @@ fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
-/// The length of an edge. Squares of short ones would vanish.
+/// The length of an edge, computed so that squares of short edges do not vanish.
 #[inline]
 fn length(edge: [f64; 2]) -> f64 {
     match dot(edge, edge).sqrt() {
@@ -56,7 +58,7 @@ fn length(edge: [f64; 2]) -> f64 {
 }
 
 impl Triangle {
-    /// A triangle that has shrunk to a point. Also stands for one with a coordinate that is not a finite number.
+    /// A triangle that has shrunk to a point. Also represents a triangle with a coordinate that is not finite.
     fn point(size_ratio: f64) -> Self {
         Self {
             edges: [[0.0; 2]; 3],
@@ -69,8 +71,8 @@ impl Triangle {
         }
     }
 
-    /// The triangle with its corners at `points`, counter-clockwise unless it is inverted, where units of the two coordinates have these
-    /// `lengths`. `mean_area` is that of the mesh, `size_ratio` the measure of that name.
+    /// Makes the triangle with its corners at `points`, counter-clockwise unless it is inverted. `lengths` are those of
+    /// a unit of each coordinate. `mean_area` is that of the mesh, and `size_ratio` the measure of that name.
     #[inline]
     pub(crate) fn new(
         mut points: [[f64; 2]; 3],
@@ -100,7 +102,7 @@ impl Triangle {
         Self {
             edges,
             lengths: edges.map(length),
-            // Factors above zero leave its sign as it is.
+            // Factors above zero keep the sign.
             doubled_area: orientation(&points, &[0, 1, 2])
                 * (lengths[0] * shrink)
                 * (lengths[1] * shrink),
@@ -111,15 +113,15 @@ impl Triangle {
         }
     }
 
-    /// The smallest and the largest angle in degrees, of the mirror image if the triangle is inverted.
+    /// The smallest and the largest angle, in degrees; those of the mirror image if the triangle is inverted.
     #[inline]
     fn angles(&self) -> [f64; 2] {
         *self.angles.get_or_init(|| {
             if self.lengths.contains(&0.0) {
                 return [0.0, 180.0];
             }
-            // The cotangent of each angle is a dot product over the same doubled area: the largest is the smallest
-            // angle's.
+            // The cotangent of each angle is a dot product divided by the same doubled area. The largest one belongs to
+            // the smallest angle.
             let [a, b, c] = self.edges;
             let [u, v, w] = [dot(a, b), -dot(a, c), dot(b, c)];
             let area = self.doubled_area.abs();
@@ -156,7 +158,7 @@ impl Triangle {
     }
 
     pub(crate) fn aspect_ratio(&self) -> f64 {
-        // At least 1 but for rounding.
+        // It is at least 1, except for rounding.
         unbounded(self.longest() * self.perimeter() / (2.0 * SQRT_3 * self.doubled_area.abs()))
             .max(1.0)
     }
@@ -191,7 +193,7 @@ impl Triangle {
         ((most - 60.0) / 120.0).max((60.0 - least) / 60.0).clamp(0.0, 1.0)
     }
 
-    /// q of a metric.
+    /// The value q of a metric.
     pub(crate) fn metric(&self, metric: Metric) -> f64 {
         let is_positive = self.doubled_area > 0.0;
         if metric.properties().barrier && !is_positive {
@@ -201,8 +203,8 @@ impl Triangle {
         let mean_area = self.mean_area * self.per_unit * self.per_unit;
         let mut corner = Corner { a, b, mean_area };
         if is_positive != (corner.doubled_area() > 0.0) {
-            // Rounding has changed the sign of the area. In coordinates along and across the first edge, that sign is
-            // the sign of a single coordinate, which takes the exact one.
+            // Rounding has changed the sign of the area. With axes along and across the first edge, that sign is the
+            // sign of a single coordinate, which is set to the exact one.
             let length = self.lengths[0];
             corner.a = [length, 0.0];
             corner.b = [dot(a, b) / length, self.doubled_area / length];
@@ -215,7 +217,7 @@ impl Triangle {
     }
 }
 
-/// A ratio whose denominator may be zero: infinite, also where the numerator is zero too.
+/// A ratio whose denominator may be zero. It is then infinite, even if the numerator is zero too.
 fn unbounded(ratio: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }

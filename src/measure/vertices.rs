@@ -1,15 +1,15 @@
-//! Vertices of which a mesh has no need.
+//! Finds duplicate and unused vertices.
 
 use crate::measure::measured::Measured;
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_ranges;
 
 impl Measured<'_> {
-    /// The vertices at exactly the place of one that comes before them, ascending. Such pairs may be meant, as along a weir
-    /// or a crack.
+    /// Returns the vertices at exactly the position of an earlier vertex, ascending. Such pairs may be intended, for
+    /// example along a weir or a crack.
     pub fn duplicate_vertices(&self) -> Vec<u32> {
         let points = self.points();
-        // Zero has two signs.
+        // Adding zero makes the two signs of zero equal.
         let bits = |v: u32| points[v as usize].map(|x| (x + 0.0).to_bits());
         let buckets = points.len() / 4 + 1;
         let bucket = |v: usize| {
@@ -21,7 +21,7 @@ impl Measured<'_> {
         let mut found = map_ranges(buckets, 1 << 12, |range| {
             let mut found = Vec::new();
             for bucket in range {
-                // Ascending within equal places, so that the first stays.
+                // Ascending within equal positions, so that the first vertex is not listed.
                 let mut members: Vec<([u64; 2], u32)> =
                     groups.of(bucket).iter().map(|&v| (bits(v), v)).collect();
                 members.sort_unstable();
@@ -35,10 +35,10 @@ impl Measured<'_> {
         found
     }
 
-    /// The vertices that no triangle uses, ascending.
+    /// Returns the vertices that no triangle uses, ascending.
     pub fn unused_vertices(&self) -> Vec<u32> {
         let topology = self.topology();
-        // Stars that were forgotten are found again here, not by the first of many threads.
+        // Finds dropped stars again here, before many threads need them.
         topology.star(0);
         let unused = |v: &u32| topology.star(*v).is_empty();
         map_ranges(self.points().len(), 1 << 14, |range| {

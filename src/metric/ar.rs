@@ -28,7 +28,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (q - 1.0) * (q + 1.0)
 }
 
-/// Value and derivatives of [`value`].
+/// Value and derivatives of [`value`] by the shape m = excess / area.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let inverse_area = t.area.constant(1.0) / t.area;

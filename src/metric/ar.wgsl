@@ -1,5 +1,5 @@
-// Aspect ratio q = s / area, s = excess + area being √3/6 times the sum of the squared lengths (Dompierre et al. 2005).
-// Equal to imr.
+// Aspect ratio q = s / area, with s = excess + area = √3/6 times the sum of the squared lengths (Dompierre et al.
+// 2005). Equal to imr.
 
 fn ar_value(t: Invariants) -> f32 {
     let q = (t.excess + t.area) / t.area;

@@ -1,4 +1,4 @@
-// Relative deviation of the area from the mean: q = |S/S_mean - 1|. q² is quadratic in one vertex.
+// Relative deviation of the area from the mean: q = |S/S_mean - 1|. q² is a quadratic function of one vertex.
 
 fn area_value(t: Invariants) -> f32 {
     let q = t.area_less_mean / t.mean;

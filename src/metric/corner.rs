@@ -39,8 +39,8 @@ impl<T: Real> Corner<T> {
         self.a[0] * self.b[1] - self.a[1] * self.b[0]
     }
 
-    /// T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of their squares is
-    /// |T|² - 2 det T, without the cancellation of that difference.
+    /// Returns T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of their squares is |T|² - 2 det T,
+    /// without the cancellation of that difference.
     #[inline(always)]
     fn distortion(&self) -> [T; 2] {
         let ([ax, ay], [bx, by]) = (self.a, self.b);
@@ -81,7 +81,8 @@ impl<T: Real> Corner<T> {
         )
     }
 
-    /// [`Self::expansion`] of a function of the shape m = excess / area with its first two derivatives.
+    /// Does the same as [`Self::expansion`] for a function of the shape m = excess / area, given its first two
+    /// derivatives.
     #[inline(always)]
     fn expansion_by_shape(
         &self,
@@ -105,13 +106,13 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// [`Self::expansion`] of a function of the excess and the area.
+    /// Does the same as [`Self::expansion`] for a function of the excess and the area.
     #[inline(always)]
     fn expansion_by_invariants(&self, slopes: &InvariantSlopes<T>) -> Dual<T> {
         let InvariantSlopes { unit, value, excess, area, excess_area, area_area } = *slopes;
         let ([ex, ey], [dx, dy]) = self.gradients();
         let (ex, ey, dx, dy) = (ex * unit, ey * unit, dx * unit, dy * unit);
-        // The gradients of ∂f/∂excess and ∂f/∂area.
+        // The gradients of ∂f/∂excess and of ∂f/∂area.
         let (px, py) = (times(excess_area, dx), times(excess_area, dy));
         let rx = sum(times(excess_area, ex), times(area_area, dx));
         let ry = sum(times(excess_area, ey), times(area_area, dy));
@@ -132,8 +133,8 @@ impl<T: Real> Corner<T> {
     }
 }
 
-// Sums and products of derivatives that may vanish for any triangle: what vanishes costs nothing. No closures: they
-// would not be compiled for the lanes' instructions.
+// Sums and products of derivatives, where `None` is a derivative that is zero for every triangle and costs nothing.
+// They are no closures, which would not be compiled for the lanes' instructions.
 
 #[inline(always)]
 #[allow(clippy::manual_map)]
@@ -188,35 +189,35 @@ pub struct Invariants<T> {
     pub mean: f64,
 }
 
-/// The value of a function of the [`Invariants`] and its derivatives. The form is the metric's choice: the more special it
-/// is, the less its sweeps cost.
+/// The value of a function of the [`Invariants`] and its derivatives. A metric chooses the form. The more special the
+/// form, the cheaper the metric's sweeps.
 #[derive(Clone, Copy, Debug)]
 pub enum Slopes<T> {
     /// A function of the shape m = excess / area alone.
     ByShape {
-        /// One over the area.
+        /// The inverse of the area.
         inverse_area: T,
         /// The shape m.
         shape: T,
-        /// The function itself.
+        /// The value of the function.
         value: T,
-        /// The derivative by m.
+        /// The derivative with respect to m.
         first: T,
-        /// The second derivative by m.
+        /// The second derivative with respect to m.
         second: T,
     },
     /// A function of the excess and the area that is linear in the excess.
     ByInvariants(InvariantSlopes<T>),
 }
 
-/// The value of a function of the excess and the area, linear in the excess, and its partial derivatives, named by what
-/// they are taken by. They are by the invariants times `unit`, so that they have no dimension. `None` is a derivative that
-/// is zero for every triangle.
+/// The value of a function of the excess and the area that is linear in the excess, and its partial derivatives, each
+/// named by its variables. They are derivatives with respect to the invariants times `unit`, so that they have no
+/// dimension. `None` is a derivative that is zero for every triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct InvariantSlopes<T> {
-    /// One over an area, of the triangle or of the mean.
+    /// The inverse of an area, either that of the triangle or the mean.
     pub unit: T,
-    /// The function itself.
+    /// The value of the function.
     pub value: T,
     /// The derivative by unit · excess.
     pub excess: Option<T>,

@@ -1,9 +1,10 @@
-//! Newton's direction where the Hessian need not be positive.
+//! Newton's direction for a Hessian that need not be positive definite.
 
 use glam::DVec2;
 
-/// The Newton direction -H⁻¹g for the Hessian xx, xy, yy, of which the absolute eigenvalues are taken, and no smaller ones than `floor` times
-/// the larger. Zero or not finite where there is none.
+/// Returns the Newton direction -H⁻¹g. The Hessian xx, xy, yy is made positive definite: its eigenvalues are replaced
+/// by their absolute values, and raised to at least `floor` times the larger. Zero or not finite if there is no
+/// direction.
 pub(crate) fn descent(g: DVec2, [xx, xy, yy]: [f64; 3], floor: f64) -> DVec2 {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = half.hypot(xy);

@@ -5,8 +5,8 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The arithmetic of a metric's formulas. Implemented by `f64` and SIMD vectors of it for values, and by
-/// [`Dual`] for derivatives.
+/// The arithmetic of a metric's formulas. Implemented by `f64` and SIMD vectors of it for values, and by [`Dual`] for
+/// derivatives.
 ///
 /// Formulas avoid closures and iterators over such numbers: calls through the standard library are
 /// not compiled for SIMD instructions, which makes them several times slower.
@@ -30,8 +30,8 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// Calls a function of such numbers; those of SIMD vectors as code of its own, compiled for their instructions, so that
-    /// what calls it stays small enough to be compiled in seconds.
+    /// Calls a function of such numbers. For SIMD vectors it is compiled as separate code for their instructions, so
+    /// that the caller stays small enough to be compiled in seconds.
     #[inline(always)]
     fn apart<R>(self, function: impl FnOnce() -> R) -> R {
         function()

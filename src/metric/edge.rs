@@ -29,7 +29,7 @@ pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
     (most - least) / least
 }
 
-/// The smooth model of q² - 1 that Newton's method minimizes: a p-norm with exponent k = 2^`sharpness`.
+/// The smooth model of q² - 1 that Newton's method minimizes: a p-norm with exponent k = 2^`sharpness`, minus 1.
 #[inline(always)]
 pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
     // The p-norm over pairs of edges: (max/min) [mean A · mean B]^(1/k) with A = (L/max)^k and
@@ -73,7 +73,7 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, sharpness: u32) -> Dual<T> {
     }
     let q = root * (most * (least.constant(1.0) / least));
 
-    // Shares of the two moving edges in both sums, and u, v = ∇L/L of these edges.
+    // The shares of the two moving edges in both sums, and the vectors u, v = ∇L/L of these edges.
     let shares = one / (a * b);
     let (wa, wb) = (b * shares, a * shares);
     let (wa0, wa1, wb0, wb1) = (a0 * wa, a1 * wa, b0 * wb, b1 * wb);
@@ -82,8 +82,8 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, sharpness: u32) -> Dual<T> {
     let mean_a = [u[0] * wa0 + v[0] * wa1, u[1] * wa0 + v[1] * wa1];
     let mean_b = [u[0] * wb0 + v[0] * wb1, u[1] * wb0 + v[1] * wb1];
     let (gx, gy) = (mean_a[0] - mean_b[0], mean_a[1] - mean_b[1]);
-    // Hessian of the logarithm: the edges' own curvature, (2 - L u uᵀ)/L, and how their
-    // shares shift, k times the spread of u over the edges.
+    // Hessian of the logarithm: the curvature of each edge, (2 - L u uᵀ)/L, and the change of the shares, k times the
+    // spread of u over the edges.
     let k = f64::from(1u32 << sharpness);
     let (net_a, net_b) = (wa0 - wb0, wa1 - wb1);
     let (more_a, more_b) = ((wa0 + wb0) * k - net_a, (wa1 + wb1) * k - net_b);

@@ -1,6 +1,6 @@
-// Edge ratio q = Lmax/Lmin. Newton's method minimizes the p-norm over pairs of edges, k = 2^sharpness:
-// q² ≈ (max/min) [mean A · mean B]^(1/k), A = (L/max)^k, B = (min/L)^k over squared lengths L.
-// Powers are squarings and square roots of ratios below 1, so nothing overflows, whatever k is.
+// Edge ratio q = Lmax/Lmin. Newton's method minimizes a p-norm over pairs of edges, with the exponent k = 2^sharpness:
+// q² ≈ (max/min) [mean A · mean B]^(1/k), A = (L/max)^k, B = (min/L)^k, over squared lengths L. Powers are computed by
+// squaring, and roots by square roots, of ratios below 1, so nothing overflows for any k.
 
 struct EdgePowers {
     lengths: vec3<f32>,
@@ -33,7 +33,7 @@ fn edge_powers(t: Corner) -> EdgePowers {
     return EdgePowers(l, most / least, a, b);
 }
 
-// The p-norm less one.
+// The p-norm minus 1.
 fn edge_norm(p: EdgePowers) -> f32 {
     var root = (p.a.x + p.a.y + p.a.z) * (p.b.x + p.b.y + p.b.z) / 9.0;
     for (var i = 0u; i < sharpness; i++) {
@@ -54,10 +54,10 @@ fn edge_symmetric(u: vec2<f32>, v: vec2<f32>) -> vec3<f32> {
 fn edge_derivatives(t: Corner) -> Derivatives {
     let p = edge_powers(t);
     let k = f32(1u << sharpness);
-    // Shares of each edge in the two sums; the third edge does not move with the vertex.
+    // The share of each edge in the two sums; the third edge does not move with the vertex.
     let wa = p.a / (p.a.x + p.a.y + p.a.z);
     let wb = p.b / (p.b.x + p.b.y + p.b.z);
-    // u = ∇L / L of the two edges that do; their L have Hessian 2 times the identity.
+    // u = ∇L / L and v = ∇L / L of the two moving edges; the Hessian of each L is 2 times the identity.
     let u = -2.0 * t.a / p.lengths.x;
     let v = -2.0 * t.b / p.lengths.y;
     let mean_a = wa.x * u + wa.y * v;
@@ -67,7 +67,7 @@ fn edge_derivatives(t: Corner) -> Derivatives {
     let vv = 0.5 * edge_symmetric(v, v);
     let net = wa - wb;
     let both = wa + wb;
-    // Hessian of the logarithm: the edges' own curvature, and how their shares shift.
+    // The Hessian of the logarithm: the curvature of each edge, and the change of the shares.
     let own = net.x * (vec3(2.0, 0.0, 2.0) / p.lengths.x - uu)
         + net.y * (vec3(2.0, 0.0, 2.0) / p.lengths.y - vv);
     let spread = both.x * uu + both.y * vv

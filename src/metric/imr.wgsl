@@ -1,4 +1,4 @@
-// Inverse mean ratio q = 1 + m, m = excess / area: q² - 1 = m (m + 2) without cancellation (Munson 2007).
+// Inverse mean ratio q = 1 + m, with m = excess / area: q² - 1 = m (m + 2), free of cancellation (Munson 2007).
 
 fn imr_value(t: Invariants) -> f32 {
     let m = t.excess / t.area;

@@ -1,6 +1,6 @@
-//! The constants of a metric.
+//! The properties of a metric.
 
-/// Constants of a metric q: a description, and parameters of its Newton steps.
+/// Properties of a metric q: a description, and parameters of its Newton steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Properties {
     /// The name on the command line. The metric's files have the same name, with `_` for `-`.
@@ -22,7 +22,8 @@ pub struct Properties {
     /// Whether the objective is quadratic in the position of one vertex, so that one Newton step is exact and its
     /// decrease needs no test.
     pub quadratic: bool,
-    /// Absolute eigenvalues of a patch's Hessian are raised to at least this share of the largest.
+    /// The eigenvalues of a patch's Hessian are replaced by their absolute values, and raised to at least this share of
+    /// the largest.
     pub eigenvalue_floor: f64,
     /// The largest inverse mean ratio that the shape guard lets a step leave, unless the patch had a worse one
     /// before; see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite if the metric has a barrier.

@@ -21,7 +21,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("rms.wgsl"),
 };
 
-/// q² - 1, with q² = (excess + area) / mean. The area less the mean is exact where they are near each other.
+/// q² - 1, with q² = (excess + area) / mean. The difference area - mean is exact if the two are near each other.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (t.excess + (t.area - t.mean)) * (1.0 / t.mean)

@@ -1,5 +1,5 @@
-// Root mean square edge length over that of the equilateral triangle of mean area: q² = (excess + area) / mean.
-// Quadratic: a Newton step moves the vertex to the mean of its one-ring.
+// Root mean square edge length, relative to that of the equilateral triangle of mean area: q² = (excess + area) / mean.
+// It is quadratic, and a Newton step moves the vertex to the mean of its one-ring.
 
 fn rms_value(t: Invariants) -> f32 {
     return (t.excess + t.area_less_mean) / t.mean;

@@ -1,4 +1,4 @@
-//! Schemes: which metric each sweep uses.
+//! Schemes: the metric of each sweep.
 
 use crate::metric::table::{Metric, UnknownMetric};
 
@@ -9,27 +9,27 @@ use crate::metric::table::{Metric, UnknownMetric};
 pub struct Scheme(Vec<Metric>);
 
 impl Scheme {
-    /// The most metrics a scheme can have: the stop rule looks back over four periods or more, and a
-    /// device keeps 256 evaluations.
+    /// The most metrics that a scheme can have. The stop rule looks back over four periods or more, and a device stores
+    /// 256 evaluations.
     pub const LONGEST: u32 = 60;
 
-    /// A scheme of the given metrics; `None` if there are none.
+    /// Makes a scheme of the given metrics; `None` if there are none.
     pub fn new(metrics: impl Into<Vec<Metric>>) -> Option<Self> {
         let metrics = metrics.into();
         (!metrics.is_empty()).then_some(Self(metrics))
     }
 
-    /// The metric that judges convergence.
+    /// Returns the base metric, which judges convergence.
     pub fn base(&self) -> Metric {
         self.0[0]
     }
 
-    /// The metric of a sweep. Sweeps count from 1, and sweep 1 uses the base metric.
+    /// Returns the metric of a sweep. Sweeps count from 1, and sweep 1 uses the base metric.
     pub fn metric(&self, sweep: u32) -> Metric {
         self.0[(sweep.max(1) as usize - 1) % self.0.len()]
     }
 
-    /// The number of sweeps after which the scheme repeats.
+    /// Returns the number of sweeps after which the scheme repeats.
     pub fn period(&self) -> u32 {
         self.0.len() as u32
     }
@@ -39,7 +39,7 @@ impl Scheme {
         &self.0
     }
 
-    /// Whether there is another metric than the base.
+    /// Whether the scheme has metrics other than the base.
     pub fn alternates(&self) -> bool {
         self.0.iter().any(|&metric| metric != self.base())
     }

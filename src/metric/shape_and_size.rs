@@ -1,4 +1,4 @@
-//! Metrics of shape and size in a balance: μ₂ + 2 w μ₅₆ of TMOP.
+//! Metrics that balance shape and size: μ₂ + 2 w μ₅₆ of TMOP.
 
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;

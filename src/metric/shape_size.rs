@@ -1,4 +1,4 @@
-//! The metric SHAPE-SIZE, of shape and size together.
+//! The metric SHAPE-SIZE, which measures shape and size together.
 
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;

@@ -1,5 +1,5 @@
-// Shape and size q = |T - T⁻ᵗ|, T = A W⁻¹, W equilateral of the mean area (TMOP's metric 7): with ε = excess / mean and
-// τ = area / mean, q² = 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ.
+// Shape and size (TMOP's metric 7): q = |T - T⁻ᵗ|, T = A W⁻¹, W equilateral of the mean area. With ε = excess / mean
+// and τ = area / mean, q² = 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ.
 
 fn shape_size_value(t: Invariants) -> f32 {
     let e = t.excess / t.mean;

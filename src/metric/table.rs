@@ -9,8 +9,8 @@ use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
 use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
 
-/// Generates the enum, the table and the formulas from one row per metric. The rare metrics in braces take less time to
-/// compile and more to sweep.
+/// Generates the enum, the table and the formulas from one row per metric. The rare metrics, in braces, take less time
+/// to compile, and their sweeps take longer.
 macro_rules! metrics {
     (
         $(#[$edge_doc:meta])*
@@ -34,10 +34,10 @@ macro_rules! metrics {
         pub(crate) enum OfInvariants { $($variant,)* $($rare,)* }
 
         impl Metric {
-            /// Every metric: those of the paper in the order of its Table 1, then others.
+            /// Every metric: first those of the paper in the order of its Table 1, then the others.
             pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
 
-            /// The metric's constants.
+            /// Returns the metric's properties.
             pub const fn properties(self) -> &'static Properties {
                 match self {
                     Metric::$edge => &$edge_file::PROPERTIES,
@@ -46,7 +46,8 @@ macro_rules! metrics {
                 }
             }
 
-            /// q² - ideal² by every metric, in the order of [`Self::ALL`]. What they have in common is computed once.
+            /// Returns q² - ideal² by every metric, in the order of [`Self::ALL`]. What several metrics need is
+            /// computed once.
             #[inline(always)]
             pub(crate) fn every_excess<T: Real>(corner: &Corner<T>) -> [T; Self::ALL.len()] {
                 let invariants = corner.invariants();
@@ -57,7 +58,7 @@ macro_rules! metrics {
                 ]
             }
 
-            /// The metric's formulas.
+            /// Returns the metric's formulas.
             #[inline(always)]
             pub(crate) const fn formulas(self) -> AnyFormulas {
                 match self {
@@ -68,9 +69,9 @@ macro_rules! metrics {
             }
         }
 
-        /// Evaluates an expression, compiled for each usual metric by itself, with `$f` bound to its [`Formulas`]; nothing for
-        /// a rare metric. `$f` is a constant,
-        /// so that a closure in the expression knows the metric as it is compiled; a variable it would capture.
+        /// Evaluates an expression that is compiled separately for each usual metric, with `$f` bound to its
+        /// [`Formulas`]. Does nothing for a rare metric. `$f` is a constant: so a closure in the expression knows the
+        /// metric at compile time, and would not if it had to capture a variable.
         macro_rules! with_each_metric {
             ($metric:expr, $f:ident => $body:expr) => {
                 match $metric {
@@ -134,14 +135,14 @@ metrics! {
     /// area (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 7).
     ShapeSize = shape_size of invariants;
     => {
-    /// SOFT-SIZE, √(μ₂ + 0.4 μ₅₆): of shape first, |T|² / 2τ - 1, and size second, (τ - 1)² / 2τ, for T as in SHAPE-SIZE
-    /// and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metrics 2 and 56).
+    /// SOFT-SIZE, √(μ₂ + 0.4 μ₅₆), of shape first, μ₂ = |T|² / 2τ - 1, and size second, μ₅₆ = (τ - 1)² / 2τ, with T as
+    /// in SHAPE-SIZE and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metrics 2 and 56).
     SoftSize = soft_size of invariants;
-    /// TMOP-80, √((1 - γ) μ₂ + γ μ₇₇) with γ = 1/2: of shape, |T|² / 2τ - 1, and size, (τ - 1/τ)² / 2, in equal parts, for
-    /// T as in SHAPE-SIZE and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 80).
+    /// TMOP-80, √((1 - γ) μ₂ + γ μ₇₇) with γ = 1/2, of shape, μ₂ = |T|² / 2τ - 1, and size, μ₇₇ = (τ - 1/τ)² / 2, in
+    /// equal parts, with T as in SHAPE-SIZE and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 80).
     Tmop80 = tmop_80 of invariants;
-    /// TMOP-94, √(μ₂ + 1.5 μ₅₆): of shape, |T|² / 2τ - 1, and size, (τ - 1)² / 2τ, for T as in SHAPE-SIZE and τ = det T
-    /// (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 94).
+    /// TMOP-94, √(μ₂ + 1.5 μ₅₆), of shape, μ₂ = |T|² / 2τ - 1, and size, μ₅₆ = (τ - 1)² / 2τ, with T as in SHAPE-SIZE
+    /// and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 94).
     Tmop94 = tmop_94 of invariants;
     }
 }
@@ -151,7 +152,7 @@ metrics! {
 pub(crate) struct OfEdges;
 
 /// The formulas of any metric. Hot loops are compiled for each of the two variants, and a metric of the invariants is
-/// looked up at run time: to compile them for every metric would take minutes.
+/// looked up at run time. Compiling them for every metric would take minutes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum AnyFormulas {
     Edges(OfEdges),
@@ -160,14 +161,15 @@ pub(crate) enum AnyFormulas {
 
 /// The functions of a metric that engines compute.
 pub(crate) trait Formulas: Copy + Sync {
-    /// The metric itself, known to the compiler where its formulas are.
+    /// Returns the metric, which is known at compile time if the formulas are.
     fn metric(self) -> Metric;
 
-    /// The inverse mean ratio of a triangle whose area is positive, as numerator and denominator, which is the doubled
-    /// area. From what the metric is a function of, so that the compiler can share it.
+    /// Returns the inverse mean ratio of a triangle with positive area, as numerator and denominator; the denominator
+    /// is the doubled area. It is computed from the quantities that the metric uses too, so that the compiler can share
+    /// them.
     fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T);
 
-    /// q² - ideal². Sums of it keep their digits on good meshes.
+    /// Returns q² - ideal². Sums of it keep their digits on good meshes.
     fn excess<T: Real>(self, corner: &Corner<T>) -> T;
 
     /// The function that Newton's method minimizes: [`Self::excess`] if that is smooth, else a smooth model of it.
@@ -235,7 +237,7 @@ impl Formulas for OfInvariants {
     }
 }
 
-/// Looks the metric up for each triangle.
+/// Looks up the metric for each triangle.
 impl Formulas for AnyFormulas {
     #[inline(always)]
     fn metric(self) -> Metric {
@@ -290,7 +292,7 @@ impl Metric {
         self.properties().name
     }
 
-    /// q² of the ideal triangle, which [`Self::excess`] subtracts.
+    /// Returns q² of the ideal triangle, which [`Self::excess`] subtracts.
     pub const fn ideal_squared(self) -> f64 {
         let ideal = self.properties().ideal;
         ideal * ideal
@@ -301,7 +303,7 @@ impl Metric {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
 
-    /// q² - ideal². Sums of it keep their digits on good meshes.
+    /// Returns q² - ideal². Sums of it keep their digits on good meshes.
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {
         self.formulas().excess(corner)
     }
@@ -329,7 +331,7 @@ impl Metric {
         self.model(&dual, sharpness)
     }
 
-    /// q. Infinite for a flat or inverted triangle if the metric has a barrier.
+    /// Returns q. Infinite for a flat or inverted triangle if the metric has a barrier.
     pub fn quality(self, corner: &Corner<f64>) -> f64 {
         let is_positive = corner.doubled_area() > 0.0;
         if self.properties().barrier && !is_positive {
@@ -353,12 +355,12 @@ impl std::str::FromStr for Metric {
     }
 }
 
-/// A name that is not the name of a metric.
+/// The error for a name that no metric has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no metric is called '{0}'; there are {names}", names = names())]
 pub struct UnknownMetric(pub String);
 
-/// The names of all metrics, for the error message.
+/// Lists the names of all metrics, for the error message.
 fn names() -> String {
     Metric::ALL.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }

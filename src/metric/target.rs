@@ -1,17 +1,17 @@
-//! Target maps: what element is wanted at a place.
+//! Target maps: the element that is wanted at a point.
 
 use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
 
-/// A target map: the symmetric positive matrix S, as xx, xy, yy, by which the element that is wanted at a place becomes
-/// the ideal one, the equilateral triangle of mean area. A metric measures a triangle as S shows it, T = S A W⁻¹: a
-/// target matrix of the target-matrix optimization paradigm (Knupp et al., SIAM J. Sci. Comp. 41, 2019), and the square
-/// root of the tensor of metric-based mesh adaptation.
+/// A target map: the symmetric positive definite matrix S, as xx, xy, yy, that transforms the element wanted at a point
+/// into the ideal one, the equilateral triangle of mean area. A metric measures a triangle transformed by S, T = S A
+/// W⁻¹. S is a target matrix of the target-matrix optimization paradigm (Knupp et al., SIAM J. Sci. Comp. 41, 2019),
+/// and the square root of the tensor of metric-based mesh adaptation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TargetMap<T>(pub(crate) [T; 3]);
 
 impl<T: Real> TargetMap<T> {
-    /// The mean of the maps of a triangle's corners, which is the map of the triangle.
+    /// Returns the map of a triangle: the mean of the maps at its corners.
     #[inline(always)]
     pub(crate) fn mean([a, b, c]: [[T; 3]; 3]) -> Self {
         const THIRD: f64 = 1.0 / 3.0;
@@ -38,26 +38,26 @@ impl<T: Real> TargetMap<T> {
         Self([xx * scale, xy * scale, yy * scale])
     }
 
-    /// A vector as the map shows it.
+    /// Returns a vector transformed by the map.
     #[inline(always)]
     pub(crate) fn apply(&self, [x, y]: [T; 2]) -> [T; 2] {
         let [xx, xy, yy] = self.0;
         [xx * x + xy * y, xy * x + yy * y]
     }
 
-    /// A triangle as the map shows it.
+    /// Returns a triangle transformed by the map.
     #[inline(always)]
     pub(crate) fn show(&self, corner: &Corner<T>) -> Corner<T> {
         let (a, b) = (self.apply(corner.a), self.apply(corner.b));
         Corner { a, b, mean_area: corner.mean_area }
     }
 
-    /// Derivatives by a vertex of the plane, from those by the vertex as the map shows it: S g and S H S.
+    /// Returns the derivatives by a vertex of the plane, S g and S H S, given g and H by the transformed vertex.
     #[inline(always)]
     pub(crate) fn pull_back(&self, shown: Dual<T>) -> Dual<T> {
         let [xx, xy, yy] = shown.hessian;
         let (first, second) = (self.apply([xx, xy]), self.apply([xy, yy]));
-        // The rows of H S, times S from the left.
+        // The rows of H S are multiplied by S from the left.
         let [left, right] = [self.apply([first[0], second[0]]), self.apply([first[1], second[1]])];
         Dual {
             value: shown.value,

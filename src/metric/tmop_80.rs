@@ -1,4 +1,4 @@
-//! The metric TMOP-80, of shape and size in equal parts.
+//! The metric TMOP-80, which weighs shape and size equally.
 
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;

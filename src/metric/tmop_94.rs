@@ -1,4 +1,4 @@
-//! The metric TMOP-94, of shape and size, the milder of the balanced ones.
+//! The metric TMOP-94, which weighs shape and size, size less than SHAPE-SIZE does.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -25,13 +25,13 @@ pub(super) const PROPERTIES: Properties = Properties {
 /// The weight of (τ - 1)² / τ in q² = μ₂ + 1.5 μ₅₆.
 const WEIGHT: f64 = 0.75;
 
-/// q².
+/// The function q² = μ₂ + 1.5 μ₅₆.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     shape_and_size::value(t, WEIGHT)
 }
 
-/// q² and its derivatives by the invariants.
+/// The function q² and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     shape_and_size::slopes(t, WEIGHT)

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 
-/// The most parts that are counted at once. Limited, as each part has its own counter for every group.
+/// The most parts that are counted at once. Each part has its own counter for every group.
 const MOST_PARTS: usize = 8;
 
-/// There is at most one part for this many numbers. Fewer are not worth another thread.
+/// The least number of items for each part. Fewer are not worth another thread.
 const SMALL: usize = 1 << 14;
 
 /// Numbers in groups, ascending within each group.
@@ -20,7 +20,7 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// Groups the numbers below `items`. Each is put in the `N` groups that `keys` returns, all below `groups`.
+    /// Groups the numbers below `items`. Each is put into the `N` groups that `keys` returns, all below `groups`.
     pub(crate) fn new<const N: usize>(
         items: usize,
         groups: usize,
@@ -32,18 +32,18 @@ impl Groups {
         Self { start, items: plain(grouped) }
     }
 
-    /// Where each group starts, and one past the end of the last.
+    /// Returns where each group starts, and one past the end of the last.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.start
     }
 
-    /// The numbers in a group.
+    /// Returns the numbers in a group.
     pub(crate) fn of(&self, group: usize) -> &[u32] {
         &self.items[self.start[group] as usize..self.start[group + 1] as usize]
     }
 
-    /// The groups in chunks of `chunk` groups. Of each chunk: where its groups start, with the end of the last, and its
-    /// numbers.
+    /// Returns the groups in chunks of `chunk` groups. Each chunk has the starts of its groups, with the end of the
+    /// last, and its numbers.
     pub(crate) fn chunks_mut(&mut self, chunk: usize) -> Vec<(&[u32], &mut [u32])> {
         let Self { start, items } = self;
         let last = start.len() - 1;
@@ -53,14 +53,14 @@ impl Groups {
         bounds.zip(parts).collect()
     }
 
-    /// All numbers, group by group.
+    /// Returns all numbers, group by group.
     pub(crate) fn into_items(self) -> Vec<u32> {
         self.items
     }
 }
 
-/// Groups the numbers below `items` by their keys without storing them: calls `put(number, place)` for each place that
-/// a number gets, from any thread. Returns where each group starts, and one past the end of the last.
+/// Groups the numbers below `items` by their keys without storing them. It calls `put(number, place)` for each place
+/// that a number gets, from any thread. Returns where each group starts, and one past the end of the last.
 pub(crate) fn place<const N: usize>(
     items: usize,
     groups: usize,
@@ -69,8 +69,8 @@ pub(crate) fn place<const N: usize>(
 ) -> Vec<u32> {
     let parts = rayon::current_num_threads().min(MOST_PARTS).min(items.div_ceil(SMALL)).max(1);
     let part = |part: usize| part * items / parts..(part + 1) * items / parts;
-    // The counters of a group, one for each part, are side by side, so that their running sum is where each part
-    // writes. No two parts share a counter; counters are atomic only because those of a part are scattered.
+    // The counters of a group, one for each part, are adjacent, so that their running sum is where each part writes. No
+    // two parts share a counter; counters are atomic only because those of a part are scattered.
     let mut next = atomics(groups * parts, 0);
     for_each(parts, &|p| {
         for key in part(p).flat_map(&keys) {
@@ -124,12 +124,12 @@ pub(crate) fn running_sum<T: Send>(
     sum
 }
 
-/// A list of `count` equal numbers that several threads can overwrite.
+/// Makes a list of `count` equal numbers that several threads can overwrite.
 pub(crate) fn atomics(count: usize, number: u32) -> Vec<AtomicU32> {
     (0..count).into_par_iter().map(|_| AtomicU32::new(number)).collect()
 }
 
-/// The plain numbers of a list made by [`atomics`].
+/// Returns the plain numbers of a list made by [`atomics`].
 pub(crate) fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
     atomics.into_iter().map(AtomicU32::into_inner).collect()
 }

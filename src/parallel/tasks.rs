@@ -1,4 +1,4 @@
-//! Tasks on all threads, all by the same rayon loop.
+//! Tasks on all threads, all run by the same rayon loop.
 //!
 //! Rayon compiles its machinery for every loop and every type in it: about forty loops made two thirds of this
 //! library's compile time. Here only small functions are generic; the loop over tasks is compiled once.
@@ -21,7 +21,7 @@ pub(crate) fn for_each_part<P: Send>(
     for_each_of(parts.into_iter().collect(), &task);
 }
 
-/// [`for_each_part`], compiled once for each type of part.
+/// Does the work of [`for_each_part`], compiled once for each type of part.
 fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
     let parts: Vec<Mutex<Option<P>>> = parts.into_iter().map(|p| Mutex::new(Some(p))).collect();
     for_each(parts.len(), &|i| {
@@ -45,7 +45,7 @@ pub(crate) fn map_parts<P: Send, T: Send>(
     made.into_iter().flatten().collect()
 }
 
-/// Runs two tasks at the same time: one on this thread, and one on any.
+/// Runs two tasks at the same time: `here` on this thread, and `there` on any.
 pub(crate) fn meanwhile(there: &mut (dyn FnMut() + Send), here: &mut dyn FnMut()) {
     rayon::in_place_scope(|scope| {
         scope.spawn(|_| there());

@@ -1,4 +1,4 @@
-//! Checkpoints: a run that is to go on later, as bytes.
+//! Checkpoints: the state of a run as bytes, from which the run can continue later.
 
 use glam::DVec2;
 
@@ -7,47 +7,47 @@ use crate::run::objectives::Objectives;
 use crate::run::opening::Opened;
 use crate::run::saved::{CPU, EngineState, Saved};
 
-/// A run that has been left between two sweeps, with all that it takes to go on: on the same engine, to the same bits as if
-/// it had never been left.
+/// The state of a run between two sweeps, with all data needed to continue it. On the same engine the continued run
+/// gives the same bits as one that was never interrupted.
 ///
-/// A [`Keeper`](crate::Keeper) receives it, and [`Smoother::run_kept`](crate::Smoother::run_kept) goes on from it, with the same
-/// mesh and the same options.
+/// A [`Keeper`](crate::Keeper) receives it, and [`Smoother::run_kept`](crate::Smoother::run_kept) continues from it,
+/// with the same mesh and the same options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     pub(crate) about: About,
     pub(crate) saved: Saved,
 }
 
-/// What a checkpoint says besides the state of the sweeps.
+/// The data of a checkpoint other than the state of the sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct About {
     /// A hash of the mesh.
     pub(crate) mesh: u64,
     /// The options, a field on each line.
     pub(crate) options: String,
-    /// The desired objective and where it comes from, if the run has a goal.
+    /// The desired objective and its origin, if the run has a goal.
     pub(crate) goal: Option<(f64, String)>,
-    /// The sweeps on the CPU before a device could begin.
+    /// The result of the sweeps on the CPU before a device could begin.
     pub(crate) opened: Option<Opened>,
 }
 
 impl Checkpoint {
-    /// How the bytes of every checkpoint begin, with the version of what follows.
+    /// The first bytes of every checkpoint, with the version of the format.
     pub const MAGIC: &[u8; 24] = b"gpu-smooth checkpoint 1\n";
 
-    /// Number of sweeps that were done.
+    /// Returns the number of sweeps that were done.
     pub fn sweeps(&self) -> u32 {
         let opened = self.about.opened.as_ref().map_or(0, Opened::sweeps);
         opened + self.saved.sweeps()
     }
 
-    /// The name of the adapter that the last sweep was done on; `None` if it was done on the CPU.
+    /// Returns the name of the adapter that did the last sweep; `None` for the CPU.
     pub fn adapter(&self) -> Option<&str> {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// The checkpoint as bytes, with a checksum: about 16 bytes for each vertex, up to 76 once sweeps are corrected from coarser
-    /// levels.
+    /// Returns the checkpoint as bytes, with a checksum: about 16 bytes for each vertex, and up to 76 once sweeps are
+    /// corrected from coarser levels.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Self { about, saved } = self;
         let mut out = Writer(Self::MAGIC.to_vec());
@@ -82,8 +82,8 @@ impl Checkpoint {
         out.0
     }
 
-    /// The checkpoint that [`to_bytes`](Self::to_bytes) gave. `None` if the bytes are anything else, or any of them is not as it
-    /// was.
+    /// Reads a checkpoint from the bytes that [`to_bytes`](Self::to_bytes) returned. `None` if the bytes are anything
+    /// else, or were changed.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (content, sum) = bytes.split_last_chunk()?;
         if checksum(content) != u32::from_le_bytes(*sum) {
@@ -116,14 +116,14 @@ impl Checkpoint {
     }
 }
 
-/// The checksum of gzip.
+/// The checksum that gzip uses.
 fn checksum(bytes: &[u8]) -> u32 {
     let mut sum = flate2::Crc::new();
     sum.update(bytes);
     sum.sum()
 }
 
-/// Numbers are written with their least byte first, and lists after their length.
+/// Writes numbers with their least byte first, and lists after their length.
 struct Writer(Vec<u8>);
 
 impl Writer {
@@ -163,7 +163,7 @@ impl<'b> Reader<'b> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// A list of items that each take at least so many bytes, so that no length is believed that cannot be.
+    /// Reads a list of items that each take at least `least` bytes, so that an impossible length is refused.
     fn list<T>(
         &mut self,
         least: usize,
@@ -258,7 +258,7 @@ mod tests {
             damaged[at] ^= 0x10;
             assert_eq!(Checkpoint::from_bytes(&damaged), None, "byte {at}");
             assert_eq!(Checkpoint::from_bytes(&bytes[..at]), None, "cut at {at}");
-            // A length that no file can hold, under a checksum that is right.
+            // A length that no file can have, with a correct checksum.
             let mut huge = bytes[..bytes.len() - 4].to_vec();
             let end = (at + 8).min(huge.len());
             huge[at.min(end)..end].fill(0xFF);

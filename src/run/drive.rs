@@ -18,23 +18,23 @@ use crate::run::step::Step;
 use crate::run::stop::Stop;
 use crate::run::sweeps;
 
-/// A callback that is told the progress of a run and can end it: any `FnMut(&Progress) -> ControlFlow<()>`.
+/// A callback that receives the progress of a run and can end it: any `FnMut(&Progress) -> ControlFlow<()>`.
 pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
 
 impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
-/// The progress of a run, for a display.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// The part of the run that is under way.
+    /// The part of the run in progress.
     pub phase: Phase,
-    /// Number of sweeps done. [`Phase::Reference`] is up to three runs, each counted from 0.
+    /// Number of sweeps done. [`Phase::Reference`] takes up to three runs, each counted from 0.
     pub sweep: u32,
-    /// The objective by the base metric of the scheme that is run.
+    /// The objective by the base metric of the scheme in use.
     pub f: f64,
 }
 
-/// The part of a run that is under way.
+/// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// The search for the optimum of [`Desired::Auto`](crate::Desired::Auto).
@@ -42,7 +42,7 @@ pub enum Phase {
     /// The smoothing of the mesh.
     Smoothing,
     /// The stage after the last sweep in which the worst triangles are improved
-    /// ([`Options::improve_worst`](crate::Options::improve_worst)): it goes from pass to pass, and no sweep is done.
+    /// ([`Options::improve_worst`](crate::Options::improve_worst)). It consists of passes, not of sweeps.
     Improving,
 }
 
@@ -62,12 +62,12 @@ impl<'a> Strategy<'a> {
         }
     }
 
-    /// All distinct steps that a run by `plan` can take.
+    /// Lists all distinct steps that a run by `plan` can take.
     pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
         if corrected { Corrections::steps(plan) } else { plan.steps() }
     }
 
-    /// Does up to `sweeps` further sweeps; fewer if the run ends.
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
     async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -81,7 +81,7 @@ impl<'a> Strategy<'a> {
         }
     }
 
-    /// What decides on corrections, for a state that is kept.
+    /// Returns the state of the corrections, for a saved state of the run.
     fn saved(&self) -> Option<Vec<u64>> {
         match self {
             Strategy::Sweeps => None,
@@ -89,7 +89,7 @@ impl<'a> Strategy<'a> {
         }
     }
 
-    /// Goes on from a state, of which the history is returned.
+    /// Restores a saved state, and returns its history.
     fn restored(
         &mut self,
         engine: &mut impl Engine,
@@ -124,15 +124,15 @@ pub(crate) struct End {
     pub(crate) stop: Stop,
 }
 
-/// What is to be done on an engine, and from where.
+/// The work for an engine, and the state to start from.
 pub(crate) struct Course<'a> {
     pub(crate) plan: &'a Plan,
-    /// Whether it is an error that the engine has no room for the coarser levels.
+    /// Whether a lack of room for the coarser levels is an error.
     pub(crate) must: bool,
     pub(crate) phase: Phase,
-    /// Number of sweeps before this run, for the observer.
+    /// Number of sweeps before this run, to be added in reports to the observer.
     pub(crate) done: u32,
-    /// The state that the run goes on from, if it is not its start.
+    /// The saved state that the run continues from, if it does not begin at its start.
     pub(crate) from: Option<Saved>,
 }
 
@@ -149,7 +149,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
         Some(saved) => strategy.restored(&mut engine, plan, saved)?,
         None => History::new(plan),
     };
-    // One sweep at first: its duration is not known yet, and drivers kill submissions that take seconds.
+    // Begins with one sweep, as its duration is not known yet, and drivers stop submissions that take seconds.
     let mut batch = 1;
     let stop = loop {
         let (start, known) = (Instant::now(), history.f().len());
@@ -187,15 +187,15 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
     Ok(End { history, positions, alternated, corrections, levels_left_out, stop })
 }
 
-/// Why a run could not be driven to its end.
+/// The reason why a run could not be completed.
 pub(crate) enum DriveError {
     /// The device failed.
     Device(GpuError),
-    /// The device has no room for the coarser levels, and the run must have them.
+    /// The device has no room for the coarser levels, and the run requires them.
     LeftOut(GpuError),
-    /// f is not a finite number after this sweep.
+    /// f is infinite or NaN after this sweep.
     NotFinite { sweep: u32 },
-    /// The state to go on from is of another mesh.
+    /// The saved state is from another mesh.
     Foreign,
 }
 
@@ -205,8 +205,8 @@ impl From<GpuError> for DriveError {
     }
 }
 
-/// The number of sweeps to ask for next, such that the observer is called about ten times a second.
-/// Results do not depend on it.
+/// Returns the number of sweeps to do next, chosen so that the observer is called about ten times a second. Results do
+/// not depend on it.
 fn next_batch(batch: u32, took: Duration) -> u32 {
     let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);
     (fits as u32).clamp(1, 4 * batch).min(100)

@@ -1,4 +1,4 @@
-//! The interface between the control of a run and the code that computes it.
+//! The interface between the control of a run and the engine that computes it.
 
 use glam::DVec2;
 use std::borrow::Cow;
@@ -23,8 +23,8 @@ pub(crate) trait Engine: Send {
     /// Evaluates the tracked objectives at the current positions.
     fn objectives(&mut self) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
 
-    /// Does sweeps until all `steps` are done or the history says that the run is over. Records the objectives after
-    /// each sweep, and before the first if the history is empty. Remembers the best state.
+    /// Does sweeps until all `steps` are done or the stop rule of the history ends the run. Records the objectives
+    /// after each sweep, and before the first if the history is empty. Stores the best state.
     ///
     /// A device may do all sweeps in one submission, and apply the stop rule itself.
     fn sweeps(
@@ -33,14 +33,14 @@ pub(crate) trait Engine: Send {
         history: &mut History,
     ) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// The current positions of all vertices.
+    /// Returns the current positions of all vertices.
     fn positions(&mut self) -> impl Future<Output = Result<Cow<'_, [DVec2]>, GpuError>> + Send;
 
-    /// The positions of all vertices in the best state of which the objectives were evaluated; the last state if every sweep by the
-    /// plan lowers f.
+    /// Returns the positions of all vertices in the best of the states whose objectives were evaluated. That is the
+    /// last state if every sweep by the plan lowers f.
     fn best_positions(&mut self) -> impl Future<Output = Result<Vec<DVec2>, GpuError>> + Send;
 
-    /// Gives back the coarser levels, if the engine has any.
+    /// Returns the coarser levels, if the engine has any, and leaves it without.
     fn take_hierarchy(&mut self) -> Option<Hierarchy>;
 
     /// Hands the coarser levels to the engine. Fails with [`GpuError::Limit`] if there is no room for them.
@@ -54,8 +54,8 @@ pub(crate) trait Engine: Send {
     ) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
 
     /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`. If `accelerated`,
-    /// the correction also takes account of what the gradient did since the last ones that were; see
-    /// [`secant`](crate::run::secant). If not, what is remembered of them is forgotten.
+    /// the correction also uses secant pairs, the changes of the gradient since earlier accelerated corrections; see
+    /// [`secant`](crate::run::secant). If not, the pairs are dropped.
     fn propose(
         &mut self,
         step: &Step,
@@ -75,8 +75,8 @@ pub(crate) trait Engine: Send {
         anew: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
-    /// The mean excess, as in a [`Proposal`], if all free vertices were moved by `length` times the correction;
-    /// `None` if that inverts a triangle or breaks the shape guard.
+    /// Returns the mean excess, as in a [`Proposal`], after a move of all free vertices by `length` times the
+    /// correction. `None` if that inverts a triangle or breaks the shape guard.
     fn excess_along(
         &mut self,
         length: f64,
@@ -85,16 +85,17 @@ pub(crate) trait Engine: Send {
     /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// The present state, between two sweeps: if `whole`, all that it takes to go on to the same bits, else the positions.
+    /// Returns the present state, between two sweeps. If `whole`, it has all data needed to continue to the same bits,
+    /// else only the positions.
     fn save(&mut self, whole: bool) -> impl Future<Output = Result<EngineState, GpuError>> + Send;
 
-    /// Takes on a state, before the first sweep. Returns whether the state is of this mesh and of an engine that this one
-    /// can go on from. A state that is not whole leaves the engine without coarser levels.
+    /// Restores a saved state, before the first sweep. Returns whether the state is from this mesh and from an engine
+    /// that this one can continue. A state that is not whole leaves the engine without coarser levels.
     fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
 }
 
-/// How many times vertices are left out of a correction. After once there were triangles that gave way on meshes of 2,000
-/// vertices, after twice none.
+/// Number of times that vertices are left out of a correction. On meshes of 2,000 vertices, some triangles were still
+/// broken after one time, and none after two.
 pub(crate) const LEFT_OUT: usize = 2;
 
 /// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric, of which EDGE is
@@ -105,7 +106,7 @@ pub(crate) struct Proposal {
     pub(crate) here: f64,
     /// The derivative of the objective along the correction.
     pub(crate) slope: f64,
-    /// The objective at the length that was tried. `None` if that inverts a triangle or breaks the shape guard. Not to
-    /// be read if `slope` is not negative.
+    /// The objective at the length that was tried. `None` if that inverts a triangle or breaks the shape guard. Only
+    /// meaningful if `slope` is negative.
     pub(crate) there: Option<f64>,
 }

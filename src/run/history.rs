@@ -5,7 +5,8 @@ use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::{Stop, StopRule};
 
-/// The objectives before the first sweep and after each, the best of them, and why the run ended, if it has.
+/// The objectives before the first sweep and after each, the best of them, and the reason why the run has ended, if it
+/// has.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     rule: StopRule,
@@ -20,7 +21,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// An empty history of a run by `plan`.
+    /// Makes an empty history of a run by `plan`.
     pub(crate) fn new(plan: &Plan) -> Self {
         Self {
             rule: plan.stop,
@@ -34,7 +35,8 @@ impl History {
         }
     }
 
-    /// The history of a run that goes on: the objectives so far, and the share of f that is estimated to be left.
+    /// Makes the history of a run that continues, from the objectives so far and the share of f that is estimated to be
+    /// left.
     pub(crate) fn resumed(plan: &Plan, log: &[Objectives], remaining: Option<f64>) -> Self {
         let mut history = Self::new(plan);
         for objectives in log {
@@ -44,7 +46,7 @@ impl History {
         history
     }
 
-    /// The first sweep after `known` evaluations after which the base objective is not a finite number, if there is one.
+    /// Returns the first sweep after `known` evaluations after which the base objective is not finite, if there is one.
     pub(crate) fn first_not_finite(&self, known: usize) -> Option<u32> {
         (known..self.f.len()).find(|&k| !self.f[k].is_finite()).map(|k| k as u32)
     }
@@ -71,8 +73,8 @@ impl History {
         is_best
     }
 
-    /// Sets why the run has ended, if it has, and the share of f that is estimated to be left, for callers that judge
-    /// themselves.
+    /// Sets the reason why the run has ended, if it has, and the share of f that is estimated to be left. For callers
+    /// that apply the stop rule themselves.
     pub(crate) fn end(&mut self, stop: Option<Stop>, remaining: Option<f64>) {
         self.stop = stop;
         self.remaining = remaining;
@@ -83,27 +85,27 @@ impl History {
         self.f.is_empty()
     }
 
-    /// Number of sweeps recorded.
+    /// Returns the number of sweeps recorded.
     pub(crate) fn sweeps(&self) -> u32 {
         (self.f.len() as u32).saturating_sub(1)
     }
 
-    /// The base objective before the first sweep and after each.
+    /// Returns the base objective before the first sweep and after each.
     pub(crate) fn f(&self) -> &[f64] {
         &self.f
     }
 
-    /// The latest base objective; NaN if none is recorded.
+    /// Returns the latest base objective; NaN if none is recorded.
     pub(crate) fn last(&self) -> f64 {
         self.f.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The least base objective; NaN if none is recorded.
+    /// Returns the least base objective; NaN if none is recorded.
     pub(crate) fn least(&self) -> f64 {
         self.f.get(self.best).copied().unwrap_or(f64::NAN)
     }
 
-    /// All objectives, before the first sweep and after each.
+    /// Returns all objectives, before the first sweep and after each.
     pub(crate) fn log(&self) -> &[Objectives] {
         &self.log
     }
@@ -113,17 +115,17 @@ impl History {
         self.log
     }
 
-    /// The stop rule of the run.
+    /// Returns the stop rule of the run.
     pub(crate) fn rule(&self) -> StopRule {
         self.rule
     }
 
-    /// Why the run has ended, if it has.
+    /// Returns the reason why the run has ended, if it has.
     pub(crate) fn stop(&self) -> Option<Stop> {
         self.stop
     }
 
-    /// The share of f that is estimated to be left to gain; `None` if there is no estimate. See
+    /// Returns the share of f that is estimated to be left to gain; `None` if there is no estimate. See
     /// [`StopRule::remaining`].
     pub(crate) fn remaining(&self) -> Option<f64> {
         self.remaining

@@ -1,4 +1,4 @@
-//! What is kept of a run while it goes on, so that little is lost whatever happens.
+//! Saves the state of a run from time to time, so that little is lost if something fails.
 
 use std::time::Duration;
 
@@ -10,50 +10,51 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::saved::Saved;
 
-/// Decides what is kept of a run, and what follows when a device fails. Every method has a default: nothing is kept, and
-/// a run ends with the error of its device.
+/// Decides which states of a run are saved, and whether the run continues when a device fails. Every method has a
+/// default: no checkpoint is taken, and a run ends with the error of its device.
 pub trait Keeper {
-    /// Whether a checkpoint is to be taken now. Asked between two sweeps, about ten times a second, and once more where the
-    /// [`Observer`](crate::Observer) ends the run: then `is_ending` is set.
+    /// Whether a checkpoint is to be taken now. Called between two sweeps, about ten times a second, and once more,
+    /// with `is_ending` set, when the [`Observer`](crate::Observer) ends the run.
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         let _ = is_ending;
         false
     }
 
-    /// Receives a checkpoint that was asked for.
+    /// Receives a checkpoint that was requested.
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
         let _ = checkpoint;
     }
 
-    /// The device has failed. Returns whether the run is to go on on the CPU, from the state after sweep `from`.
+    /// Called when the device has failed. Returns whether the run is to continue on the CPU, from the state after sweep
+    /// `from`.
     fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
         let _ = (error, from);
         false
     }
 
-    /// How often the positions are kept in memory, for the run to go back to if something fails. More rarely where that would take
-    /// more than a fiftieth of the time.
+    /// Returns the interval at which positions are saved in memory, for the run to return to if something fails. The
+    /// actual interval is longer if saving would take more than a fiftieth of the time.
     fn interval(&self) -> Duration {
         Duration::from_secs(1)
     }
 }
 
-/// Keeps nothing.
+/// A keeper that takes no checkpoints.
 pub(crate) struct NoKeeper;
 
 impl Keeper for NoKeeper {}
 
-/// The share of the time that keeping the positions may take, as a divisor.
+/// The divisor of the share of the time that saving positions may take: one in this many.
 const SHARE: u32 = 50;
 
-/// What is kept of a run.
+/// The keeper of a run, with the states that were saved.
 pub(crate) struct Keeping<'k, K: ?Sized> {
     pub(crate) keeper: &'k mut K,
-    /// What a checkpoint says besides the state; `None` in a run that has none.
+    /// The data of checkpoints other than the state; `None` for a run without checkpoints.
     pub(crate) about: Option<About>,
-    /// The latest state that was kept.
+    /// The latest state that was saved.
     pub(crate) last: Option<Saved>,
-    /// When the next one is due; `None` if never.
+    /// When the next state is to be saved; `None` for never.
     due: Option<Instant>,
 }
 
@@ -63,7 +64,7 @@ impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
         Self { keeper, about: None, last: None, due }
     }
 
-    /// Keeps what is due after some sweeps, or at the end of a run that is cancelled.
+    /// Saves the state if that is due after some sweeps, or at the end of a run that is canceled.
     pub(crate) async fn after_sweeps(
         &mut self,
         engine: &mut impl Engine,
@@ -78,7 +79,7 @@ impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
         }
         let engine = match engine.save(whole).await {
             Ok(engine) => engine,
-            // Without memory for it, the run goes on. Whatever else is wrong, the next sweep tells.
+            // Without memory for the state, the run continues. Any other error shows in the next sweep.
             Err(GpuError::OutOfMemory(_)) => return Ok(()),
             Err(error) => return Err(error),
         };

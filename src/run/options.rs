@@ -17,75 +17,80 @@ pub enum Method {
     /// [`Multilevel`](Self::Multilevel) if the options and the device allow it, else [`Sweeps`](Self::Sweeps).
     #[default]
     Auto,
-    /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels.
-    /// About 15 sweeps bring f within 1e-6 of its limit, whatever the size of the mesh. Metrics that alternate do so in
-    /// the sweeps alone; those with corrections are by the base metric, so that the run ends at its optimum. Requires a
-    /// base metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
+    /// Sweeps alone at first; once they gain little, each sweep is followed by a correction from coarser levels. About
+    /// 15 sweeps bring f within 1e-6 of its limit, for meshes of any size. If metrics alternate, they do so in the
+    /// sweeps alone. Sweeps with corrections are by the base metric, so that the run ends at its optimum.
+    ///
+    /// Requires a base metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     ///
-    /// [`Sweeps`](crate::Sweeps) that an application encodes are corrected if it is this, each of them from the first on;
-    /// not by [`Auto`](Self::Auto), and not by edge or metrics that alternate.
+    /// [`Sweeps`](crate::Sweeps) that an application encodes with this method are corrected from the first sweep on.
+    /// With [`Auto`](Self::Auto) they are not corrected, and edge and alternating metrics cannot be corrected there.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
     Sweeps,
 }
 
-/// How bad a step may make a triangle.
+/// A limit on how bad a step may make a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Guard {
-    /// As bad as lowers the objective, by a metric with a barrier; by others no worse than the worst triangle with a free vertex before
-    /// the run, nor than an inverse mean ratio of 30.
+    /// With a metric that has a barrier, no limit but the objective. With other metrics, a step may leave no triangle
+    /// with an inverse mean ratio larger than that of the worst triangle with a free vertex before the run, nor larger
+    /// than 30, unless the patch already had a worse one.
     #[default]
     ByMetric,
-    /// By no metric worse than the worst triangle with a free vertex before the run, by the inverse mean ratio as targets show the
-    /// triangles. So the worst element of a run never gets worse. Only for whole runs:
-    /// [`Sweeps`](crate::Sweeps), which an application encodes itself, refuse it.
+    /// With any metric, a step may leave no triangle worse than the worst triangle with a free vertex before the run,
+    /// by the inverse mean ratio after target maps are applied. So the worst element of a run never gets worse. Only
+    /// for whole runs: [`Sweeps`](crate::Sweeps), which an application encodes itself, refuse it.
     Worst,
 }
 
-/// How to smooth. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated 1e-6 of
-/// f is left to gain.
+/// The options of a run. [`Options::default`] smooths by IMR with corrections from coarser levels, until an estimated
+/// 1e-6 of f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The metric, or several metrics in turn. The first one judges convergence.
     pub scheme: Scheme,
-    /// Sweeps alone, or corrected from coarser levels.
+    /// Whether sweeps are corrected from coarser levels.
     pub method: Method,
-    /// The run ends after this many sweeps at the latest.
+    /// The most sweeps of the run.
     pub max_sweeps: u32,
     /// The run ends when the estimated distance of f to its limit, relative to f, is below this. The
     /// estimate extrapolates the decay over the last 16 or more sweeps (over the last two where each is corrected
     /// from coarser levels), so it bounds what remains, not the change in one sweep. By EDGE it is that of a p-norm: with the largest exponent f ends
     /// some 2e-5 above a minimum of its own, however small the tolerance. 0 turns this test off.
     pub tolerance: f64,
-    /// The precision in which the result will be stored. It is rounded to that before it is judged: what is returned has no
-    /// inverted triangle, and a lower f, as stored. Fixed vertices are rounded as well, if the mesh is not in that
+    /// The precision in which the result will be stored. The result is rounded to it before it is checked: as stored,
+    /// it has no inverted triangle and a lower f. Fixed vertices are rounded as well, if the mesh is not in that
     /// precision.
     pub stored: Precision,
-    /// Ends the run at a share of the way to a desired objective. The tolerance then has no effect.
+    /// Ends the run at a share of the way to a desired objective; the tolerance then has no effect. `None` for no goal.
     pub goal: Option<Goal>,
-    /// Over-relaxation, between 0 and 2: each Newton step is first tried at this multiple. 1 is the published method.
+    /// Over-relaxation, between 0 and 2: the factor by which each Newton step is multiplied in its first trial. 1 is
+    /// the published method.
     ///
     /// `None` takes [`Properties::omega`](crate::Properties::omega) in a scheme of one metric and 1 in a scheme that
-    /// alternates: there each metric would have to undo the overshoot of the one before, and the run ends worse
-    /// (edge+imr on a 2,000-vertex mesh at 1.536 instead of 1.492). Runs with corrections use values of their own.
+    /// alternates. With alternating metrics each would have to undo the overshoot of the one before, and the run ends
+    /// worse (edge+imr on a 2,000-vertex mesh at 1.536 instead of 1.492). Runs with corrections use values of their
+    /// own.
     pub omega: Option<f64>,
     /// Number of sweeps before over-relaxation starts, in runs without corrections.
     pub plain_sweeps: u32,
-    /// The most Newton steps per visit of a vertex, 1000 at most. With analytic derivatives a visit ends sooner once
+    /// The most Newton steps per visit of a vertex, from 1 to 1000. With analytic derivatives a visit ends earlier once
     /// its steps have become short.
     pub inner: u32,
-    /// What no step may do to a triangle besides inverting it.
+    /// A limit on how bad a step may make a triangle. No step ever inverts one.
     pub guard: Guard,
-    /// How far a vertex may be from its place before the run, in the mean length of the edges there before. Above 0; `None` for as
-    /// far as it takes. Only for whole runs, by one metric other than edge.
+    /// The largest distance of a vertex from its position before the run, divided by the mean length of the edges there
+    /// before. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
     pub max_move: Option<f64>,
-    /// Whether no triangle's altitude may fall below the least that the mesh has, which bounds the time step of explicit solvers. Only
-    /// for whole runs, by one metric other than edge.
+    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh, which bounds the time
+    /// step of explicit solvers. Only for whole runs, by one metric other than edge.
     pub keep_altitude: bool,
-    /// By what measure the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as the metric does. Free
-    /// vertices around the worst thousandth of the triangles (10 to 1000 of them) move such that the worst around them becomes less
-    /// bad, and none worse than that was; f may rise a little for it. Only for whole runs, and not after one that was cancelled.
+    /// The measure by which the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as
+    /// they are. Free vertices around the worst thousandth of the triangles (10 to 1000 of them) move so that the worst
+    /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little. Only for whole
+    /// runs, and not after one that was canceled.
     pub improve_worst: Option<WorstBy>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,
@@ -120,10 +125,12 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The largest value of [`inner`](Self::inner): the [`Observer`](crate::Observer) cannot end a sweep.
+    /// The largest value of [`inner`](Self::inner). It is limited because the [`Observer`](crate::Observer) cannot end
+    /// a sweep.
     pub const MOST_INNER: u32 = 1000;
 
-    /// The method of Park & Shontz (2011): sweeps alone, one Newton step per visit, no over-relaxation.
+    /// Returns the options of the method of Park & Shontz (2011): sweeps alone, one Newton step per visit, no
+    /// over-relaxation.
     pub fn paper(scheme: Scheme) -> Self {
         Self { scheme, method: Method::Sweeps, omega: Some(1.0), ..Self::default() }
     }
@@ -133,7 +140,7 @@ impl Options {
         self.method != Method::Sweeps && self.only_sweeps().is_none()
     }
 
-    /// The reason why these options rule out corrections, if they do.
+    /// Returns the reason why these options rule out corrections, if they do.
     fn only_sweeps(&self) -> Option<&'static str> {
         let metric = self.scheme.base();
         if !metric.properties().is_corrected {
@@ -141,15 +148,15 @@ impl Options {
         } else if self.omega.is_some() {
             Some("over-relaxation is its own: leave omega open")
         } else if self.derivatives != Derivatives::Analytic {
-            Some("it needs exact derivatives")
+            Some("it needs analytic derivatives")
         } else if self.inner != 1 {
-            Some("it takes one Newton step a visit")
+            Some("it needs one Newton step per visit: set inner to 1")
         } else {
             None
         }
     }
 
-    /// Checks every field against its range, and whether it goes with a mesh that has targets or none.
+    /// Checks every field against its range, and against whether the mesh has targets.
     pub(crate) fn check_for(&self, problem: &Problem) -> Result<(), SmoothError> {
         self.check()?;
         if problem.targets().is_some() && self.derivatives != Derivatives::Analytic {
@@ -157,13 +164,13 @@ impl Options {
             return Err(SmoothError::Option {
                 option,
                 value,
-                remedy: "with targets take exact ones",
+                remedy: "targets need analytic derivatives",
             });
         }
         Ok(())
     }
 
-    /// Checks that an application can encode sweeps by these options.
+    /// Checks that an application can encode sweeps with these options.
     pub(crate) fn check_encoded(&self) -> Result<(), SmoothError> {
         let refuse = |option, value| {
             let remedy = "sweeps that are encoded have none: only whole runs do";
@@ -224,13 +231,14 @@ impl Options {
         }
     }
 
-    /// The plan of sweeps by these options, for code that drives sweeps itself. Leaves out [`goal`](Self::goal) and
-    /// [`method`](Self::method).
+    /// Returns the plan of sweeps with these options, for code that drives sweeps itself. Ignores [`goal`](Self::goal)
+    /// and [`method`](Self::method).
     pub fn plan(&self) -> Plan {
         self.plan_with(None, self.sharpness.unwrap_or(Sharpness::FIXED))
     }
 
-    /// The plan of a run by these options, which ends when the base objective is below `target`, if there is one.
+    /// Returns the plan of a run with these options, which ends when the base objective is below `target`, if one is
+    /// given.
     pub(crate) fn plan_to(&self, target: Option<f64>) -> Plan {
         // Sweeps by EDGE that another metric judges are few, and by no p-norm that grows.
         let is_corrected_edge = self.is_multilevel() && !self.scheme.base().is_smooth();
@@ -277,17 +285,17 @@ impl Options {
 pub struct Goal {
     /// The share of the way from f_initial to f_desired, above 0 and at most 1. The paper's is 0.95.
     pub fraction: f64,
-    /// Where f_desired comes from.
+    /// The objective f_desired.
     pub desired: Desired,
 }
 
 /// The objective f_desired of a [`Goal`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Desired {
-    /// This value, by the base metric.
+    /// This value of the objective by the base metric.
     Value(f64),
-    /// The converged optimum of the base metric, found by runs before the smoothing. Unless the base metric is IMR or
-    /// AR, it is the better of two runs: by the base metric alone, and by the base metric after IMR. Both use
-    /// over-relaxation, or corrections from coarser levels where the metric has them.
+    /// The converged optimum of the base metric, found by runs before the smoothing. If the base metric is IMR or AR,
+    /// that is one run. For other metrics it is the better of two runs: one by the base metric alone, and one by the
+    /// base metric after IMR. They use over-relaxation, or corrections from coarser levels if the metric has them.
     Auto,
 }

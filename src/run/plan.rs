@@ -1,11 +1,11 @@
-//! The plan of a run, the same for every engine: the step of each sweep, and when to stop.
+//! The plan of a run, the same for every engine: the step of each sweep, and the stop rule.
 
 use crate::metric::{Metric, Scheme};
 use crate::run::line_search;
 use crate::run::step::{Derivatives, Sharpness, Step};
 use crate::run::stop::StopRule;
 
-/// Everything that engines need to know to do the same sweeps.
+/// All parameters by which engines do the same sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The metrics of the sweeps, in turn.
@@ -20,16 +20,16 @@ pub struct Plan {
     pub derivatives: [Derivatives; Metric::ALL.len()],
     /// The exponent of EDGE's p-norm.
     pub sharpness: Sharpness,
-    /// When the run ends.
+    /// The rule by which the run ends.
     pub stop: StopRule,
     /// Whether the history holds the objective of every metric, not of the base metric alone.
     pub track_all: bool,
     /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above
     /// this, unless its patch already had a worse one. If the metric's own
-    /// [`shape_guard`](crate::Properties::shape_guard) is smaller, it is used instead.
+    /// [`shape_guard`](crate::Properties::shape_guard) is smaller, that is used instead.
     pub shape_guard: f64,
-    /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch already had a
-    /// worse one. Infinite for none.
+    /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch
+    /// already had a worse one. Infinite for no guard.
     pub worst_guard: f64,
     /// How many times as long as Newton's a step by a metric with a barrier may be tried where nearly flat triangles make up most of
     /// a patch's objective; 1 for never.
@@ -39,14 +39,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The step of a sweep; sweeps count from 1.
+    /// Returns the step of a sweep; sweeps count from 1.
     pub fn step(&self, sweep: u32) -> Step {
         let metric = self.scheme.metric(sweep);
         let omega = if sweep <= self.plain_sweeps { 1.0 } else { self.omega[metric as usize] };
         self.step_with(metric, omega, self.sharpness.of(sweep))
     }
 
-    /// All distinct steps that [`step`](Self::step) can return.
+    /// Lists all distinct steps that [`step`](Self::step) can return.
     pub(crate) fn steps(&self) -> Vec<Step> {
         let Sharpness { first, last, .. } = self.sharpness;
         let mut steps = Vec::new();
@@ -63,12 +63,12 @@ impl Plan {
         steps
     }
 
-    /// A step of the base metric with over-relaxation `omega`, for runs with corrections.
+    /// Returns a step of the base metric with over-relaxation `omega`, for runs with corrections.
     pub(crate) fn base_step(&self, omega: f64) -> Step {
         self.step_with(self.scheme.base(), omega, self.sharpness.largest())
     }
 
-    /// A step of `metric` with over-relaxation `omega` and log2 `sharpness` of EDGE's exponent.
+    /// Returns a step of `metric` with over-relaxation `omega`, and with `sharpness`, the log2 of EDGE's exponent.
     pub(crate) fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
         let of_metric = match metric.properties().shape_guard {
             own if own.is_finite() => self.shape_guard.min(own),
@@ -88,20 +88,20 @@ impl Plan {
         }
     }
 
-    /// This plan without a stop rule, for a run that the caller ends.
+    /// Returns this plan without a stop rule, for a run that the caller ends.
     pub(crate) fn endless(mut self) -> Self {
         self.stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
         self
     }
 
-    /// Whether every sweep lowers the base objective, so that the last state is the best. Not so with finite
-    /// differences: the minimum they find is slightly off.
+    /// Whether every sweep lowers the base objective, so that the last state is the best. With finite differences it
+    /// does not, as the minimum that they find is slightly off.
     pub fn is_monotone(&self) -> bool {
         let base = self.scheme.base();
         self.scheme.is_monotone() && self.derivatives[base as usize] == Derivatives::Analytic
     }
 
-    /// The metrics whose objective is evaluated after each sweep.
+    /// Lists the metrics whose objective is evaluated after each sweep.
     pub fn tracked(&self) -> Vec<Metric> {
         if self.track_all { Metric::ALL.to_vec() } else { vec![self.scheme.base()] }
     }

@@ -1,4 +1,4 @@
-//! The state of a run between two sweeps: all that decides how it goes on.
+//! The state of a run between two sweeps, from which it can continue.
 
 use bytemuck::Pod;
 use glam::DVec2;
@@ -15,7 +15,7 @@ pub(crate) struct Saved {
     pub(crate) log: Vec<Objectives>,
     /// The share of f that is estimated to be left to gain.
     pub(crate) remaining: Option<f64>,
-    /// What decides on corrections, if the run has any.
+    /// The state of the corrections, if the run has any.
     pub(crate) corrections: Option<Vec<u64>>,
     pub(crate) engine: EngineState,
 }
@@ -34,22 +34,22 @@ pub(crate) struct EngineState {
     pub(crate) engine: String,
     /// The positions of all vertices, normalized and in the order of the problem.
     pub(crate) positions: Vec<DVec2>,
-    /// The positions in the best state, where that may not be the last one.
+    /// The positions in the best state, if that may differ from the last one.
     pub(crate) best: Option<Vec<DVec2>>,
-    /// What the coarser levels were built from, and then what they were fitted to, one after the other. Empty if there are none,
-    /// or if the state is not whole.
+    /// The roots that the coarser levels were built from, and then those that they were fitted to, in order. Empty if
+    /// there are no levels, or if the state is not whole.
     pub(crate) roots: Vec<Vec<f32>>,
-    /// What only an engine of the same kind understands.
+    /// Named data that only an engine of the same kind can read.
     pub(crate) own: Vec<(String, Vec<u8>)>,
 }
 
 impl EngineState {
-    /// Adds values that only an engine of the same kind understands.
+    /// Adds named data that only an engine of the same kind can read.
     pub(crate) fn add<T: Pod>(&mut self, name: &str, values: &[T]) {
         self.own.push((name.to_owned(), bytemuck::cast_slice(values).to_vec()));
     }
 
-    /// Values that were added by this name, if there are as many.
+    /// Returns the data with this name, if they consist of `count` values.
     pub(crate) fn own<T: Pod>(&self, name: &str, count: usize) -> Option<Vec<T>> {
         let (_, bytes) = self.own.iter().find(|(known, _)| known == name)?;
         let is_whole = bytes.len() == count.checked_mul(size_of::<T>())?;

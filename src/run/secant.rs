@@ -1,29 +1,31 @@
-//! Corrections that remember: the scalars of the limited-memory BFGS method with two secant pairs.
+//! Acceleration of corrections by secant pairs: the scalars of the limited-memory BFGS method with two pairs.
 //!
 //! A secant pair is how far the free vertices moved from one correction to the next, s, and how the gradient g of Σ q²
-//! changed by it, y. From two pairs and a correction M⁻¹ by the coarser levels, the two-loop recursion (Nocedal, Math.
-//! Comp. 35, 1980) makes a direction that also knows what the levels do not: stretched triangles, and vertices of many.
+//! changed meanwhile, y. From two pairs and the correction M⁻¹ of the coarser levels, the two-loop recursion (Nocedal,
+//! Math. Comp. 35, 1980) makes a direction. It accounts for what the levels do not represent: stretched triangles, and
+//! vertices with many neighbors.
 //!
-//! The direction is -(M⁻¹(g - Σ aᵢ yᵢ) + Σ cᵢ sᵢ). The functions here give aᵢ and cᵢ from inner products, pair 0 being the
-//! newer. `shaders/levels/sum_secants.wgsl` states them again for a device.
+//! The direction is -(M⁻¹(g - Σ aᵢ yᵢ) + Σ cᵢ sᵢ). The functions here compute aᵢ and cᵢ from inner products; pair 0 is
+//! the newer one. `shaders/secants/sum_secants.wgsl` does the same on a device.
 
-/// A pair counts only if the slope along its step changed by at least this share of what it was: a smaller change is rounding.
+/// A pair is used only if the slope along its step changed by at least this share of its value before. A smaller change
+/// is rounding.
 pub(crate) const LEAST_CURVATURE: f64 = 1e-3;
 
 /// Inner products of two secant pairs and the gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Products {
-    /// s·g of each pair.
+    /// s·g for each pair.
     pub(crate) along: [f64; 2],
-    /// s·y of each pair; 0 stands for a pair that does not count.
+    /// s·y for each pair; 0 for a pair that is not used.
     pub(crate) curvature: [f64; 2],
-    /// s of the older pair times y of the newer.
+    /// s of the older pair times y of the newer pair.
     pub(crate) across: f64,
 }
 
 impl Products {
-    /// The products of a new pair, with its curvature set to 0 if the pair does not count. The old pair is there if its
-    /// curvature is not 0.
+    /// Makes the products of two pairs, with the curvature of the new pair set to 0 if it is not used. A curvature of 0
+    /// for the old pair means that it does not exist or is not used.
     pub(crate) fn new(along: [f64; 2], curvature: [f64; 2], across: f64) -> Self {
         let [new, old] = curvature;
         let slope_before = along[0] - new;
@@ -31,15 +33,15 @@ impl Products {
         Self { along, curvature: [if counts { new } else { 0.0 }, old], across }
     }
 
-    /// The factors aᵢ of y in the vector that the levels are given.
+    /// Returns the factors aᵢ of y in the vector that the levels are applied to.
     pub(crate) fn before(&self) -> [f64; 2] {
         let newer = share(self.along[0], self.curvature[0]);
         let older = share(self.along[1] - newer * self.across, self.curvature[1]);
         [newer, older]
     }
 
-    /// The factors cᵢ of s in the direction, given the aᵢ and the products of y of each pair with what the levels make of
-    /// their vector.
+    /// Returns the factors cᵢ of s in the direction. `before` are the aᵢ, `corrected` the products of each y with the
+    /// result of the levels.
     pub(crate) fn after(&self, before: [f64; 2], corrected: [f64; 2]) -> [f64; 2] {
         let older = match self.curvature[1] {
             0.0 => 0.0,
@@ -53,7 +55,7 @@ impl Products {
     }
 }
 
-/// A product over a curvature, 0 if the pair does not count.
+/// A product divided by a curvature, or 0 if the pair is not used.
 fn share(product: f64, curvature: f64) -> f64 {
     if curvature == 0.0 { 0.0 } else { product / curvature }
 }
@@ -66,7 +68,8 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// The two-loop recursion with the identity for the levels, as the functions here do it.
+    /// The direction by the two-loop recursion, with the identity in place of the levels, computed by the functions
+    /// here.
     fn direction(pairs: [([f64; 3], [f64; 3]); 2], g: [f64; 3]) -> [f64; 3] {
         let [(s0, y0), (s1, y1)] = pairs;
         let products =
@@ -79,7 +82,7 @@ mod tests {
 
     #[test]
     fn the_newer_pair_is_reproduced() {
-        // The secant equation: where the gradient is y of the newer pair, the direction is -s.
+        // The secant equation: if the gradient is y of the newer pair, the direction is -s.
         let pairs = [([1.0, 0.2, -0.3], [2.0, 0.1, -0.5]), ([0.1, 1.0, 0.4], [0.3, 1.5, 0.2])];
         let found = direction(pairs, pairs[0].1);
         for (found, s) in found.iter().zip(pairs[0].0) {
@@ -89,7 +92,8 @@ mod tests {
 
     #[test]
     fn two_pairs_of_a_quadratic_in_the_plane_give_newtons_step() {
-        // The Hessian is diag(4, 9, 1), and the third axis is not touched. The two steps are conjugate, as the axes are.
+        // The Hessian is diag(4, 9, 1), and nothing moves along the third axis. The two steps are conjugate, as they
+        // are along axes.
         let pairs = [([1.0, 0.0, 0.0], [4.0, 0.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, 9.0, 0.0])];
         assert_eq!(direction(pairs, [8.0, -18.0, 5.0]), [-2.0, 2.0, -5.0]);
     }

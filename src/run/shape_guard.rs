@@ -1,4 +1,4 @@
-//! The guards of a run: how far triangles may be flattened.
+//! The guards of a run, which bound how far triangles may be flattened.
 
 use glam::DVec2;
 
@@ -7,8 +7,9 @@ use crate::parallel::map_parts;
 use crate::run::options::Guard;
 use crate::run::plan::Plan;
 
-/// Sets the guards of a run from these positions: to the largest inverse mean ratio among the triangles with a free vertex, for
-/// metrics without a barrier, which do not measure shape and could flatten a good mesh, and for all if that was asked for.
+/// Sets the guards of a run from these positions. The bound is the largest inverse mean ratio among the triangles with
+/// a free vertex. It applies to metrics without a barrier, which do not measure shape and could flatten a good mesh,
+/// and with [`Guard::Worst`] to all.
 pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, positions: &[DVec2]) {
     let is_finite = |guard: f64| guard.is_finite();
     let metrics = plan.scheme.metrics();

@@ -7,20 +7,21 @@ use crate::metric::{Metric, Smoothing};
 pub struct Step {
     /// The metric that the sweep lowers.
     pub metric: Metric,
-    /// Over-relaxation: each Newton step is first tried at this multiple.
+    /// Over-relaxation: the factor by which each Newton step is multiplied in its first trial.
     pub omega: f64,
     /// The most Newton steps per visit of a vertex.
     pub inner: u32,
-    /// log2 k of the exponent k of EDGE's p-norm.
+    /// The log2 of the exponent k of EDGE's p-norm.
     pub sharpness: u32,
     /// The inverse mean ratio in front of which a penalty is added to EDGE's p-norm, so that steps turn before the shape guard
     /// refuses them; infinite for none.
     pub penalized: f64,
     /// How the metric is differentiated.
     pub derivatives: Derivatives,
-    /// The largest inverse mean ratio that a step may leave, unless the patch already had a larger one: the smaller of
-    /// [`Plan::shape_guard`](super::Plan::shape_guard) and that of the metric, if it has no barrier, and of
-    /// [`Plan::worst_guard`](super::Plan::worst_guard), less a reserve for rounding. Infinite for none.
+    /// The largest inverse mean ratio that a step may leave, unless the patch already had a larger one. It is the
+    /// smallest of [`Plan::worst_guard`](super::Plan::worst_guard) and, for metrics without a barrier, of
+    /// [`Plan::shape_guard`](super::Plan::shape_guard) and the metric's own guard, minus a reserve for rounding.
+    /// Infinite for no guard.
     pub shape_guard: f64,
     /// How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's objective; 1
     /// for never.
@@ -38,31 +39,31 @@ impl Step {
 /// How a metric is differentiated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Derivatives {
-    /// Exactly, by formulas that tests hold against dual numbers.
+    /// Exactly, by formulas that tests compare with dual numbers.
     #[default]
     Analytic,
-    /// By forward differences of the value, 16 evaluations per triangle, as Mesquite differentiates
-    /// a metric without derivatives of its own (EDGE, AREA and RMS of Park & Shontz). Slower
-    /// and no better: only there to test the paper's cost model.
+    /// By forward differences of the value, with 16 evaluations per triangle. Mesquite differentiates metrics without
+    /// analytic derivatives this way (EDGE, AREA and RMS of Park & Shontz). Slower and no better: it serves only to
+    /// test the paper's cost model.
     FiniteDifference,
 }
 
 /// The exponent k of the p-norm that replaces EDGE in Newton's method, for each sweep. Given as log2 k.
 ///
-/// In runs with corrections from coarser levels, k doubles whenever a sweep with its correction gains little by the p-norm, not after a
-/// number of sweeps.
+/// In runs with corrections from coarser levels, k doubles whenever a sweep with its correction gains little by the
+/// p-norm, not after a number of sweeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sharpness {
-    /// log2 k of the first sweep.
+    /// The log2 of k in the first sweep.
     pub first: u32,
-    /// Number of sweeps alone after which k doubles; 0 keeps k constant, in any run.
+    /// Number of sweeps alone after which k doubles. 0 keeps k constant in any run.
     pub every: u32,
-    /// log2 k of the largest k.
+    /// The log2 of the largest k.
     pub last: u32,
 }
 
 impl Sharpness {
-    /// k = 16 throughout: good after a few sweeps, and ends about 1 % above the best optimum.
+    /// k = 16 throughout: good after a few sweeps, but it ends about 1 % above the best optimum.
     pub const FIXED: Self = Self { first: 4, every: 0, last: 4 };
     /// k from 2 to 512, doubling every 5 sweeps: for sweeps alone, which end some 3e-4 above a minimum of f with it, after more sweeps.
     pub const CONTINUED: Self = Self { first: 1, every: 5, last: 9 };
@@ -86,13 +87,13 @@ impl Sharpness {
     /// The largest log2 k that is allowed: powers of ratios have an error of 1e-3 by then in single precision.
     pub const MOST: u32 = 13;
 
-    /// log2 k of a sweep; sweeps count from 1.
+    /// Returns the log2 of k in a sweep; sweeps count from 1.
     pub fn of(self, sweep: u32) -> u32 {
         let doublings = sweep.saturating_sub(1).checked_div(self.every).unwrap_or(0);
         self.first.saturating_add(doublings).min(self.last.max(self.first))
     }
 
-    /// log2 of the largest k.
+    /// Returns the log2 of the largest k.
     pub(crate) fn largest(self) -> u32 {
         if self.every == 0 { self.first } else { self.last.max(self.first) }
     }

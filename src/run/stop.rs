@@ -2,30 +2,30 @@
 
 use crate::metric::Scheme;
 
-/// Why a run ended.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stop {
-    /// The base objective went the share of the way to the desired one that the [`Goal`](crate::Goal) asks for.
+    /// The base objective has gone the share of the way to the desired one that the [`Goal`](crate::Goal) asks for.
     Reached,
     /// The estimated distance to the limit is below the tolerance, or f no longer changes.
     Converged,
     /// The base objective no longer improves: a goal is out of reach, or the sweeps of an alternating scheme lead away
     /// from the optimum of the base metric.
     Stalled,
-    /// f no longer changes, but only because the shape guard holds vertices back: by the metric alone they would flatten
-    /// triangles further. [`Outcome::held_back`](crate::Outcome::held_back) is how many.
+    /// f no longer changes, but only because the shape guard holds vertices back. By the metric alone they would
+    /// flatten triangles further. [`Outcome::held_back`](crate::Outcome::held_back) is the number of these vertices.
     HeldBack,
     /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps were done.
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
     Cancelled,
-    /// A sweep made f a number that is not finite, which no sweep should. It was undone, with those before it back to the state that was
-    /// last kept.
+    /// A sweep made f infinite or NaN, which no sweep should. The run went back to the state that was last saved, so
+    /// the sweeps after it are undone.
     NotFinite,
 }
 
 impl Stop {
-    /// The codes by which finish.wgsl names the reasons that the device can find; 0 means to go on.
+    /// The codes by which finish.wgsl names the reasons that a device can find; 0 means that the run continues.
     pub(crate) const CODES: [(Stop, u32); 4] =
         [(Stop::Reached, 1), (Stop::Converged, 2), (Stop::Stalled, 3), (Stop::MaxSweeps, 4)];
 
@@ -33,7 +33,7 @@ impl Stop {
         Self::CODES.iter().find(|&&(_, c)| c == code).map(|&(stop, _)| stop)
     }
 
-    /// The reason in one word, for reports.
+    /// Returns the reason in one word, for reports.
     pub fn name(self) -> &'static str {
         match self {
             Stop::Reached => "reached",
@@ -47,13 +47,12 @@ impl Stop {
     }
 }
 
-/// Decides when a run ends, after every sweep and from the base objective alone.
+/// Decides after every sweep whether a run ends, from the base objective alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
     /// The run ends when the base objective is below this.
     pub target: Option<f64>,
-    /// The run ends when the estimated distance of f to its limit, relative to f, is below this. 0 turns this test
-    /// off.
+    /// The run ends when the estimated distance of f to its limit, relative to f, is below this. 0 turns this test off.
     pub tolerance: f64,
     /// The run ends after this many sweeps.
     pub max_sweeps: u32,
@@ -61,27 +60,28 @@ pub struct StopRule {
 
 /// A change of f over a window below this share of f is rounding, not progress.
 pub(crate) const NOISE: f64 = 1e-9;
-/// An f above the best one by less than this share of f has not become worse: f as a device evaluates it has such errors.
+/// If f is above the best one by less than this share, it has not become worse: the evaluation of f on a device has
+/// such errors.
 pub(crate) const JITTER: f64 = 1e-6;
-/// Shares of f are taken of this where f is smaller, as by AREA, whose f may go to 0. Where it ends is then settled
-/// by rounding alone.
+/// The least value relative to which shares of f are taken. By some metrics, such as AREA, f may go to 0, and its last
+/// digits are then settled by rounding alone.
 pub(crate) const LEAST_SCALE: f64 = 1e-6;
-/// What rounding makes of an f that would be 0, as by AREA: the mean square of relative errors of some 1e-16. A lower f below
-/// this is no gain.
+/// The value that rounding gives an f that should be 0, as by AREA: the mean square of relative errors of some 1e-16. A
+/// lower f below this is no gain.
 pub(crate) const ROUNDING: f64 = 1e-28;
 
 impl StopRule {
-    /// The longer of the two windows from which the remaining distance is estimated, in sweeps. Both windows are
-    /// multiples of the scheme's period, so that sweeps by the same metrics are compared.
+    /// Returns the longer of the two windows, in sweeps, from which the remaining distance is estimated. Both windows
+    /// are multiples of the scheme's period, so that sweeps by the same metrics are compared.
     pub fn window(scheme: &Scheme) -> u32 {
         8u32.next_multiple_of(2 * scheme.period())
     }
 
-    /// Says why the run ends after the last sweep of `history`, or `None` if it goes on. `history` is the base
-    /// objective before the first sweep and after each, `best` the index of the least, `window` as from
-    /// [`Self::window`]. An empty history goes on.
+    /// Returns the reason why the run ends after the last sweep of `history`, or `None` if it continues. `history` is
+    /// the base objective before the first sweep and after each, `best` the index of the least, `window` the result of
+    /// [`Self::window`]. With an empty history the run continues.
     ///
-    /// `shaders/finish.wgsl` states the same rule for runs that are judged on the device.
+    /// `shaders/finish.wgsl` has the same rule for runs that are judged on the device.
     pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
         let (last, f) = (history.len().checked_sub(1)?, *history.last()?);
         if self.target.is_some_and(|target| f < target) {
@@ -104,9 +104,9 @@ impl StopRule {
         (last as u32 >= self.max_sweeps).then_some(Stop::MaxSweeps)
     }
 
-    /// The share of f that is estimated to be left to gain after the last sweep of `history`: twice what a geometric
-    /// decay would still gain, because the slowest modes do not show in a window. `None` if `history` is shorter than
-    /// two windows, or the gains do not decay.
+    /// Estimates the share of f that is left to gain after the last sweep of `history`. It is twice the gain that
+    /// remains in a geometric decay, because the slowest modes do not show in a window. `None` if `history` is shorter
+    /// than two windows, or the gains do not decay.
     pub fn remaining(&self, history: &[f64], window: usize) -> Option<f64> {
         let last = history.len().checked_sub(1)?;
         if last < window.saturating_mul(2) {
@@ -121,8 +121,8 @@ impl StopRule {
     }
 }
 
-/// What a geometric decay would still gain, given the gains of two successive windows. Infinite if
-/// the gains do not decay.
+/// Returns the gain that remains in a geometric decay, given the gains of two successive windows. Infinite if the gains
+/// do not decay.
 fn remaining_gain(before: f64, gain: f64) -> f64 {
     if gain > 0.0 && gain < before { gain * gain / (before - gain) } else { f64::INFINITY }
 }
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_fast_start_is_not_taken_for_convergence() {
-        // A steep drop, then a slow decay, as from a strongly perturbed mesh.
+        // A steep drop and then a slow decay, as from a strongly perturbed mesh.
         let slow = |k: i32| 1.0 + 100.0 * 0.1f64.powi(k) + 1e-2 * 0.99f64.powi(k);
         let history: Vec<f64> = (0..30).map(slow).collect();
         assert!((1..30).all(|n| rule(None, 1e-4).judge(&history[..n], n - 1, 8).is_none()));
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn errors_of_single_precision_do_not_keep_a_run_going() {
-        // The best is early and by chance, and later values jump about it.
+        // The best value comes early and by chance, and later values jump around it.
         let jumps = |k: u32| f64::from(k * 7 % 5) * 1e-7;
         let history: Vec<f64> =
             (0..40).map(|k| 1.5 + if k == 4 { 0.0 } else { 1e-8 + jumps(k) }).collect();

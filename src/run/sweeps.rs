@@ -1,4 +1,4 @@
-//! Runs of sweeps alone, by one metric or several in turn.
+//! Runs of sweeps alone, by one metric or by several in turn.
 
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::Stop;
 
-/// Does up to `sweeps` further sweeps of the plan; fewer if the run ends.
+/// Does up to `sweeps` further sweeps of the plan, or fewer if the run ends.
 pub(crate) async fn advance(
     engine: &mut impl Engine,
     plan: &Plan,
@@ -38,20 +38,20 @@ impl<E: Engine> StepwiseRun<E> {
 
 /// A run that its caller drives batch by batch, on the CPU or a device. All calls block.
 pub trait Stepwise {
-    /// Does up to `sweeps` further sweeps, fewer if the run ends, and returns the objectives after each. The first call
-    /// also returns the objectives before the first sweep, in front.
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends, and returns the objectives after each. The first
+    /// call also returns, in front, the objectives before the first sweep.
     ///
     /// # Errors
-    /// If the device fails; the run is then lost.
+    /// A [`GpuError`] if the device fails. The run is then lost.
     fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError>;
 
-    /// Why the run has ended, if it has.
+    /// Returns the reason why the run has ended, if it has.
     fn stop(&self) -> Option<Stop>;
 
-    /// The normalized positions of the best state so far, by the base metric.
+    /// Returns the normalized positions of the best state so far, by the base metric.
     ///
     /// # Errors
-    /// If the device fails.
+    /// A [`GpuError`] if the device fails.
     fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError>;
 }
 

@@ -1,13 +1,14 @@
-//! By what measure the worst triangles are improved after a run.
+//! The measure by which the worst triangles are improved after a run.
 
-/// The measure of the worst triangles, of which [`Options::improve_worst`](crate::Options::improve_worst) makes the best.
+/// The measure of the worst triangles that [`Options::improve_worst`](crate::Options::improve_worst) improves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WorstBy {
-    /// The largest inverse mean ratio, as targets show the triangles: as small as can be.
+    /// The largest inverse mean ratio, after target maps are applied; it is made as small as possible.
     Imr,
-    /// The least angle, as targets show the triangles: as large as can be.
+    /// The least angle, after target maps are applied; it is made as large as possible.
     MinAngle,
-    /// The least altitude, in coordinates: as large as can be. It bounds the time step of explicit solvers.
+    /// The least altitude, in coordinates; it is made as large as possible. It bounds the time step of explicit
+    /// solvers.
     Altitude,
 }
 

@@ -3,7 +3,7 @@
 use std::future::poll_fn;
 use std::task::Poll;
 
-/// Lets the executor run other tasks before this future goes on. If the caller blocks on the future, it goes on at
+/// Lets the executor run other tasks before this future continues. If the caller blocks on the future, it continues at
 /// once.
 pub(crate) async fn yield_now() {
     let mut yielded = false;

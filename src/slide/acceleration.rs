@@ -1,34 +1,36 @@
-//! Acceleration of rounds: where a mesh would go if rounds went on as the last ones did.
+//! Acceleration of rounds: extrapolates the last rounds to where further ones would lead.
 
 use glam::DVec2;
 
 use crate::slide::sliding::Params;
 
-/// The most rounds that are remembered.
+/// The most rounds that are stored.
 const MOST: usize = 6;
-/// Residuals that are combined are told apart if they differ by more than this, relative to their squared lengths.
+/// The share by which the diagonal of the normal equations is raised, so that similar residuals do not make them
+/// singular.
 const LEAST: f64 = 1e-10;
 
-/// The latest rounds. Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one round to the next: what the rounds
-/// ended at is combined such that what they changed along the curves cancels as far as it can.
+/// The latest rounds, for Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one round to the
+/// next. The results of the rounds are combined so that their changes along the curves cancel as far as possible.
 #[derive(Default)]
 pub(crate) struct Acceleration(Vec<Past>);
 
-/// A round.
+/// The result of a round.
 struct Past {
-    /// By how much it changed each parameter, in edges.
+    /// The change of each parameter in the round, divided by the edge length there.
     change: Vec<f64>,
     params: Params,
     positions: Vec<DVec2>,
 }
 
 impl Acceleration {
-    /// Forgets what was before.
+    /// Drops all rounds.
     pub(crate) fn forget(&mut self) {
         self.0.clear();
     }
 
-    /// Remembers a round. Returns parameters and positions from which the next one may begin, which are not known to be sound.
+    /// Stores a round. Returns parameters and positions from which the next round may begin; the caller must check that
+    /// they are sound.
     pub(crate) fn next(
         &mut self,
         change: Vec<f64>,
@@ -61,11 +63,12 @@ impl Acceleration {
     }
 }
 
-/// The weights with which the columns, added to `start`, make its squares least. `None` if there are none.
+/// Returns the weights of the columns whose weighted sum, added to `start`, has the least sum of squares. `None` if
+/// there are no columns.
 fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let count = columns.len();
-    // The normal equations, solved by Gaussian elimination: positive definite, as their diagonal is raised.
+    // The normal equations, solved by Gaussian elimination. They are positive definite, as their diagonal is raised.
     let row = |i: usize| {
         let mut row: Vec<f64> = columns.iter().map(|column| dot(&columns[i], column)).collect();
         row[i] *= 1.0 + LEAST;
@@ -92,7 +95,7 @@ fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// A linear map with slow and fast parts: after as many rounds as it has parts, the fixed point is found.
+    /// A linear map with slow and fast components. After as many rounds as it has components, the fixed point is found.
     #[test]
     fn the_fixed_point_of_a_linear_map_is_found() {
         let rates = [0.9, -0.5, 0.3];

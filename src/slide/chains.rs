@@ -1,4 +1,4 @@
-//! The chains of vertices that curves go through, from corner to corner.
+//! The chains of vertices that curves pass through, from corner to corner.
 
 use std::collections::BTreeSet;
 
@@ -8,24 +8,25 @@ use crate::slide::options::Slide;
 use crate::slide::partners::{Partner, Partners};
 use crate::topology::Topology;
 
-/// A curve turns at a vertex if it does so by more than this, in radians, besides what the rounding of coordinates may do.
+/// A curve turns at a vertex if the angle exceeds this, in radians, plus the possible effect of rounded coordinates.
 const STRAIGHT: f64 = 1e-6;
 
-/// The vertices of a curve in their order.
+/// The vertices of a curve, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
-    /// The first and the last one stay where they are, unless the curve is closed.
+    /// The first and the last vertex do not move, unless the curve is closed.
     pub(crate) vertices: Vec<u32>,
-    /// Whether the last one is joined to the first.
+    /// Whether the last vertex is joined to the first.
     pub(crate) is_closed: bool,
     /// For each edge, whether it is part of a straight run of several edges.
     pub(crate) straight: Vec<bool>,
-    /// The partners of the vertices, in the same order, if they belong together in pairs with those of another curve.
+    /// The partners of the vertices, in the same order, if they form pairs with the vertices of another curve.
     pub(crate) image: Option<Vec<u32>>,
 }
 
-/// The chains that have a vertex to slide, in an order that depends on the numbers of vertices alone, and the number of pairs that
-/// stay as they are not alike. Of two chains whose vertices belong together in pairs, only one is returned.
+/// Returns the chains with a vertex that may slide, in an order that depends only on the numbers of vertices, and the
+/// number of pairs that do not move because the motion of the others does not fit them. Of two chains whose vertices
+/// form pairs, only one is returned.
 pub(crate) fn chains(
     points: &[[f64; 2]],
     topology: &Topology<'_>,
@@ -40,12 +41,12 @@ pub(crate) fn chains(
     let partners = Partners::new(&slide.periodic, points, shortest);
     let mut held = slide.held.clone();
     held.sort_unstable();
-    // The angle by which the curve turns at a vertex, if it has one curve alone.
+    // The angle by which the curve turns at a vertex, if exactly one curve passes through it.
     let turn = |v: u32| match edges.at(v) {
         &[(_, a), (_, b)] => Some(turn_between(at(a), at(v), at(b))),
         _ => None,
     };
-    // What partners are is one thing, whatever rounding makes of either.
+    // Partners have to agree, even if rounding makes their curves differ.
     let with_partner = |v: u32| std::iter::once(v).chain(partners.of(v).map(|to| to.vertex));
     let is_flat = |v: u32| with_partner(v).all(|v| turn(v).is_some_and(|turn| turn.is_flat()));
     let is_straight = |a: u32, b: u32| is_flat(a) || is_flat(b);
@@ -59,7 +60,8 @@ pub(crate) fn chains(
         }
     };
     let must_stay = |v: u32| partners.stays(v) || with_partner(v).any(is_corner_itself);
-    // Whether the curve of a vertex's partner goes to both sides of it as that of the vertex does, and is of the same pairs.
+    // Whether the curve at a vertex's partner continues to both sides as it does at the vertex, with vertices of the
+    // same pairs.
     let is_matched = |v: u32, Partner { vertex: partner, motion }: Partner| {
         let goes_on = |from: u32, to: u32| {
             let pair = [at(from), at(to)];
@@ -85,7 +87,7 @@ pub(crate) fn chains(
             walked[v as usize] = true;
             vertices.push(v);
             let other = edges.at(v).iter().map(|&(_, other)| other).find(|&other| other != last);
-            // Two vertices have one edge, so there is another one.
+            // Two vertices share only one edge, so there is another vertex.
             let Some(next) = other else { break };
             (last, v) = (v, next);
         }
@@ -116,7 +118,7 @@ pub(crate) fn chains(
         let mut image: Option<Vec<u32>> =
             chain.vertices[inner..chain.vertices.len() - inner].iter().map(of).collect();
         if let (Some(image), false) = (&mut image, chain.is_closed) {
-            // The ends of the other chain: the neighbor where the motion takes that of this one.
+            // The ends of the other chain: the neighbor nearest to where the motion takes the end of this one.
             let end = |end: u32, last: u32| {
                 let Partner { vertex, motion } = partners.of(last)?;
                 let there = |v: &u32| at(*v).distance(motion.at(at(end)));
@@ -133,7 +135,8 @@ pub(crate) fn chains(
     (joined(chains, image), partners.unlike)
 }
 
-/// The chains of which none is the image of another one before it, each with its own. A chain that is its own image is left out.
+/// Assigns to each chain its image. Leaves out chains that are images of earlier ones, and chains that are their own
+/// image.
 fn joined(chains: Vec<Chain>, image: impl Fn(&Chain) -> Option<Vec<u32>>) -> Vec<Chain> {
     let inner = |vertices: &[u32], is_closed: bool| match is_closed {
         true => vertices.to_vec(),
@@ -160,11 +163,11 @@ fn joined(chains: Vec<Chain>, image: impl Fn(&Chain) -> Option<Vec<u32>>) -> Vec
     kept
 }
 
-/// How a curve turns at a vertex.
+/// The turn of a curve at a vertex.
 struct Turn {
-    /// In radians, from 0 to π.
+    /// The angle in radians, from 0 to π.
     angle: f64,
-    /// What the rounding of coordinates may contribute.
+    /// The part of the angle that the rounding of coordinates may cause.
     rounding: f64,
 }
 
@@ -201,7 +204,7 @@ impl Edges {
         Self(edges)
     }
 
-    /// The edges at a vertex.
+    /// Returns the edges at a vertex.
     fn at(&self, v: u32) -> &[(u32, u32)] {
         let start = self.0.partition_point(|&(from, _)| from < v);
         let count = self.0[start..].iter().take_while(|&&(from, _)| from == v).count();

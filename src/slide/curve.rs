@@ -8,25 +8,26 @@ use crate::slide::options::Slide;
 /// The largest value of u (1 - u)² for u from 0 to 1.
 const MOST: f64 = 4.0 / 27.0;
 
-/// A curve, in the unit of the mesh. A place on it is told by a parameter: the length of the lines between the given vertices up to
-/// there. Of a closed curve, parameters that differ by its whole length tell the same place.
+/// A curve, in the unit of the mesh. A parameter identifies a point of it: the length of the lines between the given
+/// vertices up to there. On a closed curve, parameters that differ by its whole length identify the same point.
 ///
-/// Between two given vertices the curve is a cubic over the line between them. Its slopes are those of the circle through a vertex
-/// and its two neighbors, and less where it would leave the line by more than the bound.
+/// Between two given vertices the curve is a cubic over the line between them. Its slope at a vertex is that of the
+/// circle through the vertex and its two neighbors, or smaller where the curve would otherwise leave the line by more
+/// than the bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
-    /// The given vertices; the first again at the end if the curve is closed.
+    /// The given vertices. For a closed curve, the first is repeated at the end.
     knots: Vec<DVec2>,
     /// The parameter of each knot.
     params: Vec<f64>,
-    /// The slopes of each piece over its line, at its start and its end.
+    /// The slopes of each piece relative to its line, at its start and its end.
     slopes: Vec<[f64; 2]>,
-    /// How far each knot may lie from the lines between vertices that have moved.
+    /// The largest allowed distance of each knot from the lines between vertices that have moved.
     bounds: Vec<f64>,
     is_closed: bool,
 }
 
-/// A place on a curve, and the derivatives of the point by the parameter.
+/// A point of a curve, and its derivatives by the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) point: DVec2,
@@ -55,7 +56,8 @@ impl Curve {
             };
             let (a, b) = (lines[before], lines[after]);
             let turn = a.perp_dot(b).atan2(a.dot(b));
-            // The angle from the line before to the tangent. A curve goes on from a straight run in its direction.
+            // The share of the turn that is between the line before and the tangent. Next to a straight run, the
+            // tangent has the run's direction.
             let share = match (straight[before], straight[after]) {
                 (true, _) => 0.0,
                 (false, true) => 1.0,
@@ -68,7 +70,7 @@ impl Curve {
             if straight[piece] {
                 return [0.0; 2];
             }
-            // At a corner, a piece is as at its other end: a part of a circle.
+            // At a corner, a piece takes the slope of its other end, like an arc of a circle.
             let start = start.or(end.map(|end| -end)).unwrap_or(0.0);
             let end = end.unwrap_or(-start);
             let length = lines[piece].length();
@@ -86,7 +88,7 @@ impl Curve {
         Self { knots, params, slopes, bounds, is_closed: *is_closed }
     }
 
-    /// The curve through the partners of a chain's vertices, which tells the same places by the same parameters as the chain's own.
+    /// Makes the curve through the partners of a chain's vertices. It uses the parameters of the chain's own curve.
     pub(crate) fn of_partners(
         &self,
         points: &[[f64; 2]],
@@ -97,22 +99,22 @@ impl Curve {
         Self { params: self.params.clone(), ..Self::new(points, &chain, slide) }
     }
 
-    /// The parameter of each given vertex.
+    /// The parameters of the given vertices.
     pub(crate) fn params(&self) -> &[f64] {
         &self.params[..self.params.len() - usize::from(self.is_closed)]
     }
 
-    /// The whole length of a closed curve.
+    /// The length of the lines of a closed curve.
     pub(crate) fn period(&self) -> f64 {
         self.params[self.params.len() - 1]
     }
 
-    /// The parameter that tells the same place within the first turn around a closed curve.
+    /// Returns the parameter of the same point within the first turn around a closed curve.
     fn wrapped(&self, param: f64) -> f64 {
         if self.is_closed { param.rem_euclid(self.period()) } else { param }
     }
 
-    /// The place of a parameter.
+    /// Returns the point of a parameter, with derivatives.
     pub(crate) fn at(&self, param: f64) -> Place {
         let param = self.wrapped(param);
         let after = self.params.partition_point(|&start| start <= param);
@@ -126,20 +128,20 @@ impl Curve {
         let slope = a * v * (1.0 - 3.0 * u) + b * u * (3.0 * u - 2.0);
         let bend = a * (6.0 * u - 4.0) + b * (6.0 * u - 2.0);
         Place {
-            // Of a line along an axis, one coordinate is that of both ends, to the last bit.
+            // On a line parallel to an axis, one coordinate is exactly that of both ends.
             point: p + line * u + across * height,
             first: along + across * (slope / length),
             second: across * (bend / length / length),
         }
     }
 
-    /// The given vertices strictly between two parameters, each with its own.
+    /// Returns the given vertices strictly between two parameters, each with its parameter.
     fn knots_between(&self, low: f64, high: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
         let period = if self.is_closed { self.period() } else { 0.0 };
         let turns = if self.is_closed { (low / period).floor() } else { 0.0 };
         let pieces = self.slopes.len();
         let first = self.params.partition_point(|&param| param <= low - turns * period);
-        // The last knot of a closed curve is the first one of the next turn.
+        // The last knot of a closed curve is the first knot of the next turn.
         let knot = move |k: usize| match self.is_closed {
             true => (k % pieces, (turns + (k / pieces) as f64) * period + self.params[k % pieces]),
             false => (k, self.params.get(k).copied().unwrap_or(f64::INFINITY)),
@@ -147,7 +149,8 @@ impl Curve {
         (first..).map(knot).take_while(move |&(_, param)| param < high)
     }
 
-    /// Whether the given vertices between two parameters lie near the lines from there to the point of a parameter between.
+    /// Whether the given vertices between `low` and `high` are near the two lines that join the points of `low`,
+    /// `middle` and `high`.
     pub(crate) fn is_near(&self, [low, middle, high]: [f64; 3]) -> bool {
         let [from, over, to] = [low, middle, high].map(|param| self.at(param).point);
         self.knots_between(low, high).all(|(knot, param)| {
@@ -156,8 +159,8 @@ impl Curve {
         })
     }
 
-    /// How far a line between two points of the curve is from the lines between the given vertices: the farthest of the given vertices
-    /// between, or the first end.
+    /// Returns how far a line between two points of the curve is from the lines between the given vertices: the largest
+    /// of the distances of the given vertices in between and of the line's first end.
     pub(crate) fn off(&self, low: f64, high: f64) -> f64 {
         let ends = [low, high].map(|param| self.at(param).point);
         let far = self.knots_between(low, high).map(|(knot, _)| distance(self.knots[knot], ends));
@@ -167,12 +170,12 @@ impl Curve {
         far.fold(distance(ends[0], [self.knots[piece], self.knots[piece + 1]]), f64::max)
     }
 
-    /// The parameter of a point on the curve, nearest to where a given vertex was. `None` if the point is farther than `tolerance`
-    /// from the curve.
+    /// Returns the parameter of a point on the curve, searching outward from a given vertex. `None` if the point is
+    /// farther than `tolerance` from the curve.
     pub(crate) fn find(&self, point: DVec2, vertex: usize, tolerance: f64) -> Option<f64> {
         let pieces = self.slopes.len();
         let steps = if self.is_closed { pieces / 2 + 1 } else { pieces };
-        // Outward from the given vertex, forward and back in turn.
+        // Outward from the given vertex, alternating forward and back.
         let outward = (0..=steps as isize).flat_map(|k| [k, -1 - k]);
         outward.map(|k| vertex as isize + k).find_map(|at| {
             let turns = at.div_euclid(pieces as isize);
@@ -191,7 +194,7 @@ impl Curve {
     }
 }
 
-/// The distance of a point from the line between two others.
+/// Returns the distance of a point from the line segment between two others.
 fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     let line = to - from;
     let share = ((point - from).dot(line) / line.length_squared()).clamp(0.0, 1.0);
@@ -202,7 +205,7 @@ fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A curve from corner to corner: a straight run along y = 1, and then an arc about (3, 0) of radius 1.
+    /// A curve from corner to corner: a straight run along y = 1, and then an arc around (3, 0) of radius 1.
     fn slot() -> (Curve, Vec<[f64; 2]>) {
         let mut points: Vec<[f64; 2]> = (0..4).map(|k| [f64::from(k), 1.0]).collect();
         points.extend((1..=6).map(|k| {
@@ -230,7 +233,7 @@ mod tests {
             assert!((radius - 1.0).abs() < 2e-4, "{share}: {radius}");
             assert_eq!(curve.find(place.point + DVec2::new(0.1, 0.1), 5, 1e-9), None);
         }
-        // The tangent goes on from the straight run into the arc.
+        // The tangent is continuous from the straight run into the arc.
         let [before, after] = [3.0 - 1e-9, 3.0 + 1e-9].map(|at| curve.at(at).first.normalize());
         assert!(before.distance(after) < 1e-7, "{before} {after}");
     }
@@ -274,7 +277,7 @@ mod tests {
             assert!(curve.at(param).point.distance(turned) < 1e-12);
             assert!((turned.length() - 1.0).abs() < 1e-3);
         }
-        // Over the first vertex, and too far over it.
+        // First across the first vertex, and then too far across it.
         assert!(curve.is_near([-0.5 * edge, 0.1 * edge, 0.6 * edge]));
         assert!(!curve.is_near([-3.5 * edge, -3.0 * edge, 3.0 * edge]));
         let before = curve.at(-0.25 * edge).point;

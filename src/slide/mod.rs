@@ -1,5 +1,5 @@
-//! Vertices that slide: those of the boundary and of lines inside the domain move along the curve they are on, from corner
-//! to corner.
+//! Sliding vertices: vertices of the boundary and of lines inside the domain move along the curve that they are on,
+//! from corner to corner.
 
 mod acceleration;
 mod chains;

@@ -8,7 +8,7 @@ use crate::slide::curve::{Curve, Place};
 use crate::slide::patch::Patch;
 use crate::slide::side::Side;
 
-/// The largest share of the way to a neighbor on the curve that a step may go.
+/// A step may go at most this share of the way to a neighbor on the curve.
 const NEAREST: f64 = 0.8;
 
 /// The parameters of a vertex and its neighbors on a curve.
@@ -19,12 +19,12 @@ pub(crate) struct Window {
     pub(crate) high: f64,
 }
 
-/// How far a vertex may be from where it was given.
+/// A bound on how far a vertex may be from its given position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
-    /// The parameter of where it was given.
+    /// The parameter of the given position.
     pub(crate) start: f64,
-    /// The largest distance from there, in the unit of the mesh; infinite for none.
+    /// The largest distance from the given position, in the unit of the mesh; infinite for no bound.
     pub(crate) most: f64,
 }
 
@@ -35,7 +35,7 @@ impl Reach {
             || curve.at(at).point.distance(curve.at(self.start).point) <= self.most
     }
 
-    /// A way from a parameter, cut off where a straight curve goes out of reach.
+    /// Returns a step from a parameter, shortened so that it stays in reach if the curve is straight.
     fn shortened(self, way: f64, at: f64) -> f64 {
         if self.most.is_infinite() {
             return way;
@@ -45,12 +45,13 @@ impl Reach {
     }
 }
 
-/// How much rounding may add to the distance from where a vertex was given, as a share of it.
+/// The share of the distance from the given position that rounding may add.
 const ROUNDING: f64 = 1e-9;
 
-/// One Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls below `floor`. Returns the
-/// new parameter of the vertices, if they move: those at `k` on one curve or on two that share their parameters, for which the step is
-/// that of the sum over both patches, and one that neither patch forbids.
+/// Takes one Newton step along the curve, with a line search as in the sweeps over free vertices. No altitude falls
+/// below `floor`. Returns the new parameter if the vertices move. The step moves the vertex `k` of a curve, or both
+/// vertices `k` of two curves that share their parameters. In the latter case it is the step for the sum over both
+/// patches, and both patches must allow it.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
@@ -113,5 +114,5 @@ pub(crate) fn visit(
     None
 }
 
-/// How much rounding may add to the objective of a patch, relative to the sum of q².
+/// The share of the sum of q² that rounding may add to the objective of a patch.
 const SLACK: f64 = 1e-12;

@@ -1,4 +1,4 @@
-//! What slides, and how far it may leave the curve that is given.
+//! The options of sliding: which vertices slide, and how far they may leave the given curve.
 
 use crate::error::{MeshError, SmoothError};
 use crate::periodic::Periodic;
@@ -6,24 +6,26 @@ use crate::periodic::Periodic;
 /// Which vertices slide along the curve they are on, and how curves are continued between their vertices; set by
 /// [`Smoother::set_slide`](crate::Smoother::set_slide).
 ///
-/// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners stay: ends of curves, vertices where more than
-/// two such edges meet, [`held`](Self::held) ones, and those at which a curve turns by more than
-/// [`corner_angle`](Self::corner_angle), or at all between two straight runs. What is straight stays straight; elsewhere
+/// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners do not move. These are the ends of
+/// curves, vertices where more than two such edges meet, [`held`](Self::held) vertices, and vertices at which a curve
+/// turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight runs
+/// stay straight; elsewhere vertices move along a piecewise cubic through the given positions of the vertices.
 /// vertices move along a piecewise cubic through the vertices as they were given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// A vertex at which a curve turns by more than this is a corner. In degrees, from 0 to 180.
     pub corner_angle: f64,
-    /// How far a vertex may lie from the lines between the vertices that were given, and these from the lines between vertices that
-    /// have moved. In the unit of the mesh. `None` for a tenth of the edge there.
+    /// The largest distance, in the unit of the mesh, of a vertex from the lines between the given vertices, and of a
+    /// given vertex from the lines between vertices that have moved. `None` for a tenth of the edge there.
     pub hausdorff: Option<f64>,
-    /// Edges of triangles that are parts of curves besides those of the boundary: between regions, or on lines inside one.
-    /// Others are left out, and those with a free vertex.
+    /// Edges of triangles that are parts of curves in addition to those of the boundary: between regions, or on lines
+    /// inside a region. Pairs that are not edges, and edges with a free vertex, are ignored.
     pub lines: Vec<[u32; 2]>,
     /// Vertices that do not slide. In any order, repeats allowed.
     pub held: Vec<u32>,
-    /// Vertices that belong together in pairs: both of a pair slide, such that the motion goes on to take one to the other, or neither.
-    /// Those of no motion or of several pairs stay. [`Self::pair_sides`] and [`Self::pair_by`] find pairs.
+    /// Pairs of vertices that slide together: either both slide, so that the motion still takes one to the other, or
+    /// neither. Vertices that no motion fits, or that are in several pairs, do not move. [`Self::pair_sides`] and
+    /// [`Self::pair_by`] find pairs.
     pub periodic: Vec<Periodic>,
 }
 
@@ -35,12 +37,12 @@ impl Default for Slide {
 }
 
 impl Slide {
-    /// The bound on the distance from an edge of this length, in the unit of the mesh.
+    /// Returns the bound on the distance from an edge of the given length, in the unit of the mesh.
     pub(crate) fn bound(&self, edge: f64) -> f64 {
         self.hausdorff.unwrap_or(0.1 * edge)
     }
 
-    /// Checks the numbers, and that there are all the vertices it lists.
+    /// Checks the ranges of numbers, and that all listed vertices exist.
     pub(crate) fn check(&self, vertices: usize) -> Result<(), SmoothError> {
         let pairs = self.periodic.iter().flat_map(|periodic| periodic.pairs.as_flattened());
         let mut listed = self.held.iter().chain(self.lines.as_flattened()).chain(pairs);

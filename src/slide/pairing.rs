@@ -1,4 +1,4 @@
-//! Pairs of vertices found from where they are.
+//! Finds pairs of vertices from their positions.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,14 @@ use crate::slide::partners::Partners;
 use crate::slide::rigid::Rigid;
 use crate::topology::Topology;
 
-/// The direction along which vertices are looked up: across the axes and other lines on which sides usually are. At most of length 1.
+/// The direction along which vertices are sorted for the search. It is oblique to the axes and to other usual
+/// directions of sides. Its length is at most 1.
 const ACROSS: DVec2 = DVec2::new(0.796, 0.605);
 
 impl Slide {
-    /// Adds the pairs of vertices on the boundary of which a motion takes one to where the other is, with the vertices at `points`.
-    /// Returns how many it found: none if the motion is neither a translation nor a rotation, or leaves all where they are.
+    /// Adds the pairs of boundary vertices such that the motion takes the first vertex to the position of the second.
+    /// `points` are the positions of all vertices. Returns the number of pairs found: 0 if the motion is neither a
+    /// translation nor a rotation, or moves no vertex.
     pub fn pair_by(
         &mut self,
         topology: &Topology<'_>,
@@ -34,9 +36,10 @@ impl Slide {
         found
     }
 
-    /// Adds the pairs of vertices on two sides of the boundary, if one translation or rotation takes all vertices of one to those of the
-    /// other, with the vertices at `points`; what is inside on one side is then outside on the other. Returns how many it found, none if
-    /// there is no such motion. Of the vertices, in any order, those that are not on the boundary are left out.
+    /// Adds the pairs of vertices on two sides of the boundary, if a translation or rotation takes all vertices of one
+    /// side to those of the other, and the inside at one side to the outside at the other. `points` are the positions
+    /// of all vertices. The vertices of a side may be in any order; those that are not on the boundary are ignored.
+    /// Returns the number of pairs found, 0 if there is no such motion.
     pub fn pair_sides(
         &mut self,
         topology: &Topology<'_>,
@@ -49,7 +52,7 @@ impl Slide {
         if from.len() != to.len() || ahead.is_empty() {
             return 0;
         }
-        // The boundary goes along the other side in the opposite direction.
+        // Along the other side the boundary runs in the opposite direction.
         back.iter_mut().for_each(|run| run.reverse());
         let run = ahead.swap_remove(0);
         let matching = back.iter().filter(|other| other.len() == run.len());
@@ -75,7 +78,8 @@ impl Slide {
 /// The boundary of a mesh.
 struct Boundary<'p> {
     points: &'p [[f64; 2]],
-    /// The vertex after each, with the mesh on the left, and the shorter one of the edges there; of several, any.
+    /// For each vertex the next one along the boundary, with the mesh on the left, and the length of the shorter edge
+    /// at the vertex. If several boundaries meet at a vertex, any of them.
     next: BTreeMap<u32, (u32, f64)>,
 }
 
@@ -101,12 +105,12 @@ impl<'p> Boundary<'p> {
         self.points[vertex as usize].into()
     }
 
-    /// The length of the shorter edge at a vertex.
+    /// Returns the length of the shorter boundary edge at a vertex.
     fn edge(&self, vertex: u32) -> f64 {
         self.next.get(&vertex).map_or(0.0, |&(_, edge)| edge)
     }
 
-    /// Those of some vertices that are on the boundary, ascending, each once.
+    /// Returns those of the given vertices that are on the boundary, ascending, each once.
     fn listed(&self, vertices: &[u32]) -> Vec<u32> {
         let mut listed: Vec<u32> =
             vertices.iter().copied().filter(|v| self.next.contains_key(v)).collect();
@@ -115,7 +119,8 @@ impl<'p> Boundary<'p> {
         listed
     }
 
-    /// The runs of vertices along the boundary, from end to end, of some that are listed, ascending. A run that is closed is left out.
+    /// Returns the runs of consecutive boundary vertices, from end to end, formed by the given vertices, which are
+    /// ascending. Closed runs are left out.
     fn runs(&self, listed: &[u32]) -> Vec<Vec<u32>> {
         let after = |v: u32| {
             let &(next, _) = self.next.get(&v)?;
@@ -131,7 +136,7 @@ impl<'p> Boundary<'p> {
         starts.map(run).collect()
     }
 
-    /// The pairs of which a motion takes the first, one of `from`, to where the second is, one of `to`.
+    /// Returns the pairs of a vertex in `from` and one in `to` such that the motion takes the first to the second.
     fn pairs(&self, motion: Rigid, from: &[u32], to: &[u32]) -> Vec<[u32; 2]> {
         let along = |point: DVec2| point.dot(ACROSS);
         let mut sorted: Vec<(f64, u32)> = to.iter().map(|&v| (along(self.at(v)), v)).collect();

@@ -1,4 +1,4 @@
-//! Which vertices of curves belong together in pairs, and which of those stay.
+//! The pairs of vertices that slide together, and the vertices of pairs that do not move.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::periodic::Periodic;
 use crate::slide::rigid::Rigid;
 
-/// The vertex that another belongs together with, and the motion from there to it.
+/// The other vertex of a pair, and the motion that takes this one to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Partner {
     pub(crate) vertex: u32,
@@ -18,18 +18,18 @@ pub(crate) struct Partner {
 #[derive(Debug, Default)]
 pub(crate) struct Partners {
     links: BTreeMap<u32, Vec<Partner>>,
-    /// Vertices that stay, as they are of no pair or of several.
+    /// Vertices that do not move, as no motion fits their pair or they are in several pairs.
     stay: BTreeSet<u32>,
-    /// Number of pairs that the motion of the others does not take to one another.
+    /// Number of pairs that the motion of the others does not fit.
     pub(crate) unlike: usize,
 }
 
 impl Partners {
-    /// How far the second vertex of a pair may be from where the motion of all takes the first, in edges there.
+    /// How far the second vertex of a pair may be from where the motion takes the first, as a share of the edges there.
     pub(crate) const AGREE: f64 = 1e-4;
 
-    /// Sorts out the pairs that are given for vertices at `points`. `edge` is the length of a curve's edges at a vertex; of a vertex on no
-    /// curve it is 0.
+    /// Checks the given pairs of vertices at `points`. `edge` returns the length of a curve's edges at a vertex, and 0
+    /// for a vertex that is on no curve.
     pub(crate) fn new(
         periodic: &[Periodic],
         points: &[[f64; 2]],
@@ -50,7 +50,7 @@ impl Partners {
                         partners.link(b, Partner { vertex: a, motion: motion.inverse() });
                     }
                     None => {
-                        // That a vertex off all curves moves by itself harms no other pair.
+                        // A vertex that is on no curve does not slide, so it does not affect other pairs.
                         partners.unlike += 1;
                         partners.stay.extend([a, b]);
                     }
@@ -70,7 +70,8 @@ impl Partners {
         }
     }
 
-    /// Lets vertices of several pairs stay, and all that belong together with one that stays.
+    /// Adds vertices that are in several pairs to those that do not move, and then all partners of vertices that do not
+    /// move.
     fn settle(&mut self) {
         let several = self.links.iter().filter(|(_, links)| links.len() > 1);
         self.stay.extend(several.map(|(&vertex, _)| vertex));
@@ -84,12 +85,12 @@ impl Partners {
         }
     }
 
-    /// Whether a vertex stays whatever its place.
+    /// Whether a vertex does not move because of its pairs.
     pub(crate) fn stays(&self, vertex: u32) -> bool {
         self.stay.contains(&vertex)
     }
 
-    /// The partner of a vertex, if it has one.
+    /// Returns the partner of a vertex, if it has one.
     pub(crate) fn of(&self, vertex: u32) -> Option<Partner> {
         self.links.get(&vertex)?.first().copied()
     }
@@ -99,8 +100,7 @@ impl Partners {
         self.links.get(&a).into_iter().flatten().any(|link| link.vertex == b)
     }
 
-    /// Whether a point near a vertex is where the motion to its partner takes another one, as closely as pairs have to agree where edges
-    /// have this length.
+    /// Whether the motion takes the first point to the second, within the tolerance for pairs at edges of this length.
     pub(crate) fn agree(motion: Rigid, pair: [DVec2; 2], edge: f64) -> bool {
         motion.takes(&(pair, Self::AGREE * edge))
     }

@@ -1,4 +1,4 @@
-//! The triangles at one vertex, for visits on the host.
+//! The triangles around one vertex, for visits on the host.
 
 use glam::DVec2;
 
@@ -34,19 +34,19 @@ impl Fan {
         self.0.len()
     }
 
-    /// The vertex itself.
+    /// The vertex in the middle.
     pub(crate) fn own(&self) -> u32 {
         self.0.first().map_or(0, |corners| corners[0])
     }
 }
 
-/// The triangles at a vertex as metrics see them with the vertex at some position.
+/// The triangles around a vertex as metrics see them, for any position of the vertex.
 pub(crate) struct Patch<'a> {
     pub(crate) problem: &'a Problem,
     pub(crate) positions: &'a [DVec2],
     pub(crate) fan: &'a Fan,
     pub(crate) step: &'a Step,
-    /// The least altitude that a triangle may have, normalized; 0 for any.
+    /// The least altitude that a triangle may have, normalized; 0 for no bound.
     pub(crate) floor: f64,
 }
 
@@ -56,7 +56,7 @@ impl Patch<'_> {
         self.problem.corner(corners, |v| if v == own { at } else { self.positions[v as usize] })
     }
 
-    /// The objective with its derivatives by the position of the vertex.
+    /// Returns the objective with its derivatives by the position of the vertex.
     pub(crate) fn derivatives(&self, at: DVec2) -> Dual {
         let Step { metric, sharpness, .. } = *self.step;
         self.fan.0.iter().fold(Dual::default(), |sum, corners| {
@@ -72,7 +72,8 @@ impl Patch<'_> {
         })
     }
 
-    /// The objective. `None` if a triangle is inverted or flat, or has an inverse mean ratio above the limit or an altitude below the floor.
+    /// Returns the objective. `None` if a triangle is inverted or flat, or has an inverse mean ratio above the limit or
+    /// an altitude below the floor.
     pub(crate) fn objective(&self, at: DVec2, limit: f64) -> Option<f64> {
         let Step { metric, sharpness, .. } = *self.step;
         let mut sum = 0.0;
@@ -91,7 +92,7 @@ impl Patch<'_> {
         Some(sum)
     }
 
-    /// The largest inverse mean ratio.
+    /// Returns the largest inverse mean ratio.
     pub(crate) fn worst_shape(&self, at: DVec2) -> f64 {
         let ratio = |corners| self.corner(corners, at).inverse_mean_ratio();
         self.fan.0.iter().map(ratio).fold(0.0, f64::max)

@@ -1,12 +1,12 @@
-//! Rigid motions of the plane, and which one takes points to others.
+//! Rigid motions of the plane, found from pairs of points.
 
 use glam::DVec2;
 
 use crate::periodic::Motion;
 
-/// How far a given motion may be from a rigid one, in lengths of its columns.
+/// How far the columns of a given motion may be from those of a rigid one.
 const RIGID: f64 = 1e-6;
-/// The most pairs from which a motion is sought.
+/// The most pairs from which candidates for a motion are made.
 const SAMPLES: usize = 16;
 
 /// A translation or a rotation.
@@ -15,7 +15,7 @@ pub(crate) struct Rigid {
     /// Cosine and sine of the angle.
     turn: DVec2,
     from: DVec2,
-    /// Where `from` goes.
+    /// The point to which `from` is moved.
     to: DVec2,
 }
 
@@ -24,16 +24,16 @@ impl Rigid {
         Self { turn: DVec2::X, from, to }
     }
 
-    /// The motion that takes two points to two others, if these are as far from each other.
+    /// Returns the motion that takes two points to two others, if their distances are the same within the tolerance.
     fn through([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], tolerance: f64) -> Option<Self> {
         let (before, after) = (c - a, d - b);
         let is_rigid = (before.length() - after.length()).abs() <= tolerance;
-        // The quotient of both as complex numbers.
+        // The quotient of the two vectors as complex numbers.
         let turn = DVec2::new(before.dot(after), before.perp_dot(after)).try_normalize()?;
         is_rigid.then_some(Self { turn, from: a, to: b })
     }
 
-    /// A motion that is given, if it is rigid.
+    /// Converts a given motion, if it is rigid.
     pub(crate) fn of([x, y]: Motion) -> Option<Self> {
         let [first, second] = [0, 1].map(|k| DVec2::new(x[k], y[k]));
         let is_rigid =
@@ -46,18 +46,19 @@ impl Rigid {
         })
     }
 
-    /// Where a point goes.
+    /// Returns the point to which a point is moved.
     pub(crate) fn at(self, point: DVec2) -> DVec2 {
         self.to + self.turn.rotate(point - self.from)
     }
 
-    /// The way back.
+    /// Returns the inverse motion.
     pub(crate) fn inverse(self) -> Self {
         Self { turn: DVec2::new(self.turn.x, -self.turn.y), from: self.to, to: self.from }
     }
 
-    /// The motion that takes the first point of most of these pairs to the second, within the tolerance of each: what is given if no other
-    /// serves more, then translations, then what two pairs tell.
+    /// Returns the motion that takes the first point to the second for the most pairs, within the tolerance of each.
+    /// Candidates are the given motion, then translations of single pairs, then motions through two pairs; of equally
+    /// good ones the first is taken.
     pub(crate) fn of_pairs(given: Option<Motion>, pairs: &[([DVec2; 2], f64)]) -> Option<Self> {
         let count = pairs.len();
         let step = count.div_ceil(SAMPLES).max(1);
@@ -80,7 +81,7 @@ impl Rigid {
         best.map(|(_, motion)| motion)
     }
 
-    /// Whether the first point of a pair goes to the second, within its tolerance.
+    /// Whether the motion takes the first point of a pair to the second, within its tolerance.
     pub(crate) fn takes(self, ([from, to], tolerance): &([DVec2; 2], f64)) -> bool {
         self.at(*from).distance(*to) <= *tolerance
     }
@@ -97,7 +98,7 @@ mod tests {
         let there = Rigid::of(matrix).unwrap();
         let points = (0..40).map(|k| DVec2::new(f64::from(k), f64::from(k % 7)));
         let mut pairs: Vec<_> = points.map(|p| ([p, there.at(p)], 1e-9)).collect();
-        // A few that are not of it, and the first of all is one of them.
+        // A few pairs do not fit, and the very first is one of them.
         for k in [0, 16, 21] {
             pairs[k].0[1] += DVec2::new(0.1, 0.0);
         }

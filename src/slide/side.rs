@@ -7,7 +7,8 @@ use crate::slide::options::Slide;
 use crate::slide::patch::Fan;
 use crate::topology::Topology;
 
-/// A curve and its vertices, in their order. Only those with a fan slide: all but the ends of a curve that is not closed.
+/// A curve and its vertices, in order. Only vertices with a fan slide: all except the ends of a curve that is not
+/// closed.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
     pub(crate) curve: Curve,
@@ -17,7 +18,7 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    /// The curve of a chain, and that of its partners if it has some, which goes by the same parameters.
+    /// Makes the curve of a chain and, if the chain has partners, the curve of these, which shares the parameters.
     pub(crate) fn of(
         points: &[[f64; 2]],
         topology: &Topology<'_>,
@@ -40,7 +41,7 @@ impl Side {
         std::iter::once(own).chain(image).collect()
     }
 
-    /// Where a parameter is on the curve: the point and its derivatives by the parameter, normalized as a problem does.
+    /// Returns the point of a parameter and its derivatives by the parameter, normalized like the problem.
     pub(crate) fn at(&self, problem: &Problem, param: f64) -> Place {
         let (center, scale) = problem.normalization();
         let Place { point, first, second } = self.curve.at(param);

@@ -1,4 +1,4 @@
-//! The vertices of a mesh that slide, and sweeps over them.
+//! The sliding vertices of a mesh, and sweeps over them.
 
 use glam::DVec2;
 
@@ -13,10 +13,10 @@ use crate::slide::side::Side;
 use crate::topology::Topology;
 
 impl Slide {
-    /// The vertices that are not free and have moved, but not along a curve that they were on, or past a neighbor there, or not as far as
-    /// the vertex that they belong together with: ascending.
-    /// `before` are the vertices as they were given, `after` as they are, stored with so many digits. Vertices that one of the lists
-    /// does not have are left out.
+    /// Returns the vertices, ascending, that are not free and have moved in a way that sliding does not allow: not
+    /// along their curve, past a neighbor on it, or not as far as their partner. `before` are the given positions,
+    /// `after` the present ones, which are stored with the precision `stored`. Vertices that are missing in a list are
+    /// not returned.
     pub fn astray(
         &self,
         topology: &Topology<'_>,
@@ -46,23 +46,23 @@ impl Slide {
     }
 }
 
-/// How often vertices may give way to others that did.
+/// The most rounds in which vertices go back because their neighbors did.
 const GIVE_WAY: u32 = 5;
-/// How far the parameters of partners may be from each other, in what rounding does to a coordinate.
+/// The largest difference between the parameters of partners, as a multiple of the rounding of a coordinate.
 const TOGETHER: f64 = 4.0;
 
-/// Where the vertices of each curve are on it. Two curves whose vertices belong together in pairs share theirs.
+/// The parameters of the vertices of each curve. Two curves whose vertices form pairs share them.
 pub(crate) type Params = Vec<Vec<f64>>;
 
 /// The curves of a mesh, with the vertices that slide on them.
 #[derive(Clone, Debug)]
 pub(crate) struct Sliding {
     tracks: Vec<Track>,
-    /// Number of pairs that stay as they are not alike.
+    /// Number of pairs that do not move because the motion of the others does not fit them.
     unlike: usize,
 }
 
-/// A curve, and the one whose vertices belong together with its own in pairs if there is one.
+/// A curve and, if its vertices form pairs with those of another curve, that curve.
 #[derive(Clone, Debug)]
 struct Track {
     sides: Vec<Side>,
@@ -76,7 +76,7 @@ impl Sliding {
         Self { tracks: chains.into_iter().map(track).collect(), unlike }
     }
 
-    /// The same curves, with vertices numbered as a problem does.
+    /// Renumbers the vertices of the curves as a problem does.
     pub(crate) fn numbered(mut self, problem: &Problem, vertices: usize) -> Self {
         let mut number = vec![u32::MAX; vertices];
         for (new, &v) in (0..).zip(problem.vertices()) {
@@ -95,7 +95,7 @@ impl Sliding {
         sides.flat_map(|side| &side.fans).flatten().count()
     }
 
-    /// The vertices that slide, as a problem numbers them, ascending.
+    /// Returns the vertices that slide, by their numbers in the problem, ascending.
     pub(crate) fn vertices(&self) -> Vec<u32> {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         let fans = sides.flat_map(|side| &side.fans).flatten();
@@ -104,18 +104,19 @@ impl Sliding {
         vertices
     }
 
-    /// How many pairs of them there are, and how many pairs stay as they are not alike.
+    /// Returns the number of pairs that slide, and that of pairs that do not move because the motion of the others does
+    /// not fit them.
     pub(crate) fn pairs(&self) -> [usize; 2] {
         let second = self.tracks.iter().flat_map(|track| track.sides.get(1));
         [second.flat_map(|side| &side.fans).flatten().count(), self.unlike]
     }
 
-    /// Where the vertices were given.
+    /// Returns the parameters of the given positions.
     pub(crate) fn start(&self) -> Params {
         self.tracks.iter().map(|track| track.start().to_vec()).collect()
     }
 
-    /// The vertices that have left the place where they were given, with their numbers in the mesh, and where they are.
+    /// Returns the vertices that have left their given positions: their numbers in the mesh, and their positions.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
         let of_side = |(side, params): (&Side, &[f64])| {
             let all = side.vertices.iter().zip(params).zip(side.curve.params());
@@ -125,13 +126,14 @@ impl Sliding {
         self.sides(params).flat_map(of_side).collect()
     }
 
-    /// All curves, each with the parameters of its vertices.
+    /// Iterates over all curves, each with the parameters of its vertices.
     fn sides<'a>(&'a self, params: &'a Params) -> impl Iterator<Item = (&'a Side, &'a [f64])> {
         let all = self.tracks.iter().zip(params);
         all.flat_map(|(track, params)| track.sides.iter().map(move |side| (side, &params[..])))
     }
 
-    /// The least of a number of each vertex, by its number in the mesh, and of its partner, for each vertex of each curve.
+    /// Evaluates a function of a vertex's number in the mesh for each vertex of each curve. Of the values for a vertex
+    /// and its partner it takes the smaller one.
     pub(crate) fn for_each_vertex(&self, of: impl Fn(u32) -> f64) -> Params {
         let least = |track: &Track, k: usize| {
             let all = track.sides.iter().map(|side| of(side.vertices[k]));
@@ -141,7 +143,7 @@ impl Sliding {
         self.tracks.iter().map(of_track).collect()
     }
 
-    /// By how much parameters changed, in lengths of an edge that was given.
+    /// Returns the changes of parameters, divided by the mean length of the two given edges there.
     pub(crate) fn change(&self, before: &Params, after: &Params) -> Vec<f64> {
         let of_track = |((track, before), after): ((&Track, &Vec<f64>), &Vec<f64>)| {
             let start = track.start();
@@ -154,9 +156,9 @@ impl Sliding {
         self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
     }
 
-    /// Moves the vertices that slide to where `params` are. Those that would not be between their neighbors, or too far from the lines
-    /// that were given or, by `reach`, from where they were given, go to where `safe` has them instead. Returns whether all are sound
-    /// then.
+    /// Moves the vertices that slide to `params`. A vertex goes to its parameter in `safe` instead if it would not be
+    /// between its neighbors, be too far from the given lines, or, by `reach`, be too far from its given position.
+    /// Returns whether all are then sound.
     pub(crate) fn place(
         &self,
         problem: &Problem,
@@ -187,7 +189,8 @@ impl Sliding {
         })
     }
 
-    /// How far the lines between vertices are from those between the vertices as they were given, in the unit of the mesh.
+    /// Returns the largest distance of the lines between vertices from those between the given positions, in the unit
+    /// of the mesh.
     pub(crate) fn off(&self, params: &Params) -> f64 {
         let of_track = |(track, params): (&Track, &Vec<f64>)| {
             let edges = (0..params.len()).filter(|&k| track.slides(k) || k == 0);
@@ -200,9 +203,9 @@ impl Sliding {
         self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
     }
 
-    /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step along its curve, no
-    /// farther from where it was given than `reach` says, in the unit of the mesh, and such that no altitude falls below `floor`.
-    /// Partners move together.
+    /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step
+    /// along its curve. It stays within `reach` of its given position, in the unit of the mesh, and no altitude falls
+    /// below `floor`. Partners move together.
     pub(crate) fn sweep(
         &self,
         problem: &Problem,
@@ -225,8 +228,9 @@ impl Sliding {
         }
     }
 
-    /// Of vertices with these numbers in the mesh, ascending, those that are not on their curve, or not between the neighbors they were
-    /// given on it, or not where their partner is on its curve, with the vertices at `points`. Coordinates may be wrong by `rounding`.
+    /// Returns those of the given vertices, by ascending numbers in the mesh, that are not on their curve, not between
+    /// their given neighbors on it, or not at the same parameter as their partner. All vertices are at `points`, whose
+    /// coordinates may have errors of `rounding`.
     pub(crate) fn astray(&self, vertices: &[u32], points: &[[f64; 2]], rounding: f64) -> Vec<u32> {
         let mut astray = vertices.to_vec();
         for track in &self.tracks {
@@ -269,7 +273,8 @@ impl Sliding {
         astray
     }
 
-    /// Sets vertices back to where they were given whose partner is there, of points in the order of the mesh. Returns how many.
+    /// Sets vertices back to their given positions if their partner is at its own. `points` are in the order of the
+    /// mesh. Returns the number of vertices set back.
     pub(crate) fn return_partners(&self, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
         let mut returned = 0;
         for track in &self.tracks {
@@ -292,12 +297,12 @@ impl Sliding {
 }
 
 impl Track {
-    /// The parameters where the vertices were given.
+    /// The parameters of the given positions.
     fn start(&self) -> &[f64] {
         self.sides[0].curve.params()
     }
 
-    /// Number of vertices of each curve.
+    /// Number of vertices on each curve.
     fn count(&self) -> usize {
         self.sides[0].vertices.len()
     }
@@ -306,7 +311,7 @@ impl Track {
         self.sides[0].slides(k)
     }
 
-    /// Brings the vertices of a parameter, if they slide, to where it is.
+    /// Moves the sliding vertices of index `k` to a parameter.
     fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
         for side in &self.sides {
             if let Some(fan) = &side.fans[k] {
@@ -315,7 +320,8 @@ impl Track {
         }
     }
 
-    /// What is known of the vertex before (-1) or after (1) another one, as a parameter that goes on around a closed curve.
+    /// Returns `known` for the vertex before (-1) or after (1) another one. On a closed curve the parameter continues
+    /// past the first vertex.
     fn neighbor(&self, k: usize, to: isize, known: impl Fn(usize) -> Option<f64>) -> Option<f64> {
         let (at, count) = (k as isize + to, self.count() as isize);
         let turns = at.div_euclid(count);
@@ -323,12 +329,12 @@ impl Track {
         Some(param + turns as f64 * self.sides[0].curve.period())
     }
 
-    /// How far a vertex may go.
+    /// Returns the bound on a vertex.
     fn reach(&self, reach: &[f64], k: usize) -> Reach {
         Reach { start: self.start()[k], most: reach[k] }
     }
 
-    /// Where a vertex is on its curve, and its neighbors.
+    /// Returns the parameters of a vertex and its neighbors.
     fn window(&self, params: &[f64], k: usize) -> Window {
         let neighbor = |to| self.neighbor(k, to, |i| Some(params[i])).unwrap_or(params[k]);
         Window { low: neighbor(-1), at: params[k], high: neighbor(1) }

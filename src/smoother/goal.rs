@@ -10,8 +10,8 @@ use crate::whole::Attempt;
 use super::Smoother;
 
 impl Smoother<'_> {
-    /// Determines the desired objective of a goal, by runs to convergence if it is not given; `None` if the observer
-    /// ended one of them.
+    /// Returns the desired objective of a goal. If it is not given, finds it by runs to convergence; `None` if the
+    /// observer ended one of them.
     pub(super) async fn aim<K: Keeper + ?Sized>(
         &self,
         goal: Goal,

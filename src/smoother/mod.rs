@@ -25,7 +25,7 @@ use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
 use crate::whole::Places;
 
-/// The processor that does the sweeps.
+/// Where the sweeps of a run are computed.
 pub enum Backend {
     /// All cores of the CPU, in double precision.
     Cpu,
@@ -39,9 +39,9 @@ pub struct Smoother<'a> {
     topology: Topology<'a>,
     problem: Problem,
     sliding: Option<Sliding>,
-    /// How many pairs slide, and how many stay as they are not alike.
+    /// Number of pairs that slide, and of pairs that do not move, as the motion of the others does not fit them.
     pairs: [usize; 2],
-    /// The targets of places, if targets do not belong to vertices.
+    /// The field of targets, if targets belong to points of the plane and not to vertices.
     field: Option<TargetField>,
     prepare: Duration,
 }
@@ -54,14 +54,14 @@ impl<'a> Smoother<'a> {
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
         let (mut topology, problem) = prepare(mesh)?;
-        // Runs need the problem alone. Stars are found again if a vertex has to be set back.
+        // Runs need only the problem. The stars are found again if a vertex has to be set back.
         topology.forget_stars();
         let (mesh, sliding, pairs, field) = (Cow::Borrowed(mesh), None, [0; 2], None);
         Ok(Self { mesh, topology, problem, sliding, pairs, field, prepare: start.elapsed() })
     }
 
-    /// The same with a copy of the mesh of its own, so that it can outlive the mesh it was made from: in a struct without lifetimes,
-    /// or in a task that is spawned.
+    /// Copies the mesh into the smoother, which can then outlive the mesh that it was made from: in a struct without
+    /// lifetimes, or in a spawned task.
     pub fn into_owned(self) -> Smoother<'static> {
         Smoother {
             mesh: Cow::Owned(self.mesh.into_owned()),
@@ -74,8 +74,8 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Sets what elements are to look like in further runs, in place of equilateral ones of one size: one target for each
-    /// vertex of the mesh. f is then that of the triangles as their targets show them.
+    /// Sets the targets of elements in further runs: one target for each vertex of the mesh, in place of equilateral
+    /// triangles of one size. f is then that of the triangles after the target maps are applied.
     ///
     /// # Errors
     /// [`MeshError::ValueCount`] if there is not one target for each vertex.
@@ -86,13 +86,14 @@ impl<'a> Smoother<'a> {
         Ok(())
     }
 
-    /// Sets what elements are to look like at each place, in place of targets that belong to vertices. A run then goes in rounds of
-    /// sweeps, after each of which targets are taken from where the vertices have moved to. f is that by the targets of the places
-    /// where vertices are, at the end of each round, and does not rise. As sweeps see targets that stand still, a run ends where
-    /// they lead to no lower f, which may be above the least there is. Returns which vertices are outside of the field's mesh.
+    /// Sets the targets of elements at each point of the plane, in place of targets that belong to vertices. A run then
+    /// consists of rounds of sweeps, after each of which targets are evaluated at the new positions of the vertices. f
+    /// is evaluated with these targets at the end of each round, and does not rise. Within a round targets do not
+    /// change, so a run may end above the least possible f, when further rounds do not lower it. Returns which vertices
+    /// are outside of the field's mesh.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] if a vertex is at no place.
+    /// [`MeshError::NotFinite`] if the position of a vertex is not finite.
     pub fn set_target_field(&mut self, field: TargetField) -> Result<Outside, MeshError> {
         let (targets, outside) = field.at(&self.mesh.points)?;
         self.set_targets(&targets)?;
@@ -100,11 +101,12 @@ impl<'a> Smoother<'a> {
         Ok(outside)
     }
 
-    /// Lets vertices slide along the boundary and other curves in further runs; `None` for none. Returns how many vertices may.
+    /// Lets vertices slide along the boundary and other curves in further runs; `None` turns this off. Returns the
+    /// number of vertices that may slide.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a vertex is listed that the mesh does
-    /// not have.
+    /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
+    /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
         (self.sliding, self.pairs) = (None, [0; 2]);
         let Some(slide) = slide else { return Ok(0) };
@@ -119,18 +121,18 @@ impl<'a> Smoother<'a> {
         Ok(count)
     }
 
-    /// Of the pairs of vertices that belong together ([`Slide::periodic`]), how many slide, and how many stay because no translation or
-    /// rotation takes one to the other as it does most of the pairs listed with it.
+    /// Returns the number of pairs of vertices ([`Slide::periodic`]) that slide, and the number of pairs that do not
+    /// move, as the translation or rotation of most pairs in their list does not fit them.
     pub fn pairs(&self) -> [usize; 2] {
         self.pairs
     }
 
-    /// The objective by a metric with the vertices at `points`, as targets show the triangles if there are any; see
-    /// [`Self::set_targets`] and [`Self::set_target_field`].
+    /// Returns the objective f by a metric with the vertices at `points`, after target maps are applied if there are
+    /// any; see [`Self::set_targets`] and [`Self::set_target_field`].
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a point at which there is
-    /// no target.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] if a point at
+    /// which a target is needed is not finite.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
         let positions = self.problem.normalized(points, Vec::new());
@@ -140,28 +142,28 @@ impl<'a> Smoother<'a> {
         Ok(metric.ideal_squared() + mean_excess(metric, &places.problem, &positions))
     }
 
-    /// The mesh's windings, boundary and free vertices.
+    /// Returns the mesh's topology: windings, boundary and free vertices.
     pub fn topology(&self) -> &Topology<'a> {
         &self.topology
     }
 
-    /// Number of colors that the free vertices have.
+    /// Returns the number of colors of the free vertices.
     pub fn colors(&self) -> usize {
         self.problem.colors().len()
     }
 
-    /// Time spent in [`Self::new`].
+    /// Returns the duration of [`Self::new`].
     pub fn prepare_time(&self) -> Duration {
         self.prepare
     }
 
-    /// Number of triangles, and of vertices that some triangle uses.
+    /// Returns the number of triangles, and the number of vertices that some triangle uses.
     pub fn size(&self) -> MeshSize {
         let triangles = self.problem.triangles().len();
         MeshSize { vertices: self.problem.positions().len(), triangles }
     }
 
-    /// Quality statistics of the mesh with its vertices at `points`.
+    /// Returns quality statistics of the mesh with its vertices at `points`.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -169,9 +171,9 @@ impl<'a> Smoother<'a> {
         Quality::of(points, &self.topology)
     }
 
-    /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and
-    /// returns how many; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
-    /// again after [`Self::run`]. Of pairs that slide, both vertices are set back.
+    /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and returns the
+    /// number of these vertices; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
+    /// again after [`Self::run`]. For pairs that slide, both vertices are set back.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex. Nothing is moved then.
@@ -191,8 +193,8 @@ impl<'a> Smoother<'a> {
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, [`SmoothError::Gpu`] if the device fails. If the mesh
-    /// does not fit the device, [`GpuError::Limit`](crate::GpuError::Limit) or
-    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge) before anything is done.
+    /// does not fit the device, the error holds [`GpuError::Limit`](crate::GpuError::Limit) or
+    /// [`GpuError::TooLarge`](crate::GpuError::TooLarge), and is returned before anything is done.
     pub fn run(&self, options: &Options, backend: &Backend) -> Result<Outcome, SmoothError> {
         self.run_observed(options, backend, &mut unobserved)
     }
@@ -201,7 +203,7 @@ impl<'a> Smoother<'a> {
     /// so far is then returned.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub fn run_observed(
         &self,
         options: &Options,
@@ -211,13 +213,16 @@ impl<'a> Smoother<'a> {
         self.run_kept(options, backend, None, &mut NoKeeper, observe)
     }
 
-    /// Smooths the mesh as [`run`](Self::run) does, and lets `keeper` decide what is kept of the run meanwhile: checkpoints to go on
-    /// from later, and whether it goes on on the CPU if the device fails. With `from`, it goes on from a checkpoint of a run on the
-    /// same mesh with the same options: on the engine that took the checkpoint, to the same bits as if that run had never been left.
-    /// A run that was left on the CPU goes on there whatever the backend.
+    /// Smooths the mesh as [`run`](Self::run) does. `keeper` decides which checkpoints are taken, from which the run
+    /// can continue later, and whether the run continues on the CPU if the device fails.
+    ///
+    /// With `from`, the run continues from a checkpoint of a run on the same mesh with the same options. On the engine
+    /// that took the checkpoint it gives the same bits as if that run had never been interrupted. A run whose
+    /// checkpoint was taken on the CPU continues there, with any backend.
     ///
     /// # Errors
-    /// Those of [`run`](Self::run), and [`SmoothError::Checkpoint`] if the checkpoint is of another run.
+    /// [`SmoothError::Checkpoint`] if the checkpoint is from another run; [`SmoothError::Option`] or [`SmoothError::Gpu`]
+    /// under the conditions that [`run`](Self::run) gives.
     pub fn run_kept(
         &self,
         options: &Options,
@@ -236,10 +241,11 @@ impl<'a> Smoother<'a> {
     /// Smooths the mesh on a device without blocking the thread while the device works.
     ///
     /// The future completes only if the application polls the device meanwhile, as one that draws frames does
-    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result. The future is `Send`.
+    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result. The
+    /// future is `Send`.
     ///
     /// # Errors
-    /// The same as those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub async fn run_async(&self, options: &Options, gpu: &Gpu) -> Result<Outcome, SmoothError> {
         self.run_async_observed(options, gpu, &mut unobserved).await
     }
@@ -248,7 +254,7 @@ impl<'a> Smoother<'a> {
     /// state so far is then returned. The future is `Send` if `observe` is.
     ///
     /// # Errors
-    /// The same as those of [`run`](Self::run).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
     pub async fn run_async_observed(
         &self,
         options: &Options,
@@ -258,13 +264,13 @@ impl<'a> Smoother<'a> {
         self.run_at(options, Some((gpu, Waiting::Await)), None, &mut NoKeeper, observe).await
     }
 
-    /// The objective by a metric at normalized positions.
+    /// Returns the objective by a metric at normalized positions.
     fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
         metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
     }
 }
 
-/// Lets a run go on.
+/// An observer that never ends the run.
 fn unobserved(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
@@ -273,7 +279,8 @@ fn unobserved(_: &Progress) -> ControlFlow<()> {
 /// vertex triples in either winding. The boundary stays fixed. Returns the positions in the order of `points`.
 ///
 /// # Errors
-/// Those of [`Smoother::new`] and [`Smoother::run`].
+/// [`SmoothError::Mesh`] under the conditions that [`Smoother::new`] gives, [`SmoothError::Option`] or
+/// [`SmoothError::Gpu`] under those of [`Smoother::run`].
 pub fn smooth(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],

@@ -1,4 +1,4 @@
-//! A run of a prepared mesh, from the check of its options to the judgment of its result.
+//! A run of a prepared mesh, from the check of its options to the assessment of its result.
 
 use std::time::Duration;
 
@@ -68,7 +68,8 @@ impl Smoother<'_> {
         Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
     }
 
-    /// The device that a run begins on, which has room for the mesh and keeps all digits. With a fault, the run begins on the CPU.
+    /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If
+    /// it drops digits, `keeper` may let the run begin on the CPU.
     async fn checked<'g, K: Keeper + ?Sized>(
         &self,
         device: Option<(&'g Gpu, Waiting)>,
@@ -85,9 +86,9 @@ impl Smoother<'_> {
         }
     }
 
-    /// Makes the coordinates of the result from where the sweeps ended, and judges them as they are: rounding, and vertices that were
-    /// set back, may have cost more than the sweeps gained, and a device moves the vertices of an optimal mesh by its own
-    /// rounding. If nothing was gained on `initial`, the mesh comes back as it was.
+    /// Converts the final positions of the sweeps to coordinates, and evaluates them. Rounding, and vertices that were
+    /// set back, may have cost more than the sweeps gained, and a device moves the vertices of an optimal mesh by its
+    /// own rounding. If nothing was gained on `initial`, the mesh is returned unchanged.
     fn judged(
         &self,
         options: &Options,
@@ -113,7 +114,7 @@ impl Smoother<'_> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
-        // Where one of a pair goes back its partner does, which may make another triangle too flat.
+        // If one vertex of a pair goes back, its partner does too, which may make another triangle too flat.
         let mut low = usize::from(options.keep_altitude);
         while low > 0 {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
@@ -125,7 +126,7 @@ impl Smoother<'_> {
         let written = base.ideal_squared() + mean_excess(base, problem, &judged);
         let gains = initial - written > NOISE * initial + ROUNDING
             || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
-        // Of a smaller gain, the errors of f on a device would be a share to speak of.
+        // In a smaller gain, errors of f on a device would be a considerable share.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
             false => 0.0,
@@ -144,7 +145,7 @@ impl Smoother<'_> {
         });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
-            // 0 / 0: the initial objective was the desired one.
+            // 0 / 0 means that the initial objective was the desired one.
             GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
         });
         Ok(Outcome {
@@ -170,7 +171,7 @@ impl Smoother<'_> {
         })
     }
 
-    /// The outcome of a run that was cancelled before its first sweep.
+    /// Returns the outcome of a run that was canceled before its first sweep.
     fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
         let mut objectives = Objectives::untracked();
         objectives.set(base, f);

@@ -1,4 +1,5 @@
-//! The way a run goes: in one attempt, or in rounds, between which vertices slide, are held, or see targets anew.
+//! The course of a run: in one attempt, or in rounds between which vertices slide, are held, or get targets at their
+//! new positions.
 
 use glam::DVec2;
 
@@ -13,7 +14,7 @@ use crate::whole::{Attempt, Bound, Ended, Limit, Places, Rounds, in_rounds};
 
 use super::Smoother;
 
-/// What a run does between its sweeps, and the state of that.
+/// The work that a run does between its sweeps, and its state.
 pub(super) struct Ways<'s> {
     mesh: &'s Mesh,
     topology: &'s Topology<'s>,
@@ -24,7 +25,7 @@ pub(super) struct Ways<'s> {
 }
 
 impl<'s> Ways<'s> {
-    /// Checks that a run can do between its sweeps all that is asked for.
+    /// Checks that the requested work between sweeps is possible with these options.
     pub(super) fn check(
         smoother: &Smoother<'_>,
         options: &Options,
@@ -47,11 +48,11 @@ impl<'s> Ways<'s> {
             altitude::check(options, is_continued)?;
         }
         if has_field && slides {
-            let remedy = "set one of the two, or targets of vertices";
+            let remedy = "leave out one of the two, or set targets of vertices";
             return refuse("target field", "with sliding vertices", remedy);
         }
         if has_field && options.keep_altitude {
-            return refuse("keep altitude", "on", "it does not go with targets of places");
+            return refuse("keep altitude", "on", "it cannot be combined with a target field");
         }
         Ok(())
     }
@@ -69,7 +70,8 @@ impl<'s> Ways<'s> {
         }
     }
 
-    /// Sweeps until the run ends, or is at the objective `target`. Only a run in one attempt goes on from a checkpoint, and takes some.
+    /// Sweeps until the run ends, or reaches the objective `target`. Only a run in one attempt can continue from a
+    /// checkpoint and take checkpoints.
     pub(super) async fn sweep<K: Keeper + ?Sized>(
         &mut self,
         run: Attempt<'_>,
@@ -80,7 +82,7 @@ impl<'s> Ways<'s> {
     ) -> Result<Ended, SmoothError> {
         let Self { mesh, start, rounds, places, limit, .. } = self;
         if rounds.is_some() || places.is_some() || limit.is_some() || options.keep_altitude {
-            // A checkpoint holds nothing of what was done between sweeps.
+            // A checkpoint does not hold the state of the work between sweeps, so none is taken.
             keeping.about = None;
         }
         if let Some(places) = places {
@@ -102,17 +104,17 @@ impl<'s> Ways<'s> {
         }
     }
 
-    /// The problem with the targets that the vertices have at the end.
+    /// Returns the problem with the final targets of the vertices.
     pub(super) fn problem(&self) -> &Problem {
         self.places.as_ref().map_or(self.start, |places| &places.problem)
     }
 
-    /// How far each free vertex may be from where the run began, normalized, if there is a bound.
+    /// Returns how far each free vertex may be from its start, normalized, if there is a bound.
     pub(super) fn bounds(&self) -> Option<&[f64]> {
         self.limit.as_ref().map(Limit::bounds)
     }
 
-    /// Where vertices slid to, which the normalized positions hold no digits of.
+    /// Writes the positions of vertices that slid. The normalized positions do not hold all of their digits.
     pub(super) fn slide_into(&self, points: &mut [[f64; 2]]) {
         let moved = self.rounds.iter().flat_map(|rounds| rounds.sliding.moved(&rounds.params));
         for (v, point) in moved {
@@ -120,12 +122,12 @@ impl<'s> Ways<'s> {
         }
     }
 
-    /// Takes targets of places anew, with the vertices at these normalized positions.
+    /// Evaluates a field of targets again, with the vertices at these normalized positions.
     pub(super) fn follow(&mut self, positions: &[DVec2]) -> Result<(), MeshError> {
         self.places.as_mut().map_or(Ok(()), |places| places.follow(positions))
     }
 
-    /// What slid, with the vertices at `points`: nothing if the run gained nothing.
+    /// Returns the result of sliding with the vertices at `points`. Nothing slid if the run gained nothing.
     pub(super) fn slid(&self, gains: bool, points: &[[f64; 2]]) -> Option<Slid> {
         let rounds = self.rounds.as_ref()?;
         Some(rounds.slid(self.mesh, self.topology, gains, points))

@@ -1,4 +1,4 @@
-//! Targets of places, on a mesh of their own.
+//! Targets that belong to points of the plane, given on a mesh.
 
 use crate::error::MeshError;
 use crate::interpolate::{Background, Spot};
@@ -8,8 +8,9 @@ use crate::targets::Targets;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
 
-/// What elements are to look like at each place: targets at the vertices of some mesh, which may be the one that is smoothed or
-/// another, and in its triangles linear in their logarithms. Outside of the mesh, the target is that of its nearest place.
+/// Targets of elements at each point of the plane. They are given at the vertices of a mesh, the smoothed one or
+/// another, and their logarithms are interpolated linearly in its triangles. Outside of that mesh, the target is that
+/// of the nearest point of it.
 ///
 /// ```
 /// use gpu_smooth::{Mesh, TargetField, Targets};
@@ -25,26 +26,26 @@ use crate::targets::tensor::Tensor;
 #[derive(Clone, Debug)]
 pub struct TargetField {
     background: Background,
-    /// The logarithm of the target map of each vertex of the background.
+    /// The logarithm of the target map at each vertex of the background.
     logarithms: Vec<Tensor>,
-    /// What coordinates are, if targets are in lengths there.
+    /// The surface to which coordinates belong, if targets are in lengths on it.
     surface: Surface,
 }
 
 /// A full turn, in degrees.
 const TURN: f64 = 360.0;
 
-/// The places that are not within the mesh of a [`TargetField`].
+/// The points that are outside of the mesh of a [`TargetField`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outside {
-    /// How many there are, but for those that rounding may have put there.
+    /// Number of these points, without those that rounding may have put there.
     pub count: usize,
-    /// The largest distance, in the unit of the mesh.
+    /// The largest distance of a point from the mesh, in its unit.
     pub most: f64,
 }
 
 impl TargetField {
-    /// A field on a mesh, by targets for its vertices.
+    /// Makes a field on a mesh, with one target for each of its vertices.
     ///
     /// # Errors
     /// [`MeshError::ValueCount`] if there is not one target for each vertex, those of [`Topology::new`](crate::Topology::new), and
@@ -56,25 +57,27 @@ impl TargetField {
         Ok(Self { background: Background::new(mesh)?, logarithms, surface: Surface::Plane })
     }
 
-    /// The same field where coordinates are those of a surface: what was wanted in lengths of the surface, at each place in its
-    /// coordinates. Longitudes that differ by whole turns tell the same place. So a mesh and the one that carries its targets may each
-    /// have its longitudes in a range of its own, and be continued across the line where longitudes start again as a
-    /// [`Chart`](crate::Chart) does. Not for targets that are in coordinates already, by [`Targets::seen_on`] or otherwise.
+    /// Converts the field to coordinates on a surface: targets in lengths on the surface become targets in its
+    /// coordinates at each point. Longitudes that differ by whole turns are the same point. So a mesh and the mesh that
+    /// carries its targets may use different ranges of longitudes, and may be continued across the line where
+    /// longitudes jump, as by a [`Chart`](crate::Chart). Not for targets that are in coordinates already, by
+    /// [`Targets::seen_on`] or otherwise.
     pub fn seen_on(self, surface: Surface) -> Self {
         Self { surface, ..self }
     }
 
-    /// Finds places: of those that whole turns lead to, the one that is within the background or nearest to it.
+    /// Finds points in the background. Of the longitudes that differ by whole turns, it takes the one inside or nearest
+    /// to the background.
     fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
         if self.surface == Surface::Plane {
             return self.background.find(places);
         }
         let [west, east] = self.background.breadth();
-        // How far a longitude is from those of the background, which is known before the place there is looked for.
+        // How far a longitude is from those of the background. This is known before the point is searched.
         let apart = |x: f64| (west - x).max(x - east).max(0.0);
         let turned = |i: usize| {
             let [x, y] = places[i];
-            // A place among the background's longitudes is looked for there first, as it is.
+            // A point among the background's longitudes is first searched there, as it is.
             let east_of_west = x + TURN * ((west - x) / TURN).ceil();
             let mut turns = [x, east_of_west, east_of_west - TURN, east_of_west + TURN];
             turns.sort_by(|a, b| apart(*a).total_cmp(&apart(*b)));
@@ -100,15 +103,15 @@ impl TargetField {
         Ok(spots)
     }
 
-    /// By how much rounding may put a place outside of the background.
+    /// Returns how far rounding may move a point out of the background.
     fn rounding(&self) -> f64 {
         1e-9 * self.background.extent()
     }
 
-    /// The targets of these places.
+    /// Returns the targets at the given points, and which of these are outside of the field's mesh.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] for a place that is not finite.
+    /// [`MeshError::NotFinite`] for a point that is not finite.
     pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, Outside), MeshError> {
         let spots = self.find(places)?;
         let map = |i: usize| {

@@ -1,4 +1,4 @@
-//! Targets that a mesh has itself: the sizes or shapes of its triangles, averaged over neighbors.
+//! Targets from the mesh itself: the sizes or shapes of its triangles, averaged over neighbors.
 
 use crate::parallel::collect;
 use crate::targets::surface::Surface;
@@ -7,14 +7,14 @@ use crate::targets::tensor::Tensor;
 /// 1/√3: the equilateral triangle W has W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
 
-/// The maps of equilateral triangles of the sizes that triangles have on a surface.
+/// Returns the maps of equilateral triangles with the sizes that the triangles have on a surface.
 pub(super) fn sizes(
     triangles: &[[u32; 3]],
     points: &[[f64; 2]],
     surface: Surface,
     rings: u32,
 ) -> Vec<Tensor> {
-    // Half the logarithm of the area is that of the size.
+    // The logarithm of the size is half that of the area.
     let of = |t: &[u32; 3]| {
         let [a, b] = edges(t, points);
         let [x, y] = surface.lengths_in(points, t);
@@ -24,30 +24,30 @@ pub(super) fn sizes(
     averaged(triangles, points.len(), rings, of)
 }
 
-/// The maps under which triangles are equilateral and of one size.
+/// Returns the maps that make the triangles equilateral and of one size.
 pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
     let of = |t: &[u32; 3]| {
         let [a, b] = edges(t, points);
-        // A W⁻¹ takes the equilateral triangle to this one, and the map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
+        // A W⁻¹ takes the equilateral triangle to this one, so the map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
         let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
         let square = Tensor::of_columns([a, second]);
         match square.is_positive() {
             true => square.ln().times(-0.5),
-            // Flat but for rounding: its length alone is known.
+            // The triangle is flat except for rounding, and only its length is known.
             false => Tensor::isotropic(-0.5 * square.eigenvalues()[1].max(f64::MIN_POSITIVE).ln()),
         }
     };
     averaged(triangles, points.len(), rings, of)
 }
 
-/// The edges from the first corner of a triangle.
+/// Returns the edges from the first corner of a triangle.
 fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
     let [p, q, r] = t.map(|v| points[v as usize]);
     [[q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]]
 }
 
-/// The exponential of the mean that logarithms of triangles have at each vertex: over its triangles, then `rings` times
-/// over the triangles' mean of their corners.
+/// Averages logarithms of triangles at each vertex, first over the vertex's triangles, then `rings` times over the
+/// means of these triangles' corners. Returns the exponentials.
 fn averaged(
     triangles: &[[u32; 3]],
     vertices: usize,
@@ -67,7 +67,7 @@ fn averaged(
     collect(vertices, |v| at[v].exp())
 }
 
-/// The mean over the triangles of each vertex; zero for a vertex that has none.
+/// Returns the mean over the triangles of each vertex; zero for a vertex without triangles.
 fn at_vertices(triangles: &[[u32; 3]], vertices: usize, of: &[Tensor]) -> Vec<Tensor> {
     let mut sums = vec![(Tensor::default(), 0u32); vertices];
     for (t, &value) in triangles.iter().zip(of) {

@@ -11,25 +11,25 @@ pub use field::{Outside, TargetField};
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;
 
-/// What elements are to look like: for each vertex of a mesh a symmetric positive tensor M, under which an element that
-/// is wanted there is equilateral with edges of one length. The quality of a triangle is then that of its image under √M,
-/// with the mean of √M at its corners.
+/// The wanted size, stretching and orientation of elements: for each vertex of a mesh a symmetric positive definite
+/// tensor M, under which an element wanted there is equilateral with edges of one length. The quality of a triangle is
+/// then that of its image under √M, with the mean of √M at its corners.
 ///
-/// Targets belong to the vertices and move with them. Only the ratio of sizes at different places counts: as the number of
-/// triangles is what it is, all are scaled together to fill the domain.
+/// Targets belong to the vertices and move with them. Only the ratios of sizes matter: as the number of triangles is
+/// given, all targets are scaled by one factor so that the elements fill the domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Targets {
-    /// √M of each vertex.
+    /// √M at each vertex.
     maps: Vec<Tensor>,
 }
 
 impl Targets {
-    /// Equilateral elements of one size, for this many vertices.
+    /// Makes targets for equilateral elements of one size, for this number of vertices.
     pub fn equilateral(vertices: usize) -> Self {
         Self { maps: vec![Tensor::isotropic(1.0); vertices] }
     }
 
-    /// Equilateral elements whose edges have these lengths, one for each vertex, in any unit.
+    /// Makes targets for equilateral elements with the given lengths of edges, one for each vertex, in any unit.
     ///
     /// # Errors
     /// [`MeshError::Target`] if a length is not a positive number.
@@ -44,8 +44,8 @@ impl Targets {
         Ok(Self { maps: lengths.iter().enumerate().map(map).collect::<Result<_, _>>()? })
     }
 
-    /// Elements that are equilateral under these tensors, one for each vertex, as xx, xy, yy: the metric of
-    /// anisotropic mesh adaptation, in any unit.
+    /// Makes targets for elements that are equilateral under the given tensors, one for each vertex, as xx, xy, yy: the
+    /// metric of anisotropic mesh adaptation, in any unit to the power -2.
     ///
     /// # Errors
     /// [`MeshError::Target`] if a tensor is not positive definite.
@@ -63,7 +63,8 @@ impl Targets {
         Ok(Self { maps: tensors.iter().enumerate().map(map).collect::<Result<_, _>>()? })
     }
 
-    /// Equilateral elements of the sizes that the mesh has on a surface, averaged over `rings` rings of neighbors.
+    /// Makes targets for equilateral elements of the sizes that the mesh has on a surface, averaged over `rings` rings
+    /// of neighbors.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -77,8 +78,8 @@ impl Targets {
         Ok(Self { maps: keep::sizes(topology.triangles(), points, surface, rings) })
     }
 
-    /// Elements of the size, stretching and orientation that those of the mesh have, averaged over `rings` rings of
-    /// neighbors: boundary layers and anisotropic adaptation stay, noise goes.
+    /// Makes targets for elements of the size, stretching and orientation that the mesh has, averaged over `rings`
+    /// rings of neighbors. This keeps boundary layers and anisotropic adaptation, and removes noise.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -91,13 +92,12 @@ impl Targets {
         Ok(Self { maps: keep::shapes(topology.triangles(), points, rings) })
     }
 
-    /// These targets where `points` are coordinates of a surface: what was wanted in lengths of the surface, in its
-    /// coordinates. Not for [`Self::keep_shape`], which takes shapes in coordinates. A vertex that none of `triangles` uses may be
-    /// anywhere.
+    /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Not for
+    /// [`Self::keep_shape`], which takes shapes in coordinates. A vertex that none of `triangles` uses may be anywhere.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] if a triangle has a vertex
-    /// that is not there, [`MeshError::Target`] if one is not on the surface.
+    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] if a
+    /// triangle has a vertex that does not exist, [`MeshError::Target`] if a vertex is not on the surface.
     pub fn seen_on(
         mut self,
         surface: Surface,
@@ -117,7 +117,7 @@ impl Targets {
         Ok(self)
     }
 
-    /// Fails if there is not one target for each of so many vertices.
+    /// Fails if there is not one target for each of the vertices.
     pub(crate) fn check_count(&self, vertices: usize) -> Result<(), MeshError> {
         match self.maps.len() {
             given if given == vertices => Ok(()),
@@ -125,12 +125,12 @@ impl Targets {
         }
     }
 
-    /// Targets by √M of each vertex.
+    /// Makes targets from √M at each vertex.
     pub(crate) fn of_maps(maps: Vec<Tensor>) -> Self {
         Self { maps }
     }
 
-    /// √M of each vertex, as xx, xy, yy.
+    /// Returns √M at each vertex, as xx, xy, yy.
     pub(crate) fn maps(&self) -> &[Tensor] {
         &self.maps
     }

@@ -2,7 +2,7 @@
 
 use crate::error::MeshError;
 
-/// What the coordinates of a mesh are.
+/// The meaning of a mesh's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Surface {
     /// Lengths in the plane.
@@ -35,7 +35,7 @@ impl Surface {
         Ok(())
     }
 
-    /// [`Self::lengths`] in the middle of a triangle.
+    /// Returns [`Self::lengths`] in the middle of a triangle.
     #[inline]
     pub(crate) fn lengths_in(self, points: &[[f64; 2]], triangle: &[u32; 3]) -> [f64; 2] {
         match self {
@@ -47,7 +47,8 @@ impl Surface {
         }
     }
 
-    /// How long a unit of the first and of the second coordinate is where the second one is `y`.
+    /// Returns the lengths of one unit of the first and of the second coordinate, at points whose second coordinate is
+    /// `y`.
     pub(crate) fn lengths(self, y: f64) -> [f64; 2] {
         match self {
             Surface::Plane => [1.0, 1.0],

@@ -5,12 +5,12 @@
 pub(crate) struct Tensor(pub(crate) [f64; 3]);
 
 impl Tensor {
-    /// This number times the identity.
+    /// Returns the identity times this number.
     pub(crate) fn isotropic(x: f64) -> Self {
         Self([x, 0.0, x])
     }
 
-    /// A Aᵀ for the matrix with these columns.
+    /// Returns A Aᵀ for the matrix A with these columns.
     pub(crate) fn of_columns([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> Self {
         Self([ax * ax + bx * bx, ax * ay + bx * by, ay * ay + by * by])
     }
@@ -22,21 +22,22 @@ impl Tensor {
         xx > 0.0 && yy > 0.0 && low > 0.0 && high.is_finite() && xy.is_finite()
     }
 
-    /// The smaller and the larger eigenvalue. The smaller one of a positive tensor is found without cancellation.
+    /// Returns the smaller and the larger eigenvalue. The smaller one of a positive definite tensor is computed without
+    /// cancellation.
     pub(crate) fn eigenvalues(self) -> [f64; 2] {
         let [xx, xy, yy] = self.0;
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         let radius = half.hypot(xy);
         let high = mean + radius;
         let low = match mean > 0.0 {
-            // The determinant, each product divided before it can overflow.
+            // The determinant, in which each product is divided before it can overflow.
             true => (xx / high) * yy - (xy / high) * xy,
             false => mean - radius,
         };
         [low, high]
     }
 
-    /// The tensor of the same directions whose eigenvalues are `of` these.
+    /// Returns the tensor with the same eigenvectors, and with `of` applied to the eigenvalues.
     fn map(self, of: impl Fn(f64) -> f64) -> Self {
         let [xx, xy, yy] = self.0;
         let half = 0.5 * (xx - yy);
@@ -49,28 +50,29 @@ impl Tensor {
         Self([mean + spread * half, spread * xy, mean - spread * half])
     }
 
-    /// The square root of a positive tensor.
+    /// Returns the square root of a positive definite tensor.
     pub(crate) fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
 
-    /// The logarithm of a positive tensor.
+    /// Returns the logarithm of a positive definite tensor.
     pub(crate) fn ln(self) -> Self {
         self.map(f64::ln)
     }
 
-    /// The exponential.
+    /// Returns the exponential.
     pub(crate) fn exp(self) -> Self {
         self.map(f64::exp)
     }
 
-    /// The tensor in coordinates that are `factors` times as long: D M D.
+    /// Returns the tensor D M D in coordinates that are `factors` times as long, with D the diagonal matrix of the
+    /// factors.
     pub(crate) fn stretched(self, [x, y]: [f64; 2]) -> Self {
         let [xx, xy, yy] = self.0;
         Self([xx * x * x, xy * x * y, yy * y * y])
     }
 
-    /// The square of the tensor.
+    /// Returns the square of the tensor.
     pub(crate) fn squared(self) -> Self {
         let [xx, xy, yy] = self.0;
         Self::of_columns([[xx, xy], [xy, yy]])
@@ -91,7 +93,7 @@ mod tests {
     use super::*;
 
     fn near(a: Tensor, b: Tensor) {
-        // Small entries beside large ones are as good as the large ones' digits.
+        // Small entries beside large ones are only as precise as the digits of the large ones allow.
         let size = b.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         for (x, y) in a.0.into_iter().zip(b.0) {
             assert!((x - y).abs() < 1e-13 * size, "{a:?} {b:?}");

@@ -11,31 +11,32 @@ struct Side {
 }
 
 impl Topology<'_> {
-    /// The boundary edges: those of one triangle only. Each is a pair of vertices, from and to, with the mesh on its
-    /// left. In no particular order.
+    /// Returns the boundary edges, those of exactly one triangle. Each is a pair of vertices, from and to, with the
+    /// mesh on its left. In no particular order.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
         self.boundary_sides().map(|side| self.ends(side)).collect()
     }
 
-    /// The boundary edges as sides of triangles.
+    /// Returns the boundary edges as sides of triangles.
     fn boundary_sides(&self) -> impl Iterator<Item = Side> + '_ {
         let sides = |triangle| (0..3).map(move |corner| Side { triangle, corner });
         let all = (0..self.triangles().len() as u32).flat_map(sides);
         all.filter(|&side| self.across(side).is_none())
     }
 
-    /// The vertices at which an edge starts and ends, with its triangle on the left.
+    /// Returns the vertices at which an edge starts and ends, with its triangle on the left.
     fn ends(&self, Side { triangle, corner }: Side) -> [u32; 2] {
         let corners = self.triangles()[triangle as usize];
         [corners[corner], corners[(corner + 1) % 3]]
     }
 
-    /// The triangle across an edge, if there is one.
+    /// Returns the triangle across an edge, if there is one.
     fn across(&self, side: Side) -> Option<u32> {
         others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
     }
 
-    /// The boundary as closed loops of vertices, with the mesh on the left; the last vertex is joined to the first.
+    /// Returns the boundary as closed loops of vertices, with the mesh on the left. The last vertex is joined to the
+    /// first.
     ///
     /// Loops are counter-clockwise around the outside and clockwise around a hole, so the sign of
     /// [`signed_area`] tells them apart. No loop passes a vertex twice: parts or holes that touch in a vertex have
@@ -46,7 +47,7 @@ impl Topology<'_> {
         edges.sort_unstable_by_key(|&(ends, _)| ends);
         let mut loops = Vec::new();
         let mut left = vec![true; edges.len()];
-        // The index of each vertex in the path, if it is there.
+        // The index of each vertex in the path, if it is on it.
         let mut place = vec![None; self.free().len()];
         for first in 0..edges.len() {
             let mut at = Some(first).filter(|&edge| left[edge]);
@@ -56,7 +57,7 @@ impl Topology<'_> {
                 let ([from, to], side) = edges[edge];
                 place[from as usize] = Some(path.len());
                 path.push(from);
-                // The path has come back to one of its vertices: from there on it is a loop.
+                // The path has come back to one of its vertices. From that vertex on it is a loop.
                 if let Some(start) = place[to as usize] {
                     let closed = path.split_off(start);
                     closed.iter().for_each(|&v| place[v as usize] = None);
@@ -76,8 +77,9 @@ impl Topology<'_> {
         loops
     }
 
-    /// The boundary edge after another. Goes around the vertex where that edge ends, from triangle to triangle, to the
-    /// other end of the fan. The fans of a vertex share no triangle, so each triangle is visited once per corner.
+    /// Returns the boundary edge after another. It goes around the vertex where that edge ends, from triangle to
+    /// triangle, to the other end of the fan. The fans of a vertex share no triangle, so each triangle is visited once
+    /// per corner.
     fn next_on_boundary(&self, side: Side) -> Option<Side> {
         let [mut before, pivot] = self.ends(side);
         let mut triangle = side.triangle;
@@ -97,9 +99,8 @@ impl Topology<'_> {
     }
 }
 
-/// The area within a loop of vertices, in the square of the unit of `points`: positive if the loop is
-/// counter-clockwise, negative if it is clockwise, as around a hole. Not exact. Vertices that `points` does not have
-/// are skipped.
+/// Returns the area within a loop of vertices, in the square of the unit of `points`: positive if the loop is
+/// counter-clockwise, negative if it is clockwise, as around a hole. Not exact. Vertices without a point are skipped.
 pub fn signed_area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
     let mut corners = vertices.iter().filter_map(|&v| points.get(v as usize));
     let Some(&[x, y]) = corners.next() else { return 0.0 };

@@ -1,4 +1,4 @@
-//! The exact guarantee that no triangle is inverted or flat.
+//! Guarantees, by exact predicates, that no triangle is inverted or flat.
 
 use crate::error::MeshError;
 use crate::topology::Topology;
@@ -7,11 +7,11 @@ use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
 /// Makes `points` feasible, in place: sets each vertex of an inverted or flat triangle back to its
 /// position in `before`, until no such triangle is left. Returns the number of vertices set back.
 ///
-/// Afterwards every triangle of `topology` is counter-clockwise by exact
-/// arithmetic on the values in `points`. A triangle with a coordinate that is not a finite number counts as inverted.
+/// Afterwards every triangle of `topology` is counter-clockwise by exact arithmetic on the values in `points`. A
+/// triangle with a coordinate that is not finite counts as inverted.
 ///
 /// # Errors
-/// [`MeshError::PointCount`] if `before` or `points` does not have one point for each vertex. Nothing is moved then.
+/// [`MeshError::PointCount`] if `before` or `points` does not have one point for each vertex; nothing is then moved.
 /// [`MeshError::Infeasible`] if triangles are left that are inverted or flat in `before` itself.
 pub fn certify(
     topology: &Topology<'_>,
@@ -24,7 +24,7 @@ pub fn certify(
     let mut suspects = not_positive(points, triangles);
     let is_certified = suspects.is_empty();
     let mut returned = 0;
-    // Each round sets back the moved vertices of every suspect, then checks the triangles around them again.
+    // Each round sets back the moved vertices of every suspect, and then checks the triangles around them again.
     while !suspects.is_empty() {
         let mut touched = Vec::new();
         for &t in &suspects {

@@ -1,17 +1,17 @@
-//! How far vertices can be dragged before a triangle inverts or exceeds a bound.
+//! Moves vertices as far as possible before a triangle inverts or exceeds a bound.
 
 use crate::error::MeshError;
 use crate::metric::Corner;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
-/// Tolerance for rounding, relative to an inverse mean ratio.
+/// Tolerance for rounding, as a share of an inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
 impl Topology<'_> {
     /// Moves vertices straight toward new positions, all by the same share of their ways, as far as the triangles
-    /// allow. Returns the share; 1 is all the way. For handles and boundaries that a user drags:
-    /// one call in each frame, with sweeps in between that improve the mesh.
+    /// allow. Returns the share, from 0 to 1; 1 means that the new positions were reached. For handles and boundaries
+    /// that a user drags: one call in each frame, with sweeps in between that improve the mesh.
     ///
     /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed vertices and those of the
     /// boundary can be moved too. If a vertex is listed twice, its last position counts.
@@ -29,7 +29,7 @@ impl Topology<'_> {
     /// #     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     /// #     fixed: vec![],
     /// # };
-    /// // The middle of a unit square, dragged out of it.
+    /// The middle vertex of a unit square, dragged out of it.
     /// let topology = Topology::new(&mesh)?;
     /// let mut points = mesh.points.clone();
     /// let share = topology.move_clamped(&mut points, &[(4, [2.5, 0.5])], f64::INFINITY)?;
@@ -39,9 +39,8 @@ impl Topology<'_> {
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] for a vertex
-    /// that the mesh does not have, [`MeshError::NotFinite`] if a vertex of a triangle that changes has or is to get a
-    /// coordinate that is not a finite number, [`MeshError::BoundNotANumber`] if `worst_imr` is NaN. Nothing is moved
-    /// then.
+    /// that the mesh does not have, [`MeshError::NotFinite`] if a vertex of an affected triangle has, or would get, a
+    /// coordinate that is not finite, [`MeshError::BoundNotANumber`] if `worst_imr` is NaN. Nothing is then moved.
     pub fn move_clamped(
         &self,
         points: &mut [[f64; 2]],
@@ -67,7 +66,7 @@ impl Topology<'_> {
         triangles.sort_unstable();
         triangles.dedup();
         let corners = || triangles.iter().map(|&t| self.triangles()[t as usize]);
-        // The vertices of these triangles, and moved vertices of no triangle.
+        // The vertices of these triangles, and moved vertices that no triangle uses.
         let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
         if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
             return Err(MeshError::NotFinite { vertex });
@@ -97,7 +96,7 @@ impl Topology<'_> {
     }
 }
 
-/// The way of a vertex: its position and its new position.
+/// The way of a vertex, from its position to its new position.
 struct Way {
     vertex: u32,
     from: [f64; 2],
@@ -119,7 +118,7 @@ impl Ways {
         Self(ways)
     }
 
-    /// Moves the vertices by a share of their ways.
+    /// Moves the vertices by the given share of their ways.
     fn go(&self, points: &mut [[f64; 2]], share: f64) {
         for &Way { vertex, from, to } in &self.0 {
             let between = |i: usize| from[i] + share * (to[i] - from[i]);
@@ -127,7 +126,7 @@ impl Ways {
         }
     }
 
-    /// The displacement of a vertex over all of its way.
+    /// Returns the displacement of a vertex over its whole way.
     fn of(&self, vertex: u32) -> [f64; 2] {
         match self.0.binary_search_by_key(&vertex, |way| way.vertex) {
             Ok(i) => minus(self.0[i].to, self.0[i].from),
@@ -135,9 +134,9 @@ impl Ways {
         }
     }
 
-    /// The share of the ways at which a triangle's inverse mean ratio reaches `limit`. With L the sum of the squared
-    /// lengths and D the doubled area, the ratio is L / (2√3 D), so the share is the least root of the quadratic
-    /// D - L / (2√3 limit).
+    /// Returns the share of the ways at which a triangle's inverse mean ratio reaches `limit`. The ratio is L / (2√3
+    /// D), with L the sum of the squared lengths and D the doubled area, so the share is the least root of the
+    /// quadratic D - L / (2√3 limit).
     fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
         let [p, q, r] = corners.map(|v| points[v as usize]);
         let [dp, dq, dr] = corners.map(|v| self.of(v));
@@ -159,7 +158,7 @@ impl Ways {
     }
 }
 
-/// The least positive t with constant + slope t + bend t² = 0. Infinite if there is none.
+/// Returns the least positive root t of constant + slope t + bend t² = 0. Infinite if there is none.
 fn least_root(constant: f64, slope: f64, bend: f64) -> f64 {
     let discriminant = slope * slope - 4.0 * bend * constant;
     if discriminant < 0.0 {
@@ -179,7 +178,7 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[1] - u[1] * v[0]
 }
 
-/// Inverse mean ratio of a triangle that is not flat.
+/// Returns the inverse mean ratio of a triangle that is not flat.
 fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
     Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 }.inverse_mean_ratio()

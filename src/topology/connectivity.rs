@@ -12,8 +12,8 @@ use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::turns;
 use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
-/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they are
-/// consistent and counter-clockwise already.
+/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they
+/// already are consistent and counter-clockwise.
 #[derive(Clone, Debug)]
 pub struct Topology<'m> {
     triangles: Cow<'m, [[u32; 3]]>,
@@ -25,9 +25,9 @@ pub struct Topology<'m> {
 impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
-    /// Windings are made consistent across shared edges, and such that most triangles of each edge-connected part are
-    /// counter-clockwise; if equally many are clockwise, the sum of their areas decides. A vertex is free unless
-    /// it lies on the boundary, is listed in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
+    /// Windings are made consistent across shared edges, so that most triangles of each edge-connected part are
+    /// counter-clockwise. If equally many are clockwise, the sum of their areas decides. A vertex is free unless it is
+    /// on the boundary, is listed in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
     ///
     /// # Errors
     /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
@@ -37,12 +37,13 @@ impl<'m> Topology<'m> {
         Self::wound(mesh, Majority::OfTriangles)
     }
 
-    /// Finds the topology of a mesh that may be tangled. Windings are made consistent as in [`new`](Self::new), but such
-    /// that the signed areas of each part add up to a positive number. That is the area which its boundary encloses,
-    /// wherever the vertices inside are.
+    /// Finds the topology of a mesh that may be tangled. Windings are made consistent as in [`new`](Self::new), but so
+    /// that the signed areas of each part have a positive sum. That sum is the area which the boundary encloses, and
+    /// does not depend on the vertices inside.
     ///
     /// # Errors
-    /// The same as those of [`new`](Self::new).
+    /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
     pub fn by_area(mesh: &'m Mesh) -> Result<Self, MeshError> {
         Self::wound(mesh, Majority::OfArea)
     }
@@ -77,7 +78,7 @@ impl<'m> Topology<'m> {
     /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, some vertex is free, and
     /// the triangles around each free vertex wind around it once.
     ///
-    /// Parts of a mesh that overlap in another way are not found.
+    /// Other overlaps of parts of a mesh are not found.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Infeasible`] if a triangle is
@@ -102,8 +103,8 @@ impl<'m> Topology<'m> {
         }
     }
 
-    /// The triangles that are inverted or flat with the vertices at `points`, by exact predicates, in ascending order.
-    /// Triangles with a coordinate that is not a finite number count as inverted.
+    /// Returns the triangles that are inverted or flat with the vertices at `points`, by exact predicates, in ascending
+    /// order. Triangles with a coordinate that is not finite count as inverted.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if there is not one point for each vertex.
@@ -118,23 +119,23 @@ impl<'m> Topology<'m> {
         if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
     }
 
-    /// The triangles in the mesh's order, with consistent windings: counter-clockwise unless inverted.
+    /// Returns the triangles in the mesh's order, with consistent windings: counter-clockwise unless inverted.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// For each vertex of the mesh, whether it is free to move.
+    /// Returns for each vertex of the mesh whether it is free to move.
     pub fn free(&self) -> &[bool] {
         &self.free
     }
 
-    /// Number of free vertices.
+    /// Returns the number of free vertices.
     pub fn free_count(&self) -> usize {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// The indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order, starting
-    /// with the least. Empty for a vertex that the mesh does not have.
+    /// Returns the indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order,
+    /// starting with the least. Empty for a vertex that the mesh does not have.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {
             Some(_) => self.stars().of(vertex as usize),
@@ -142,7 +143,7 @@ impl<'m> Topology<'m> {
         }
     }
 
-    /// The triangles at each vertex.
+    /// Returns the triangles at each vertex.
     pub(crate) fn stars(&self) -> &Groups {
         self.stars.get_or_init(|| self.find_stars())
     }
@@ -159,14 +160,14 @@ impl<'m> Topology<'m> {
         stars
     }
 
-    /// The one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner after
-    /// the vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically. Empty
-    /// for a vertex that is not free, or that the mesh does not have.
+    /// Returns the one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner
+    /// after the vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically.
+    /// Empty for a vertex that is not free, or that the mesh does not have.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }
 
-    /// The one-ring of a free vertex as an iterator; see [`ring`](Self::ring).
+    /// Iterates over the one-ring of a free vertex; see [`ring`](Self::ring).
     #[inline]
     pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let star = match self.free.get(free_vertex as usize) {
@@ -214,7 +215,7 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// The index of the first bad item.
+/// Returns the index of the first bad item.
 fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
     // All items of a chunk are checked, as this takes no branches.
@@ -223,8 +224,8 @@ fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usi
     items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
 }
 
-/// Checks that coordinates are neither too large nor all too small to compute with. Vertices of no triangle may be
-/// anywhere.
+/// Checks that coordinates are neither too large nor all too small to compute with. Vertices that no triangle uses may
+/// be anywhere.
 fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
     let size = |v: usize| match stars.of(v) {
         [] => 0.0,

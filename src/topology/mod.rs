@@ -1,5 +1,5 @@
 //! The connectivity of a mesh: consistent windings, stars, one-rings and the boundary. Also exact predicates, and the
-//! checks that rest on them.
+//! checks based on them.
 
 mod boundary;
 mod certify;

@@ -1,19 +1,20 @@
-//! Exact predicates for inverted and flat triangles, on coordinates as given.
+//! Exact predicates for inverted and flat triangles, for coordinates as given.
 
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::parallel::map_parts;
 
-/// Below this, products in the determinant may have lost bits to underflow: about 2^-960, far above the least number.
+/// If the determinant is below this, its products may have lost bits to underflow. It is about 2^-960, far above the
+/// least positive number.
 const UNDERFLOW: f64 = 1e-289;
 
-/// Above this share of the sum of its two products, the determinant of a triangle has the right sign however it was
-/// rounded (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's first stage).
+/// If the determinant of a triangle exceeds this share of the sum of its two products, rounding cannot have changed its
+/// sign (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's first stage).
 const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
 
-/// Twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value rounded; it is not
-/// zero unless the triangle is flat. NaN or infinite if a coordinate is.
+/// Returns twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value is
+/// rounded; it is zero only if the triangle is flat. NaN or infinite if a coordinate is.
 ///
 /// The sign holds for all coordinates up to 1e100, if those that are not zero are at least 1e-300.
 #[inline]
@@ -28,7 +29,7 @@ pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
 
 fn exact_orientation(corners: [[f64; 2]; 3]) -> f64 {
     let orientation = orient(corners);
-    // Not so for NaN.
+    // This comparison is false for NaN, which is returned.
     if orientation.abs() < UNDERFLOW { tiny_orientation(corners) } else { orientation }
 }
 
@@ -37,8 +38,8 @@ fn orient(corners: [[f64; 2]; 3]) -> f64 {
     robust::orient2d(p, q, r)
 }
 
-/// [`orientation`] for triangles so small or flat that products of their coordinates may underflow: each axis is
-/// first scaled by a power of two, which rounds nothing and keeps the sign.
+/// Does the same as [`orientation`] for triangles so small or flat that products of their coordinates may underflow.
+/// Each axis is first scaled by a power of two, which rounds nothing and keeps the sign.
 #[cold]
 fn tiny_orientation(corners: [[f64; 2]; 3]) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
@@ -47,21 +48,21 @@ fn tiny_orientation(corners: [[f64; 2]; 3]) -> f64 {
     });
     let scaled = orient(corners.map(|corner| [scaled(corner[0], x), scaled(corner[1], y)]));
     let value = unscaled(unscaled(scaled, x), y);
-    // The value itself may be too small for a number.
+    // The value itself may underflow to zero.
     if value == 0.0 && scaled != 0.0 { f64::from_bits(1).copysign(scaled) } else { value }
 }
 
-/// The largest power of two, as an exponent, by which a number can be multiplied to stay below 2^480.
+/// Returns the exponent of the largest power of two by which a number can be multiplied to stay below 2^480.
 fn up(size: f64) -> i32 {
     if size == 0.0 {
         return 0;
     }
-    // The exponent of a number that is not normal shows once it is scaled.
+    // A subnormal number is scaled first, to find its exponent.
     let (size, already) = if size < 1e-200 { (size * 600f64.exp2(), 600) } else { (size, 0) };
     479 - (((size.to_bits() >> 52) & 0x7ff) as i32 - 1023 - already)
 }
 
-/// A number times a power of two, in two steps, as the power itself may be too large for a number.
+/// Returns a number times a power of two, in two steps, as the power itself may overflow.
 fn scaled(x: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     x * f64::from(half).exp2() * f64::from(exponent - half).exp2()
@@ -71,8 +72,8 @@ fn unscaled(x: f64, exponent: i32) -> f64 {
     scaled(x, -exponent)
 }
 
-/// Whether a triangle is counter-clockwise, decided without a branch, so that a loop over triangles is fast. False as well
-/// for a triangle so flat or so small that only [`is_positive`] can tell; a mesh has few of them.
+/// Whether a triangle is surely counter-clockwise, without a branch, so that a loop over triangles is fast. False also
+/// for a triangle so flat or small that only [`is_positive`] can tell; a mesh has few of them.
 #[inline(always)]
 pub(crate) fn is_surely_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     let [p, q, r] = corners.map(|v| points[v as usize]);
@@ -89,8 +90,8 @@ pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     orientation > 0.0 && orientation < f64::INFINITY
 }
 
-/// The indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat, or have
-/// a coordinate that is not a finite number. In ascending order.
+/// Returns the indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat,
+/// or have a coordinate that is not finite. In ascending order.
 ///
 /// # Errors
 /// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have,
@@ -110,7 +111,7 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
     Ok(not_positive(points, triangles))
 }
 
-/// The result of [`infeasible`], for triangles whose vertices `points` is known to have.
+/// Returns the same as [`infeasible`], for triangles whose vertices all have a point.
 pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
     const CHUNK: usize = 1 << 10;
     let found = map_parts(triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
@@ -123,7 +124,7 @@ pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u
     found.concat()
 }
 
-/// The triangles that are not counter-clockwise, each with its vertices and whether it is flat.
+/// Returns the triangles that are not counter-clockwise, each with its vertices and whether it is flat.
 pub(crate) fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
     let describe = |t: u32| {
         let vertices = triangles[t as usize];
@@ -145,8 +146,8 @@ mod tests {
         assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));
     }
 
-    /// Corners on a fine grid, many of them nearly on a line, at sizes at which products of coordinates underflow. Their
-    /// orientation is compared with that by whole numbers.
+    /// Corners on a fine grid, many of them nearly on a line, with sizes at which products of coordinates underflow.
+    /// Their orientation is compared with the one computed in integers.
     #[test]
     fn signs_are_exact_for_triangles_of_any_size() {
         let mut state = 1_u64;
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn signs_are_exact_where_sizes_differ_by_hundreds_of_decades() {
-        // The area is 1e-600, and the sign that of the last coordinate.
+        // The area is 1e-600, and its sign is that of the last coordinate.
         for (y, sign) in [(1e-300, -1.0), (-1e-300, 1.0), (0.0, 0.0)] {
             let points = [[0.0, 0.0], [1.0, y], [1e-300, 0.0]];
             let found = orientation(&points, &[0, 1, 2]);
@@ -201,7 +202,7 @@ mod tests {
         let mut sure = 0;
         for round in 0..20_000 {
             let [a, b] = [0; 2].map(|_| [random(), random()]);
-            // Every other triangle is flat but for rounding.
+            // Every other triangle is flat except for rounding.
             let share = random() / 1e7;
             let middle = [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis]));
             let points = [a, b, if round % 2 == 0 { middle } else { [random(), random()] }];

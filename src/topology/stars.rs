@@ -3,15 +3,15 @@
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
 
-/// The triangles at each vertex, in ascending order.
+/// Returns the triangles at each vertex, in ascending order.
 pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
     Groups::new(triangles.len(), vertices, |t| triangles[t])
 }
 
-/// The triangles other than `triangle` at the edge between two vertices.
+/// Returns the triangles other than `triangle` at the edge between two vertices.
 ///
-/// Searches around the vertex that has fewer triangles. For all edges of a planar mesh this takes
-/// linear time, however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
+/// It searches around the vertex that has fewer triangles. For all edges of a planar mesh this takes linear time,
+/// however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
 pub(crate) fn others_at_edge<'a>(
     triangles: &'a [[u32; 3]],
     stars: &'a Groups,
@@ -24,8 +24,8 @@ pub(crate) fn others_at_edge<'a>(
     star.iter().copied().filter(is_other)
 }
 
-/// Writes to `closed` around which vertices the triangles form one cycle, and sorts their stars in its order. Returns
-/// false if two triangles have an edge in the same direction: windings are then inconsistent, or more than two
+/// Sets `closed` for the vertices around which the triangles form one cycle, and sorts their stars in its order.
+/// Returns false if two triangles have an edge in the same direction: windings are then inconsistent, or more than two
 /// triangles share the edge, and `closed` is not valid.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
@@ -44,7 +44,7 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
                     *t = edge.triangle;
                 }
             } else {
-                // The edges of a cycle are different anyway.
+                // The edges of a cycle are different in any case.
                 consistent &= are_different(&edges);
             }
         }
@@ -61,14 +61,15 @@ struct OuterEdge {
     triangle: u32,
 }
 
-/// The ends of a triangle's edge opposite to a vertex. Without branches, which the processor could not predict.
+/// Returns the ends of a triangle's edge opposite to a vertex. It has no branches, which the processor could not
+/// predict.
 #[inline]
 pub(crate) fn outer_edge(corners: &[u32; 3], vertex: u32) -> (u32, u32) {
     let [is_a, is_b, is_c] = corners.map(|corner| usize::from(corner == vertex));
     (corners[is_a + 2 * is_b], corners[2 * is_a + is_c])
 }
 
-/// The edges opposite to a vertex in its triangles, in the order of the triangles.
+/// Collects the edges opposite to a vertex in its triangles, in the order of the triangles.
 #[inline]
 fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Vec<OuterEdge>) {
     edges.clear();
@@ -78,8 +79,8 @@ fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Ve
     }));
 }
 
-/// Sorts edges into one cycle of three or more, in which each starts where the one before it ends. Returns false if
-/// they do not form one.
+/// Sorts edges into one cycle of three or more, in which each edge starts where the one before it ends. Returns false
+/// if they do not form one.
 fn chain(edges: &mut [OuterEdge]) -> bool {
     match edges.len() {
         0..3 => false,
@@ -88,17 +89,17 @@ fn chain(edges: &mut [OuterEdge]) -> bool {
     }
 }
 
-/// The most edges that are all compared with each other.
+/// The largest number of edges that are all compared with each other.
 const FEW: usize = 8;
 
-/// [`chain`] for at most [`FEW`] edges.
+/// Does the work of [`chain`] for at most [`FEW`] edges.
 fn chain_few(edges: &mut [OuterEdge]) -> bool {
     // Padded by a number that no vertex has.
     let mut from = [u32::MAX; FEW];
     for (from, edge) in from.iter_mut().zip(&*edges) {
         *from = edge.from;
     }
-    // Of the edges that start where `edge` ends: FEW times their number, plus the sum of their indices.
+    // For the edges that start where `edge` ends: FEW times their number, plus the sum of their indices.
     let after = |edge: &OuterEdge| {
         let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
         (0..FEW).map(|k| found(k) as u32).sum::<u32>()
@@ -116,7 +117,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     let mut sorted = [OuterEdge::default(); FEW];
     let mut at = 0;
     for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
-        // Back at the first edge before all edges were visited.
+        // The path is back at the first edge before all edges were visited.
         if i > 0 && at == 0 {
             return false;
         }
@@ -127,7 +128,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     at == 0
 }
 
-/// [`chain`] for any number of edges.
+/// Does the work of [`chain`] for any number of edges.
 fn chain_many(edges: &mut [OuterEdge]) -> bool {
     let mut by_start = edges.to_vec();
     by_start.sort_unstable_by_key(|edge| edge.from);
@@ -140,7 +141,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
     while let Ok(i) = by_start.binary_search_by_key(&at, |edge| edge.from) {
         chained.push(by_start[i]);
         at = by_start[i].to;
-        // Back at the first edge, or in a cycle without it.
+        // The path is back at the first edge, or in a cycle without it.
         if at == first || chained.len() == edges.len() {
             break;
         }

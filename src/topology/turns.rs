@@ -1,30 +1,30 @@
-//! How many times the triangles around a vertex wind around it.
+//! Counts how many times the triangles around a vertex wind around it.
 //!
-//! Triangles may all be counter-clockwise and yet overlap: five of them can wind twice around their common vertex, as in a
-//! pentagram. Only comparisons of coordinates are needed to see that, so it is exact.
+//! Triangles may all be counter-clockwise and yet overlap: five of them can wind twice around their common vertex, as
+//! in a pentagram. The count needs only comparisons of coordinates, so it is exact.
 
 use crate::parallel::map_parts;
 use crate::topology::predicates::{is_positive, is_surely_positive};
 
-/// Whether a point lies above another, or at the same height to the right of it.
+/// Whether a point is above another, or at the same height to the right of it.
 #[inline(always)]
 fn is_above(p: [f64; 2], q: [f64; 2]) -> bool {
     (p[1] > q[1]) | ((p[1] == q[1]) & (p[0] > q[0]))
 }
 
-/// For each corner of a counter-clockwise triangle, whether the direction of the x axis leads from it into the triangle or
-/// along the second of the two edges there. That holds for one corner at most. Around a vertex, as many triangles have that
-/// corner at the vertex as they wind around it.
+/// Returns for each corner of a counter-clockwise triangle whether the direction of the x axis leads from it into the
+/// triangle or along the second of the two edges there. That holds for at most one corner. The number of triangles with
+/// this corner at a vertex is the number of times that they wind around it.
 #[inline(always)]
 fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> [bool; 3] {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    // From such a corner, the next one is not above it, and the one after next is.
+    // From such a corner, the next corner is not above it, and the one after that is.
     let falls = [!is_above(q, p), !is_above(r, q), !is_above(p, r)];
     [falls[2] & falls[0], falls[0] & falls[1], falls[1] & falls[2]]
 }
 
-/// Whether every triangle is counter-clockwise and every free vertex has triangles that wind once around it. In one pass,
-/// as nearly all meshes pass.
+/// Whether every triangle is counter-clockwise and the triangles of every free vertex wind once around it. It makes a
+/// single pass, as nearly all meshes are feasible.
 pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[bool]) -> bool {
     let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
         let (mut sure, mut turns) = (true, 0);
@@ -38,8 +38,8 @@ pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[b
     turns == Some(count_of(free))
 }
 
-/// A free vertex around which the triangles wind more than once, and how many times, if there is one. All triangles must
-/// be counter-clockwise.
+/// Returns a free vertex around which the triangles wind more than once, and how many times, if there is one. All
+/// triangles must be counter-clockwise.
 pub(crate) fn overlapping_star(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -49,7 +49,7 @@ pub(crate) fn overlapping_star(
         chunk.iter().map(|t| turns_at_free(points, t, free)).sum()
     };
     let turns: usize = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
-    // Each star winds once at least.
+    // Each star winds at least once.
     if turns == count_of(free) {
         return None;
     }
@@ -66,8 +66,8 @@ pub(crate) fn overlapping_star(
     Some((vertex as u32, turns[vertex]))
 }
 
-/// 1 if the corner of a triangle that counts for turns is at a free vertex, else 0. Without branches, of which a processor
-/// would foretell every other one wrong.
+/// Returns 1 if the corner of a triangle that counts for turns is at a free vertex, else 0. It has no branches, as a
+/// processor would mispredict every other one.
 #[inline(always)]
 fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usize {
     let is_ahead = ahead(points, corners);
@@ -75,7 +75,7 @@ fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usiz
     usize::from(counts(0) | counts(1) | counts(2))
 }
 
-/// Number of free vertices.
+/// Returns the number of free vertices.
 fn count_of(free: &[bool]) -> usize {
     free.iter().filter(|&&free| free).count()
 }

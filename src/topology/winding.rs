@@ -1,4 +1,4 @@
-//! Making windings consistent across edges.
+//! Makes windings consistent across edges.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::others_at_edge;
 
-/// Stands for no triangle, across an edge of the boundary.
+/// The neighbor across an edge of the boundary, where there is no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// For each triangle, the triangle across its edge from corner i to corner i + 1, or [`NONE`]. Fails with
+/// Returns for each triangle the triangle across its edge from corner i to corner i + 1, or [`NONE`]. Fails with
 /// [`MeshError::EdgeOfThree`].
 pub(crate) fn neighbors(
     triangles: &[[u32; 3]],
@@ -45,18 +45,19 @@ fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
 }
 
-/// What decides how an edge-connected part is wound.
+/// The majority that decides the winding of an edge-connected part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Majority {
-    /// Most triangles are counter-clockwise, whatever their size: one inverted triangle may be larger than all others
-    /// together, as where a mesh of the globe crosses the date line. If equally many are clockwise, the area decides.
+    /// Most triangles are counter-clockwise, whatever their sizes. A single inverted triangle may be larger than all
+    /// others together, for example where a mesh of the globe crosses the date line. If equally many are clockwise, the
+    /// area decides.
     OfTriangles,
     /// The sum of the signed areas is positive. If it is zero, the number of triangles decides.
     OfArea,
 }
 
-/// The triangles with windings made consistent across edges, and each edge-connected part wound as the majority says. The
-/// result does not depend on the order of triangles and vertices.
+/// Returns the triangles with windings made consistent across edges, and each edge-connected part wound by the
+/// majority. The result does not depend on the order of triangles and vertices.
 pub(crate) fn wind(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -81,7 +82,8 @@ pub(crate) fn wind(
             let orientation = predicates::orientation(points, &corners);
             majority += i64::from(orientation > 0.0) - i64::from(orientation < 0.0);
             doubled_area += orientation;
-            // `across` refers to the corners as given. If the last two were swapped since, edges run the other way.
+            // `across` refers to the corners as given. If the last two have been swapped since, edges run in the other
+            // direction.
             let given = triangles[t as usize];
             for (i, &other) in across[t as usize].iter().enumerate() {
                 if other == NONE || seen[other as usize] {

@@ -1,5 +1,5 @@
-//! Runs in which no triangle's altitude falls below the least that the mesh had: vertices that would make it do so go back
-//! until they do not and are held, while the others go on.
+//! Runs in which no triangle's altitude falls below the least altitude of the given mesh. Vertices that would violate
+//! this go back until they do not, and are then held, while the others continue.
 
 use std::cmp::Ordering;
 
@@ -15,25 +15,26 @@ use crate::whole::attempt::{Attempt, Ended};
 use crate::whole::holding::Holding;
 use crate::whole::in_rounds::{self, objectives};
 
-/// Number of sweeps in a round, until there is one after which no vertex goes back.
+/// Number of sweeps in a round, until a round after which no vertex goes back.
 const SWEEPS: u32 = 2;
 /// The most rounds of sweeps.
 const ROUNDS: u32 = 60;
-/// How often the way of vertices is halved before they go back all of it.
+/// Number of times that the way of vertices is halved before they go back completely.
 const HALVED: u32 = 3;
 
-/// The least altitude of some triangles.
+/// Returns the least altitude of some triangles.
 fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
     triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
 }
 
-/// The least altitude of a triangle with the vertices where the problem has them, normalized.
+/// Returns the least altitude of a triangle with the vertices at the problem's positions, normalized.
 pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.triangles(), |v| problem.positions()[v as usize])
 }
 
-/// Brings the vertices of triangles whose altitude is below `floor` back to where they were, half of the way as often as `halved` says and
-/// then all of it, until there is none but those that were so before. Returns the vertices that were brought back.
+/// Brings the vertices of triangles whose altitude is below `floor` back toward their old positions: half of the way,
+/// `halved` times, and then completely. This is repeated until no triangle is too low that was not so before. Returns
+/// the vertices that were brought back.
 fn bring_back(
     triangles: &[[u32; 3]],
     before: &[DVec2],
@@ -42,7 +43,7 @@ fn bring_back(
 ) -> Vec<u32> {
     let mut returned = Vec::new();
     loop {
-        // Not a number is below as well.
+        // NaN counts as below the floor.
         let is_low = |t: &&[u32; 3]| {
             let altitude = altitude(t.map(|v| points[v as usize]));
             altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
@@ -65,8 +66,8 @@ fn bring_back(
     }
 }
 
-/// Sets back what makes the least altitude of a mesh less than before, of points as they are written. Returns how many vertices it
-/// was.
+/// Sets back vertices so that the least altitude of a mesh is not less than before, for points as they are written.
+/// Returns the number of these vertices.
 pub(crate) fn restore(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
@@ -82,33 +83,33 @@ pub(crate) fn restore(
     returned.len()
 }
 
-/// Checks that altitudes can be kept in a run by these options.
+/// Checks that altitudes can be kept in a run with these options.
 pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
     let option = "keep altitude";
     if options.max_move.is_some() {
-        let (value, remedy) = ("with a bound on moves".to_owned(), "set one of the two");
+        let (value, remedy) = ("with a bound on moves".to_owned(), "leave out one of the two");
         return Err(SmoothError::Option { option, value, remedy });
     }
     in_rounds::check(option, options, is_continued)
 }
 
-/// The least altitude that a run keeps, and the vertices that were brought back for it.
+/// The least altitude that a run keeps, and the vertices that are held for it.
 pub(crate) struct Floor<'s> {
     problem: &'s Problem,
     holding: Holding<'s>,
-    /// Normalized.
+    /// The least altitude, normalized.
     pub(crate) least: f64,
 }
 
 impl<'s> Floor<'s> {
-    /// The least altitude of a triangle with the vertices where the problem has them.
+    /// Takes the least altitude of a triangle with the vertices at the problem's positions.
     pub(crate) fn new(mesh: &'s Mesh, problem: &'s Problem) -> Self {
         Self { problem, holding: Holding::new(mesh, problem), least: least_of(problem) }
     }
 
-    /// A round from some positions, to which it moves the vertices: sweeps on the engine, after which vertices of triangles that have
-    /// become too flat go back, and are held from then on. Returns its end without positions, of which the history counts nothing that was
-    /// set back, and how many vertices are held for it.
+    /// Does a round, which moves the vertices from `positions`: sweeps on the engine, after which the vertices of
+    /// triangles that have become too low go back, and are held from then on. Returns the end of the round without
+    /// positions, and the number of vertices that are held anew. Gains that were undone do not count in its history.
     pub(crate) async fn round<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
@@ -127,7 +128,7 @@ impl<'s> Floor<'s> {
         let mut to = holding.numbered_back(&std::mem::take(&mut next.positions), now);
         let returned = bring_back(problem.triangles(), positions, &mut to, (*least, HALVED));
         *positions = to;
-        // f of what was set back does not count.
+        // The gain of moves that were undone does not count.
         let here = objectives(problem, plan, positions);
         let count = next.history.len() - 1;
         for (k, entry) in next.history.iter_mut().enumerate().skip(1) {
@@ -149,7 +150,7 @@ impl<'s> Floor<'s> {
     }
 }
 
-/// Sweeps from the positions of the problem until a run ends in which no altitude is below the least there was.
+/// Sweeps from the positions of the problem until the run ends, with no altitude below the least one at the start.
 pub(crate) async fn run<K: Keeper + ?Sized>(
     (mesh, problem): (&Mesh, &Problem),
     attempt: Attempt<'_>,

@@ -1,4 +1,4 @@
-//! One run from some positions to its end, on the engines that it takes.
+//! One run from some positions to its end, on the engines that it needs.
 
 use std::cmp::Ordering;
 
@@ -17,8 +17,8 @@ use crate::run::{
     Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, set_guards,
 };
 
-/// The largest sum of q² - ideal² that is left to a device: far below the largest single, 3e38, as formulas of size multiply
-/// powers of what they are made of.
+/// The largest sum of q² - ideal² that a device is given. It is far below the largest single, 3e38, as formulas of
+/// metrics of size multiply powers of their arguments.
 const MOST_ON_DEVICE: f64 = 1e15;
 
 /// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
@@ -26,7 +26,7 @@ pub(crate) struct Attempt<'s> {
     pub(crate) problem: &'s Problem,
     pub(crate) device: Option<(&'s Gpu, Waiting)>,
     pub(crate) phase: Phase,
-    /// Number of sweeps before this attempt, for the observer.
+    /// Number of sweeps before this attempt, to be added in reports to the observer.
     pub(crate) done: u32,
 }
 
@@ -45,14 +45,14 @@ pub(crate) struct Ended {
 }
 
 impl Ended {
-    /// This end, and that of a run which went on from there.
+    /// Combines this end with that of a run which continued from it.
     pub(crate) fn followed_by(self, next: Ended) -> Ended {
         let mut history = self.history;
-        // The first entry evaluates the positions at which this one ended.
+        // The first entry is for the positions at which this run ended.
         history.extend(next.history.into_iter().skip(1));
         Ended {
             history,
-            // Only runs by one metric are followed by others.
+            // Only runs by one metric are continued by others.
             alternated: self.alternated + next.alternated,
             corrections: self.corrections + next.corrections,
             opening_sweeps: self.opening_sweeps + next.opening_sweeps,
@@ -160,8 +160,8 @@ impl Attempt<'_> {
         })
     }
 
-    /// The end of a run in the state that was last kept, or at its start, because a sweep since then made f a number that is not
-    /// finite.
+    /// Returns the end of a run in the state that was last saved, or at its start, because a later sweep made f
+    /// infinite or NaN.
     fn undone(&self, plan: &Plan, from: &[DVec2], last: Option<Saved>) -> End {
         let (log, positions) = match last {
             Some(Saved { log, engine, .. }) => (log, engine.best.unwrap_or(engine.positions)),
@@ -179,9 +179,9 @@ impl Attempt<'_> {
         End { history, positions, alternated, corrections, levels_left_out: false, stop }
     }
 
-    /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that goes on, and these
-    /// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, there is no
-    /// device: the whole run is done on the CPU.
+    /// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that continues, and
+    /// these sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, no
+    /// device is returned, and the whole run is done on the CPU.
     async fn opened(
         &self,
         plan: &Plan,
@@ -190,13 +190,13 @@ impl Attempt<'_> {
         if self.device.is_none() {
             return Ok((None, None));
         }
-        // The sums of some metrics leave the range of single precision where sizes are very different.
+        // If sizes differ very much, the sums of some metrics exceed the range of single precision.
         let sum = |metric: &Metric| {
             mean_excess(*metric, self.problem, from) * self.problem.triangles().len() as f64
         };
         let is_huge = |metric: &Metric| {
             let is_ratio = metric.properties().is_inverse_mean_ratio;
-            // A sum that is not a number is huge as well.
+            // A sum that is NaN counts as too large.
             !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
         };
         if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {

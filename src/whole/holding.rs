@@ -1,4 +1,4 @@
-//! Free vertices that are held for a part of a run, as if they were fixed.
+//! Holds free vertices during a part of a run, as if they were fixed.
 
 use glam::DVec2;
 
@@ -6,18 +6,18 @@ use crate::error::MeshError;
 use crate::layout::{Problem, prepare};
 use crate::mesh::Mesh;
 
-/// A mesh of whose free vertices some are held. Sweeps leave them where they are.
+/// A mesh of which some free vertices are held. Sweeps do not move these.
 pub(crate) struct Holding<'s> {
     mesh: &'s Mesh,
     problem: &'s Problem,
-    /// Which free vertices are held, as the problem numbers them.
+    /// For each free vertex, by its number in the problem, whether it is held.
     pub(crate) held: Vec<bool>,
     /// The number in the problem of each vertex of the mesh.
     pub(crate) number: Vec<u32>,
 }
 
 impl<'s> Holding<'s> {
-    /// None is held at first.
+    /// Makes a holding in which no vertex is held yet.
     pub(crate) fn new(mesh: &'s Mesh, problem: &'s Problem) -> Self {
         let mut number = vec![u32::MAX; mesh.points.len()];
         for (new, &v) in (0..).zip(problem.vertices()) {
@@ -26,7 +26,7 @@ impl<'s> Holding<'s> {
         Self { mesh, problem, held: vec![false; problem.free_count()], number }
     }
 
-    /// The problem in which those that are held are fixed; `None` if there are none, or no others.
+    /// Returns the problem in which held vertices are fixed. `None` if no vertex is held, or all are.
     pub(crate) fn smaller(&self) -> Result<Option<Problem>, MeshError> {
         let count = self.held.iter().filter(|held| **held).count();
         if count == 0 || count == self.held.len() {
@@ -42,13 +42,13 @@ impl<'s> Holding<'s> {
         Ok(Some(problem))
     }
 
-    /// Positions in the order of another problem of the same mesh.
+    /// Returns positions in the order of another problem of the same mesh.
     pub(crate) fn renumbered(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
         let of = |&v: &u32| positions[self.number[v as usize] as usize];
         other.vertices().iter().map(of).collect()
     }
 
-    /// Positions in the order of the problem, from that of another one.
+    /// Returns positions in the order of this problem, given them in the order of another one.
     pub(crate) fn numbered_back(&self, positions: &[DVec2], other: &Problem) -> Vec<DVec2> {
         let mut back = vec![DVec2::ZERO; positions.len()];
         for (&v, &position) in other.vertices().iter().zip(positions) {

@@ -1,4 +1,4 @@
-//! The worst triangles improved after the sweeps of a run, and what came of it.
+//! Improves the worst triangles after the sweeps of a run, and assesses the result.
 
 use glam::DVec2;
 
@@ -10,10 +10,10 @@ use crate::whole::altitude;
 use crate::whole::attempt::Ended;
 use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
 
-/// How much rounding may add to the worst inverse mean ratio, as a share.
+/// The share that rounding may add to the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
-/// A stage that improved the worst triangles. What it did is judged by the coordinates as they are written.
+/// A stage that improved the worst triangles. Its result is assessed by the coordinates as they are written.
 pub(crate) struct Improving {
     badness: Badness,
     /// Number of vertices that moved.
@@ -25,8 +25,8 @@ pub(crate) struct Improving {
 }
 
 impl Improving {
-    /// Improves the worst triangles of a mesh where a run has ended, if its options ask for that. No vertex goes farther than `bounds` from
-    /// where the run began. Where the observer ends it, the run counts as cancelled.
+    /// Improves the worst triangles of a mesh after a run, if the options ask for it. No vertex goes farther than
+    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as canceled.
     pub(crate) fn after(
         ended: &mut Ended,
         options: &Options,
@@ -70,8 +70,9 @@ impl Improving {
         self.vertices > 0 && worst(positions) < worst(problem.positions()) * (1.0 - NOISE)
     }
 
-    /// What is to be told of the stage, with the vertices at `positions` as they are written, where the objective is f. Nothing came of it if
-    /// that is the mesh before the run. `slides` are the vertices that may slide, as the problem numbers them, ascending.
+    /// Returns the result of the stage, with the vertices at `positions` as they are written, where the objective is
+    /// `f`. If `is_written` is false, these are the positions before the run, and the stage has changed nothing.
+    /// `slides` are the vertices that may slide, by their numbers in the problem, ascending.
     pub(crate) fn outcome(
         &self,
         problem: &Problem,

@@ -1,4 +1,4 @@
-//! What runs that go in rounds share: the options they can have, and the judgment of positions between sweeps on the engine.
+//! Common to runs in rounds: the check of their options, and the evaluation of positions between sweeps on the engine.
 
 use glam::DVec2;
 
@@ -8,7 +8,7 @@ use crate::layout::Problem;
 use crate::parallel::map_parts;
 use crate::run::{Derivatives, Desired, Goal, Objectives, Options, Plan};
 
-/// Checks that a run by these options can go in rounds, as `option` asks for.
+/// Checks that a run with these options can go in rounds, which `option` requires.
 pub(crate) fn check(
     option: &'static str,
     options: &Options,
@@ -16,21 +16,21 @@ pub(crate) fn check(
 ) -> Result<(), SmoothError> {
     let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
     if options.scheme.period() > 1 || !options.scheme.is_monotone() {
-        return refuse("it needs one metric other than edge: take imr, say");
+        return refuse("it needs one metric other than edge, such as imr");
     }
     if options.derivatives != Derivatives::Analytic {
-        return refuse("it needs exact derivatives");
+        return refuse("it needs analytic derivatives");
     }
     if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
-        return refuse("the desired f is not sought in such a run: give its value");
+        return refuse("such a run cannot search for the desired f: give its value");
     }
     match is_continued {
-        true => refuse("such a run is not continued from a checkpoint: start anew"),
+        true => refuse("such a run cannot continue from a checkpoint: start it without one"),
         false => Ok(()),
     }
 }
 
-/// The objectives that a plan asks for.
+/// Evaluates the objectives that a plan tracks.
 pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
     let mut objectives = Objectives::untracked();
     for metric in plan.tracked() {
@@ -40,7 +40,8 @@ pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) ->
     objectives
 }
 
-/// Whether no triangle is inverted or flat after a move, or has an inverse mean ratio that is worse than before and above `guard`.
+/// Whether a move leaves no triangle inverted or flat, and none with an inverse mean ratio that is both worse than
+/// before and above `guard`.
 pub(crate) fn is_sound(problem: &Problem, before: &[DVec2], after: &[DVec2], guard: f64) -> bool {
     let ratio = |positions: &[DVec2], t: &[u32; 3]| {
         problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()

@@ -1,5 +1,5 @@
-//! Runs in which no vertex moves farther than a bound: rounds of sweeps on the engine, after each of which vertices beyond their bound
-//! are brought back to it.
+//! Runs in which no vertex moves farther than a bound. They consist of rounds of sweeps on the engine, after each of
+//! which vertices beyond their bound are brought back to it.
 
 use glam::DVec2;
 
@@ -18,21 +18,21 @@ use crate::whole::in_rounds::{self, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 3;
-/// How often a round visits the vertices that are at their bound.
+/// Number of times that a round visits the vertices at their bound.
 const VISITS: u32 = 3;
-/// How often the way of a round is halved if it cannot be taken.
+/// Number of times that the move of a round is halved if it cannot be taken.
 const HALVED: u32 = 5;
-/// A run is over once as many estimates in a row say so.
+/// Number of estimates in a row that must agree before a run ends.
 const ESTIMATES: u32 = 2;
 /// A vertex that has moved by more than this share of its bound is at its bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 
-/// How far each free vertex may move, and which ones are as far as they may.
+/// How far each vertex may move, and which free vertices are at their bound.
 pub(crate) struct Limit<'s> {
     problem: &'s Problem,
     /// The largest distance of each vertex of the mesh from its start, in the unit of the mesh.
     all: Vec<f64>,
-    /// The same of each free vertex, normalized.
+    /// The largest distance of each free vertex from its start, normalized.
     bounds: Vec<f64>,
     /// Which free vertices are at their bound.
     holding: Holding<'s>,
@@ -40,7 +40,8 @@ pub(crate) struct Limit<'s> {
 }
 
 impl<'s> Limit<'s> {
-    /// Bounds such that no vertex moves by more than so many lengths of an edge there, as its place is stored with so many digits.
+    /// Makes bounds so that no vertex moves by more than `most` times the mean edge length there, given the precision
+    /// in which positions are stored.
     pub(crate) fn new(
         mesh: &'s Mesh,
         topology: &Topology<'_>,
@@ -74,12 +75,12 @@ impl<'s> Limit<'s> {
         }
     }
 
-    /// How far each free vertex may be from where the run began, normalized.
+    /// Returns how far each free vertex may be from its start, normalized.
     pub(crate) fn bounds(&self) -> &[f64] {
         &self.bounds
     }
 
-    /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
+    /// Sweeps from the positions of the problem until the run ends, judged by f at the end of each round.
     pub(crate) async fn run<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
@@ -130,9 +131,9 @@ impl<'s> Limit<'s> {
         }
     }
 
-    /// A round from some positions, to which it moves the vertices: sweeps on the engine, after which vertices beyond their bound are
-    /// brought back. Returns its end without positions, of which the history counts no gain beyond the bounds, and whether the same
-    /// vertices are held as before unless the sweeps led somewhere.
+    /// Does a round, which moves the vertices from `positions`: sweeps on the engine, after which vertices beyond their
+    /// bound are brought back. Returns the end of the round without positions, and whether the sweeps moved vertices or
+    /// the same vertices are held as before. Gains beyond the bounds do not count in its history.
     pub(crate) async fn round<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
@@ -142,7 +143,7 @@ impl<'s> Limit<'s> {
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<(Ended, bool), SmoothError> {
         let base = plan.scheme.base();
-        // Those at their bound are fixed to the engine.
+        // Vertices at their bound are fixed for the engine.
         let smaller = self.holding.smaller()?;
         let problem = smaller.as_ref().unwrap_or(self.problem);
         let from = self.holding.renumbered(positions, problem);
@@ -159,7 +160,7 @@ impl<'s> Limit<'s> {
         }
         let now = objectives(self.problem, plan, positions);
         let last = now.of(base).unwrap_or(f64::NAN);
-        // Of what sweeps gained beyond the bounds, nothing counts.
+        // Gains beyond the bounds do not count.
         for entry in next.history.iter_mut().skip(1) {
             if entry.of(base).is_none_or(|f| f < last) {
                 *entry = now;
@@ -177,20 +178,20 @@ impl<'s> Limit<'s> {
         start.zip(&self.bounds).all(|((start, now), bound)| now.distance(*start) <= *bound)
     }
 
-    /// How far each vertex that slides may be from where it was given, in the unit of the mesh.
+    /// Returns how far each vertex that slides may be from its given position, in the unit of the mesh.
     pub(crate) fn reach(&self, sliding: &Sliding) -> Params {
         sliding.for_each_vertex(|v| self.all[v as usize])
     }
 
-    /// The position of a free vertex, brought back to its bound if it is beyond.
+    /// Returns the position of a free vertex, brought back to its bound if it is beyond.
     fn within(&self, v: usize, to: DVec2) -> DVec2 {
         let (start, bound) = (self.problem.positions()[v], self.bounds[v]);
         let distance = to.distance(start);
         if distance <= bound { to } else { start + (to - start) * (bound / distance) }
     }
 
-    /// Goes to positions as far as bounds allow, or a part of the way, if that lowers the objective and is sound. If not, vertices that
-    /// want beyond their bounds are to be held. Returns whether it went.
+    /// Moves the vertices toward `to` as far as bounds allow, or a part of the way, if that lowers the objective and is
+    /// sound. If not, vertices that would go beyond their bounds are held. Returns whether the vertices were moved.
     fn take(&mut self, plan: &Plan, positions: &mut Vec<DVec2>, to: &[DVec2]) -> bool {
         let (problem, base) = (self.problem, plan.scheme.base());
         let here = objectives(problem, plan, positions).of(base);
@@ -199,7 +200,7 @@ impl<'s> Limit<'s> {
         for _ in 0..=HALVED {
             let mut there = positions.clone();
             for (v, (place, to)) in there[..self.bounds.len()].iter_mut().zip(to).enumerate() {
-                // All of the way is exactly there.
+                // With a share of 1, the position is exactly that of `to`.
                 let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
                 *place = self.within(v, wanted);
             }
@@ -218,7 +219,7 @@ impl<'s> Limit<'s> {
         false
     }
 
-    /// Visits the vertices at their bound: a Newton step, brought back within the bound.
+    /// Visits the vertices at their bound: a step along the negative gradient, brought back within the bound.
     fn visit_held(&self, positions: &mut [DVec2], step: &Step) {
         for v in (0..self.holding.held.len()).filter(|&v| self.holding.held[v]) {
             let here = positions[v];
@@ -229,7 +230,8 @@ impl<'s> Limit<'s> {
             let [xx, xy, yy] = sum.hessian;
             let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
             let most = mean.abs() + (half * half + xy * xy).sqrt();
-            // Along the gradient, as far as the largest curvature allows: it leads along the bound as well as inward.
+            // The step is the gradient divided by the largest curvature. It moves a vertex along its bound as well as
+            // inward.
             let way = -gradient / most;
             if !way.is_finite() {
                 continue;
@@ -250,7 +252,7 @@ impl<'s> Limit<'s> {
         }
     }
 
-    /// Finds the vertices at their bound. Those that were held for another reason are let go where they have moved inward.
+    /// Finds the vertices at their bound. Vertices that were held and are inside their bound are released.
     pub(crate) fn find_held(&mut self, positions: &[DVec2]) {
         for (v, held) in self.holding.held.iter_mut().enumerate() {
             let distance = positions[v].distance(self.problem.positions()[v]);
@@ -258,7 +260,7 @@ impl<'s> Limit<'s> {
         }
     }
 
-    /// Checks that there can be a bound in a run by these options.
+    /// Checks that bounds are possible in a run with these options.
     pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
         in_rounds::check("max move", options, is_continued)
     }

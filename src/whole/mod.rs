@@ -1,5 +1,5 @@
-//! Whole runs: sweeps on whatever engines they take, in rounds where vertices slide, have a bound or an altitude to keep, or where
-//! targets belong to places, and what is done to the worst triangles after that.
+//! Whole runs: sweeps on the engines that they need, then the improvement of the worst triangles. A run consists of
+//! rounds if vertices slide, have a bound or an altitude to keep, or if targets belong to points of the plane.
 
 pub(crate) mod altitude;
 mod attempt;

@@ -1,4 +1,5 @@
-//! Runs whose targets belong to places: rounds of sweeps, between which targets are evaluated where vertices have moved to.
+//! Runs whose targets belong to points of the plane: rounds of sweeps, between which targets are evaluated at the new
+//! positions of the vertices.
 
 use glam::DVec2;
 
@@ -12,18 +13,19 @@ use crate::whole::in_rounds::{self, is_sound, objectives};
 
 /// Number of sweeps in a round.
 const SWEEPS: u32 = 5;
-/// How often the way of a round is halved if f does not fall along it.
+/// Number of times that the move of a round is halved if f does not fall along it.
 const HALVED: u32 = 4;
-/// A run is over once so many rounds in a row gained no more than the tolerance.
+/// Number of rounds in a row with gains of at most the tolerance, after which a run ends.
 const SETTLED: u32 = 2;
-/// Of the gains of two rounds, the second counts as no more than this share of the first where what is left is estimated.
+/// When the remaining gain is estimated from the gains of two rounds, the second counts as at most this share of the
+/// first.
 const SLOWEST: f64 = 0.95;
 
 /// A problem whose targets follow its vertices.
 pub(crate) struct Places<'s> {
     mesh: &'s Mesh,
     field: &'s TargetField,
-    /// The problem with the targets of the places where the vertices were last.
+    /// The problem with the targets at the last positions of the vertices.
     pub(crate) problem: Problem,
 }
 
@@ -32,7 +34,7 @@ impl<'s> Places<'s> {
         Self { mesh, field, problem: problem.clone() }
     }
 
-    /// Checks that targets can follow in a run by these options.
+    /// Checks that targets can follow the vertices in a run with these options.
     pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
         let option = "target field";
         let refuse = |value: &str, remedy| {
@@ -41,16 +43,16 @@ impl<'s> Places<'s> {
         if options.goal.is_some() {
             return refuse(
                 "with a goal",
-                "targets that change have no desired f: set one of the two",
+                "targets that change have no desired f: leave out one of the two",
             );
         }
         if options.max_move.is_some() {
-            return refuse("with a bound", "set one of the two, or targets of vertices");
+            return refuse("with a bound", "leave out one of the two, or set targets of vertices");
         }
         in_rounds::check(option, options, is_continued)
     }
 
-    /// Takes the targets of the places where the vertices are.
+    /// Evaluates the targets at the positions of the vertices.
     pub(crate) fn follow(&mut self, positions: &[DVec2]) -> Result<(), MeshError> {
         let points = self.problem.denormalize(self.mesh, positions);
         let (targets, _) = self.field.at(&points)?;
@@ -58,8 +60,8 @@ impl<'s> Places<'s> {
         Ok(())
     }
 
-    /// Sweeps from the positions of the problem until f falls no more: f by the targets of the places where vertices are, at the
-    /// end of each round.
+    /// Sweeps from the positions of the problem until f no longer falls. f is evaluated at the end of each round, with
+    /// the targets at the positions of the vertices.
     pub(crate) async fn run<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
@@ -85,7 +87,7 @@ impl<'s> Places<'s> {
             let to = std::mem::take(&mut next.positions);
             let has_moved = self.take(&plan, &mut positions, &mut here, &to)?;
             let last = f(&here);
-            // Of what sweeps gained by targets that no longer hold, nothing counts.
+            // Gains by targets that are no longer valid do not count.
             let count = next.history.len() - 1;
             for (k, entry) in next.history.iter_mut().enumerate().skip(1) {
                 if k == count || f(entry) < last {
@@ -122,8 +124,8 @@ impl<'s> Places<'s> {
         }
     }
 
-    /// Goes to positions, or a part of the way, if that lowers f by the targets there and inverts nothing. Returns whether it went;
-    /// the problem has the targets of where the vertices are then.
+    /// Moves the vertices to the given positions, or a part of the way, if that lowers f with the targets there and
+    /// inverts nothing. The problem then has the targets at the new positions. Returns whether the vertices were moved.
     fn take(
         &mut self,
         plan: &Plan,
@@ -135,7 +137,7 @@ impl<'s> Places<'s> {
         let mut share = 1.0;
         for _ in 0..=HALVED {
             let way = positions.iter().zip(to);
-            // All of the way is exactly there.
+            // With a share of 1, the positions are exactly the given ones.
             let there: Vec<DVec2> = match share == 1.0 {
                 true => to.to_vec(),
                 false => way.map(|(from, to)| *from + (*to - *from) * share).collect(),

@@ -1,5 +1,5 @@
-//! Runs in which vertices slide: rounds of sweeps over the free vertices, on the engine, each followed by sweeps along the curves, on
-//! the host.
+//! Runs in which vertices slide. They consist of rounds: sweeps over the free vertices, on the engine, followed by
+//! sweeps along the curves, on the host.
 
 use glam::DVec2;
 
@@ -18,28 +18,29 @@ use crate::whole::attempt::{Attempt, Ended};
 use crate::whole::in_rounds::{is_sound, objectives};
 use crate::whole::limit::Limit;
 
-/// Number of sweeps in a round. With two a run takes as many sweeps and more rounds, with four more sweeps.
+/// Number of sweeps in a round. With two, a run takes as many sweeps and more rounds; with four, it takes more sweeps.
 const SWEEPS: u32 = 3;
-/// How often a round goes along the curves, forward and back. They have so few vertices that it costs little.
+/// Number of times that a round sweeps along the curves, forward and back. Curves have so few vertices that it costs
+/// little.
 const SLIDES: u32 = 3;
-/// A run is over once as many estimates in a row say so, as the gains of accelerated rounds are irregular.
+/// Number of estimates in a row that must agree before a run ends, as the gains of accelerated rounds are irregular.
 const ESTIMATES: u32 = 2;
 
-/// How much rounding may take from an altitude, as a share.
+/// The share of an altitude that rounding may take.
 const ROUNDING: f64 = 1e-9;
 
-/// What holds in a run for all vertices.
+/// A bound that a run keeps for all vertices.
 pub(crate) enum Bound<'b, 's> {
-    /// Nothing but what always does.
+    /// No bound.
     None,
-    /// How far each may move.
+    /// A bound on how far each vertex may move.
     Moves(&'b mut Limit<'s>),
-    /// How low triangles may become.
+    /// A bound on the altitude of triangles.
     Altitudes(&'b mut Floor<'s>),
 }
 
 impl Bound<'_, '_> {
-    /// Whether it holds where the vertices are.
+    /// Whether the positions keep the bound.
     fn holds_at(&self, positions: &[DVec2]) -> bool {
         match self {
             Self::None => true,
@@ -49,13 +50,13 @@ impl Bound<'_, '_> {
     }
 }
 
-/// The vertices that slide, and where a run has brought them.
+/// The vertices that slide, and where the run has moved them.
 pub(crate) struct Rounds<'s> {
     pub(crate) sliding: &'s Sliding,
     pub(crate) params: Params,
-    /// How far each vertex may be from where it was given, in the unit of the mesh.
+    /// How far each vertex may be from its given position, in the unit of the mesh.
     reach: Params,
-    /// The least altitude that sliding may leave, normalized; 0 for any.
+    /// The least altitude that sliding may leave, normalized; 0 for no bound.
     floor: f64,
     /// Number of rounds done.
     pub(crate) count: u32,
@@ -67,7 +68,7 @@ impl<'s> Rounds<'s> {
         Self { sliding, params: sliding.start(), reach, floor: 0.0, count: 0 }
     }
 
-    /// Sweeps from the positions of the problem until the run ends. f at the end of each round judges.
+    /// Sweeps from the positions of the problem until the run ends, judged by f at the end of each round.
     pub(crate) async fn run<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
@@ -117,7 +118,7 @@ impl<'s> Rounds<'s> {
             };
             let is_over = match ended.stop {
                 Stop::Cancelled | Stop::NotFinite => true,
-                // Within bounds that is known only at the end of the round.
+                // With bounds, this is known only at the end of the round.
                 Stop::Reached => matches!(bound, Bound::None),
                 _ => false,
             };
@@ -125,7 +126,7 @@ impl<'s> Rounds<'s> {
             if !is_over && left > 0 {
                 let objectives =
                     self.slide(problem, &plan, &mut positions, &mut memory, &mut bound);
-                // The slide is a part of the round's last sweep.
+                // Sliding counts as a part of the round's last sweep.
                 if let Some(last) = ended.history.last_mut() {
                     *last = objectives;
                 }
@@ -151,7 +152,8 @@ impl<'s> Rounds<'s> {
         }
     }
 
-    /// What slid in rounds that ended at `points`, or at the mesh as it was if nothing was gained.
+    /// Returns the result of sliding in rounds that ended at `points`. If nothing was gained, it is that of the
+    /// unchanged mesh.
     pub(crate) fn slid(
         &self,
         mesh: &Mesh,
@@ -175,7 +177,8 @@ impl<'s> Rounds<'s> {
         }
     }
 
-    /// Goes along the curves. Then goes on as the last rounds did, if that lowers the objective. Returns the objectives.
+    /// Sweeps along the curves. Then takes the accelerated step from the last rounds, if that lowers the objective.
+    /// Returns the objectives.
     fn slide(
         &mut self,
         problem: &Problem,

@@ -1,4 +1,4 @@
-//! How bad a triangle is while the worst ones are improved.
+//! The badness of triangles, by which the worst ones are improved.
 
 use glam::DVec2;
 
@@ -7,16 +7,16 @@ use crate::metric::{Corner, Dual, Real, TargetMap};
 use crate::run::WorstBy;
 use crate::topology::predicates::is_positive;
 
-/// √3/6: the sum of the squared lengths of an equilateral triangle times this is its doubled area.
+/// √3/6: the doubled area of an equilateral triangle, divided by the sum of its squared lengths.
 const IDEAL: f64 = 0.288_675_134_594_812_9;
 
-/// A measure of triangles: the larger, the worse. Squares, so that they have smooth derivatives: of the inverse mean ratio, of one over
-/// the sine of the least angle, or of one over the least altitude.
+/// A measure of triangles; larger is worse. It is a square, so that it has smooth derivatives: that of the inverse mean
+/// ratio, of the inverse of the sine of the least angle, or of the inverse of the least altitude.
 #[derive(Clone, Copy)]
 pub(crate) struct Badness(pub(crate) WorstBy);
 
 impl Badness {
-    /// The numbers of which the badness of a triangle is the largest, and how many there are.
+    /// Returns numbers whose maximum is the badness of a triangle, and how many there are.
     fn terms<T: Real>(self, corner: &Corner<T>) -> ([T; 3], usize) {
         let [a, b, c] = corner.squared_lengths();
         let area = corner.doubled_area();
@@ -26,18 +26,18 @@ impl Badness {
                 let sum = (a + b + c) * IDEAL;
                 ([sum * sum * per_area; 3], 1)
             }
-            // A sine is the doubled area over the lengths of two edges.
+            // A sine is the doubled area divided by the lengths of two edges.
             WorstBy::MinAngle => ([a * b * per_area, a * c * per_area, b * c * per_area], 3),
             WorstBy::Altitude => ([a * per_area, b * per_area, c * per_area], 3),
         }
     }
 
-    /// Whether triangles are measured as targets show them.
+    /// Whether triangles are measured after their target maps are applied.
     pub(crate) fn is_of_targets(self) -> bool {
         self.0 != WorstBy::Altitude
     }
 
-    /// A triangle as it is measured.
+    /// Returns a triangle as it is measured, transformed by its target map if that applies.
     pub(crate) fn seen(self, corner: Corner<f64>, map: Option<&TargetMap<f64>>) -> Corner<f64> {
         match map {
             Some(map) if self.is_of_targets() => map.show(&corner),
@@ -45,7 +45,7 @@ impl Badness {
         }
     }
 
-    /// The badness of a triangle as it is measured; infinite if it is inverted or flat.
+    /// Returns the badness of a triangle, as returned by [`seen`](Self::seen); infinite if it is inverted or flat.
     pub(crate) fn of(self, corner: &Corner<f64>) -> f64 {
         if !is_sound(corner) {
             return f64::INFINITY;
@@ -54,13 +54,15 @@ impl Badness {
         terms.into_iter().fold(0.0, f64::max)
     }
 
-    /// The sum of the terms of a triangle as it is measured, each relative to `unit` and to the power 2^doublings.
+    /// Returns the sum of the terms of a triangle, as returned by [`seen`](Self::seen), each divided by `unit` and
+    /// raised to the power 2^doublings.
     pub(crate) fn power(self, corner: &Corner<f64>, unit: f64, doublings: u32) -> f64 {
         let (terms, count) = self.terms(corner);
         terms[..count].iter().map(|term| power(term / unit, doublings)).sum()
     }
 
-    /// The same with its derivatives by the vertex that the edges of the triangle start from.
+    /// Returns the same sum as [`power`](Self::power), with its derivatives by the vertex that the edges of the
+    /// triangle start from.
     pub(crate) fn power_derivatives(
         self,
         corner: &Corner<f64>,
@@ -81,7 +83,8 @@ impl Badness {
         })
     }
 
-    /// What a badness means: an inverse mean ratio, an angle in degrees, or an altitude in the unit of the mesh.
+    /// Converts a badness to the measure: an inverse mean ratio, an angle in degrees, or an altitude in the unit of the
+    /// mesh.
     pub(crate) fn meaning(self, badness: f64, problem: &Problem) -> f64 {
         match self.0 {
             WorstBy::Imr => badness.sqrt(),
@@ -91,7 +94,7 @@ impl Badness {
     }
 }
 
-/// x to the power 2^doublings.
+/// Returns x to the power 2^doublings.
 fn power(x: f64, doublings: u32) -> f64 {
     (0..doublings).fold(x, |x, _| x * x)
 }
@@ -101,7 +104,7 @@ pub(crate) fn is_sound(corner: &Corner<f64>) -> bool {
     is_positive(&[[0.0; 2], corner.a, corner.b], &[0, 1, 2]) && corner.doubled_area() > 0.0
 }
 
-/// The triangle that one corner and two others make, in coordinates.
+/// Makes the triangle of one corner and two others, in coordinates.
 pub(crate) fn corner(at: DVec2, [a, b]: [DVec2; 2], mean_area: f64) -> Corner<f64> {
     Corner { a: (a - at).into(), b: (b - at).into(), mean_area }
 }
@@ -121,7 +124,7 @@ mod tests {
         let [p, q, r] = POINTS.map(DVec2::from);
         let (a, b, c) = (p.distance(q), p.distance(r), q.distance(r));
         let area = (q - p).perp_dot(r - p);
-        // Heron's formula and the law of cosines: no formula of the code under test.
+        // Heron's formula and the law of cosines, which the code under test does not use.
         let half = 0.5 * (a + b + c);
         let heron = 2.0 * (half * (half - a) * (half - b) * (half - c)).sqrt();
         assert!((heron - area).abs() < 1e-15);

@@ -1,4 +1,5 @@
-//! The worst triangles improved after a run: free vertices around them move such that the worst of each patch becomes less bad.
+//! Improves the worst triangles after a run: free vertices around them move so that the worst triangle of each patch
+//! becomes less bad.
 
 mod badness;
 mod patch;

@@ -1,4 +1,4 @@
-//! A part of a mesh in which the worst triangle is improved, by itself.
+//! A part of a mesh in which the worst triangle is improved, independently of the rest.
 
 use std::collections::HashMap;
 
@@ -10,27 +10,27 @@ use crate::metric::{Corner, Dual, TargetMap, descent};
 use crate::run::{Step, line_search};
 use crate::worst::badness::{Badness, corner, is_sound};
 
-/// log2 of the exponents of the p-norms that are lowered one after the other.
+/// The log2 of the exponents of the p-norms that are lowered in turn.
 const DOUBLINGS: [u32; 3] = [3, 5, 7];
 /// The most visits of each vertex for each exponent.
 const VISITS: u32 = 10;
-/// The visits for an exponent end after one in which no vertex moved by more than this share of an edge.
+/// The visits for an exponent end after a pass in which no vertex moved by more than this share of an edge.
 const SETTLED: f64 = 1e-3;
-/// How often vertices are visited to win back what f lost.
+/// Number of visits of each vertex to regain what f lost.
 const RELAXING: u32 = 10;
-/// The smallest eigenvalue of a Hessian that is left, as a share of the largest.
+/// The eigenvalues of a Hessian are raised to at least this share of the largest.
 const EIGENVALUE_FLOOR: f64 = 1e-6;
 
-/// What holds wherever vertices are improved to.
+/// Bounds that every new position of a vertex must keep.
 pub(crate) struct Rules<'a> {
     pub(crate) badness: Badness,
     /// A step of the metric that the run minimizes.
     pub(crate) step: Step,
-    /// The largest inverse mean ratio that a triangle may have, as targets show it.
+    /// The largest inverse mean ratio that a triangle may have, after its target map is applied.
     pub(crate) shape: f64,
     /// The least altitude that a triangle may have, normalized.
     pub(crate) floor: f64,
-    /// How far each free vertex may be from where the run began, normalized; `None` if there is no bound.
+    /// How far each free vertex may be from the start of the run, normalized; `None` for no bound.
     pub(crate) bounds: Option<&'a [f64]>,
 }
 
@@ -40,14 +40,15 @@ struct Side {
     map: Option<TargetMap<f64>>,
 }
 
-/// Some free vertices, and the triangles around each. Numbers are those within the patch; the vertices that move come first.
+/// Some free vertices, and the triangles around each. Vertices are numbered within the patch; those that move come
+/// first.
 pub(crate) struct Patch<'a> {
     rules: &'a Rules<'a>,
     /// The numbers in the problem of the vertices that move.
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<Side>>,
-    /// Where each vertex may be: around which place, and how far from it.
+    /// For each vertex, the center and the radius of the circle in which it may be.
     bounds: Vec<(DVec2, f64)>,
     mean_area: f64,
 }
@@ -87,8 +88,9 @@ impl<'a> Patch<'a> {
         Self { rules, vertices, positions: places, stars, bounds, mean_area }
     }
 
-    /// Moves the vertices such that the worst triangle around them becomes less bad, and then wins back what it can of f. Returns where the
-    /// vertices are then, with their numbers in the problem, or nothing if the worst triangle cannot be improved.
+    /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
+    /// possible. Returns the new positions, with the vertices' numbers in the problem, or `None` if the worst triangle
+    /// cannot be improved.
     pub(crate) fn improve(mut self) -> Option<Vec<(u32, DVec2)>> {
         let count = self.vertices.len();
         let before = self.worst();
@@ -121,24 +123,24 @@ impl<'a> Patch<'a> {
         Some(self.vertices.into_iter().zip(self.positions).collect())
     }
 
-    /// A triangle at a vertex, in coordinates.
+    /// Returns a triangle at a vertex, in coordinates.
     fn corner(&self, side: &Side, at: DVec2) -> Corner<f64> {
         corner(at, side.ends.map(|end| self.positions[end as usize]), self.mean_area)
     }
 
-    /// The badness of the worst triangle.
+    /// Returns the badness of the worst triangle.
     fn worst(&self) -> f64 {
         (0..self.vertices.len()).map(|v| self.worst_at(v, self.positions[v])).fold(0.0, f64::max)
     }
 
-    /// The badness of the worst triangle around a vertex at some place.
+    /// Returns the badness of the worst triangle around a vertex at the given position.
     fn worst_at(&self, v: usize, at: DVec2) -> f64 {
         let badness = self.rules.badness;
         let of = |side: &Side| badness.of(&badness.seen(self.corner(side, at), side.map.as_ref()));
         self.stars[v].iter().map(of).fold(0.0, f64::max)
     }
 
-    /// Whether a vertex may be at a place.
+    /// Whether a vertex may be at a position.
     fn is_allowed(&self, v: usize, at: DVec2) -> bool {
         let Rules { shape, floor, .. } = *self.rules;
         let (start, most) = self.bounds[v];
@@ -154,7 +156,8 @@ impl<'a> Patch<'a> {
             })
     }
 
-    /// A Newton step of the p-norm of the triangles around a vertex. Returns how far it went, in edges.
+    /// Takes a Newton step by the p-norm of the triangles around a vertex. Returns the length of the step, divided by
+    /// that of an edge.
     fn visit(&mut self, v: usize, doublings: u32) -> f64 {
         let badness = self.rules.badness;
         let here = self.positions[v];
@@ -177,7 +180,7 @@ impl<'a> Patch<'a> {
         self.step(v, &sum, value, f64::INFINITY)
     }
 
-    /// A Newton step of the metric of the run, after which no triangle around the vertex is worse than `limit`.
+    /// Takes a Newton step by the metric of the run, after which no triangle around the vertex is worse than `limit`.
     fn relax(&mut self, v: usize, limit: f64) {
         let Step { metric, sharpness, .. } = self.rules.step;
         let here = self.positions[v];
@@ -199,7 +202,8 @@ impl<'a> Patch<'a> {
         self.step(v, &sum, value, limit);
     }
 
-    /// Moves a vertex along the Newton direction as far as a value falls and all rules hold. Returns how far, in edges.
+    /// Moves a vertex along the Newton direction as far as a value falls and all rules are kept. Returns the distance,
+    /// divided by the length of an edge.
     fn step(
         &mut self,
         v: usize,

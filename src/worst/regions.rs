@@ -1,8 +1,9 @@
-//! Which vertices may move while the worst triangles are improved.
+//! Finds the vertices that may move while the worst triangles are improved.
 
 use crate::layout::Problem;
 
-/// The free vertices of some triangles and of so many rings around them, ascending, apart where no triangle joins them.
+/// Returns the free vertices of some triangles and of `rings` rings around them, ascending, in separate lists for parts
+/// that no triangle joins.
 pub(crate) fn around(problem: &Problem, triangles: &[u32], rings: u32) -> Vec<Vec<u32>> {
     let free = problem.free_count() as u32;
     let mut found = Vec::new();

@@ -9,20 +9,22 @@ use crate::worst::badness::{Badness, corner};
 use crate::worst::patch::{Patch, Rules};
 use crate::worst::regions::around;
 
-/// One of so many triangles is improved, the worst of those with a free vertex,
+/// Of this number of triangles one is improved: the worst of those with a free vertex.
 const SHARE: usize = 1000;
-/// but so many at least,
+/// The least number of triangles to be improved.
 const FEWEST: usize = 10;
-/// and so many at most, so that the stage takes seconds for the largest mesh.
+/// The most triangles to be improved, so that the stage takes seconds for the largest mesh.
 const MOST: usize = 1000;
-/// The rings of vertices around them that move too: with three the worst falls no farther, and f rises more.
+/// The number of rings of vertices around these triangles that move too. With three, the worst triangle improves no
+/// further, and f rises more.
 const RINGS: u32 = 2;
-/// The stage ends after so many passes,
+/// The stage ends after this number of passes at the latest.
 const PASSES: u32 = 10;
-/// or one in which the worst badness of the mesh fell by less than this share. Of imr it is half as much.
+/// The stage ends after a pass in which the worst badness of the mesh fell by less than this share. The share of the
+/// inverse mean ratio is half as much, as badness is its square.
 const LEAST_GAIN: f64 = 0.01;
 
-/// The largest badness of a triangle with a free vertex.
+/// Returns the largest badness of a triangle with a free vertex.
 pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
     worst_of(problem, &all(problem, badness, positions))
 }
@@ -37,8 +39,8 @@ fn is_movable(problem: &Problem, triangle: &[u32; 3]) -> bool {
     triangle.iter().any(|&v| (v as usize) < problem.free_count())
 }
 
-/// The number of triangles worse than the worst that has a free vertex, none of whose vertices is free or among those that slide,
-/// ascending.
+/// Returns the number of triangles that are worse than the worst one with a free vertex, and have no vertex that is
+/// free or in `slides`, which is ascending.
 pub(crate) fn stuck(
     problem: &Problem,
     badness: Badness,
@@ -54,7 +56,7 @@ pub(crate) fn stuck(
     pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
 }
 
-/// The badness of every triangle.
+/// Returns the badness of every triangle.
 fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
     collect(problem.triangles().len(), |t| {
         let t = problem.triangles()[t];
@@ -66,9 +68,9 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
     })
 }
 
-/// Improves the worst triangles of a mesh with its vertices at `positions`: each patch around some of them by itself, for as long as the
-/// worst of all becomes less bad and, asked before each pass, `goes_on` says so. No triangle becomes worse than the worst of its patch
-/// was. Returns the number of vertices that have moved.
+/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent patches around them. Passes
+/// continue as long as the worst triangle of all becomes less bad and `goes_on`, called before each pass, allows it. No
+/// triangle becomes worse than the worst of its patch was. Returns the number of vertices that have moved.
 pub(crate) fn improve(
     problem: &Problem,
     rules: &Rules<'_>,

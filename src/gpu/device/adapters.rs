@@ -3,7 +3,7 @@
 use crate::error::GpuError;
 use crate::gpu::device::blocking::blocking;
 
-/// What an adapter is called and how wgpu drives it.
+/// The name of an adapter, and how wgpu drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
     /// The name, for example of the graphics card. Browsers may keep it to themselves: "unnamed adapter" then.
@@ -45,19 +45,19 @@ impl AdapterSummary {
     }
 }
 
-/// All adapters of this machine, in the order in which they would be chosen. None in a browser, where
-/// [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the one that there is.
+/// Lists all adapters of this machine, in the order in which they would be chosen. The list is empty in a browser,
+/// where [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the only one.
 pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
 
-/// Adapters that can compute, fastest kind first. OpenGL's are listed only where there are no others: they are the same
-/// devices again, and the driver is slow to start.
+/// Lists the adapters that can compute, fastest kind first. Adapters of OpenGL are listed only if there are no others:
+/// they are the same devices again, and the driver is slow to start.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
     blocking(async { Ok::<_, GpuError>(ranked_adapters_async().await) }).unwrap_or_default()
 }
 
-/// As [`ranked_adapters`], without blocking.
+/// Lists the adapters that can compute, like [`ranked_adapters`], without blocking.
 pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
     let native = usable_adapters(wgpu::Backends::PRIMARY).await;
     match native.is_empty() {

@@ -24,16 +24,16 @@ impl Gpu {
     /// thread, polls the device and blocks until all work submitted so far is done.
     ///
     /// # Errors
-    /// [`GpuError::Arithmetic`] if digits are lost, or what the device refuses.
+    /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.
     pub fn check_arithmetic(&self) -> Result<(), GpuError> {
         blocking(self.arithmetic_checked(Waiting::Block))
     }
 
-    /// [`check_arithmetic`](Self::check_arithmetic) without blocking. The application polls the device: the future
-    /// completes after a poll that finds the kernel done.
+    /// Checks the arithmetic of the adapter like [`check_arithmetic`](Self::check_arithmetic), without blocking. The
+    /// application polls the device: the future completes after a poll that finds the kernel done.
     ///
     /// # Errors
-    /// As [`check_arithmetic`](Self::check_arithmetic).
+    /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.
     pub async fn check_arithmetic_async(&self) -> Result<(), GpuError> {
         self.arithmetic_checked(Waiting::Await).await
     }
@@ -67,13 +67,13 @@ async fn fault(
     let (kernel, positions) = (Kernel::CheckArithmetic, Positions::Whole);
     let label = Some("gpu-smooth check_arithmetic");
     let results = scoped(&gpu.device, || {
-        // All zero, `Params::zero` too.
+        // All members are zero, including `Params::zero`.
         let params = filled(gpu, "params of check_arithmetic", &[Params::zeroed()], Usage::UNIFORM);
         let inputs = filled(gpu, "inputs of check_arithmetic", &inputs, Usage::STORAGE);
         let bytes = (cases.len() * size_of::<ArithmeticResult>()) as u64;
         let usage = Usage::STORAGE | Usage::COPY_SRC;
         let results = zeroed(gpu, "results of check_arithmetic", bytes, usage);
-        // Needed once, so not kept with the pipelines of runs.
+        // Needed only once, so it is not kept with the pipelines of runs.
         let pipeline = gpu.pipelines.compile(&gpu.device, &kernel, positions, wgsl);
         let resources = [&params, &inputs, &results].map(wgpu::Buffer::as_entire_binding);
         let bound = gpu.pipelines.bind(&gpu.device, Interface::Arithmetic, positions, &resources);
@@ -93,27 +93,27 @@ async fn fault(
     Ok(cases.iter().zip(&results).find_map(|(case, result)| case.fault(result)))
 }
 
-/// An input of the kernel, and what to check of the result.
+/// An input of the kernel, and what to check in the result.
 struct Case {
     input: ArithmeticInput,
     expected: Expected,
 }
 
 enum Expected {
-    /// The digits of sums and differences.
+    /// Check the digits of sums and differences.
     Digits,
-    /// Whether the area passes for positive.
+    /// Check whether the area counts as positive.
     Positive(bool),
 }
 
-/// Inputs: positions up to a million edges from the origin, where an edge lies in the low parts alone, and edge vectors
-/// that span areas of all kinds.
+/// Returns the inputs: positions up to a million edges from the origin, where an edge is in the low parts alone, and
+/// edge vectors that span areas of all kinds.
 fn cases() -> Vec<Case> {
     let digits = (0..24).map(|i| {
         let n = f64::from(i);
         let size = [0.01, 1.0, 1e3, 1e6][i as usize % 4];
         let a = [size * (2.0 + n).sqrt(), -size * (3.0 + 2.0 * n).sqrt()];
-        // Near each other and far apart.
+        // The first 16 are near each other, the others far apart.
         let b = if i < 16 {
             [a[0] + 0.37 / (1.0 + n).sqrt(), a[1] - 0.21 * (5.0 + n).sqrt()]
         } else {
@@ -130,7 +130,7 @@ fn cases() -> Vec<Case> {
         ([1.0, 2.0], [2.0, 4.0], false),
         ([nan, 1.0], [1.0, 1.0], false),
         ([1.0, 1.0], [1.0, nan], false),
-        // Infinity minus infinity, and infinity times zero.
+        // The area becomes infinity minus infinity, or infinity times zero.
         ([infinity, infinity], [1.0, 1.0], false),
         ([infinity, 0.0], [1.0, 0.0], false),
         ([3e38, 0.0], [0.0, 3e38], false),
@@ -148,13 +148,14 @@ fn position([x, y]: [f64; 2]) -> [f32; 4] {
     [x, y, x_low, y_low]
 }
 
-/// The relative error allowed in a pair of floats: its 48 bits less a few roundings. One float has 24 bits.
+/// The relative error allowed in a pair of floats. It has 48 bits, and some roundings are allowed for.
 const PAIR: f64 = 1.0 / (1u64 << 40) as f64;
-/// The relative error allowed in a float: its 24 bits less a few roundings.
+/// The relative error allowed in a float. It has 24 bits, and some roundings are allowed for.
 const FLOAT: f64 = 1.0 / (1u64 << 20) as f64;
 
 impl Case {
-    /// The operation whose result is wrong, if there is one. Comparisons are written so that NaN counts as wrong.
+    /// Returns the operation whose result is wrong, if there is one. Comparisons are written so that NaN counts as
+    /// wrong.
     fn fault(&self, result: &ArithmeticResult) -> Option<&'static str> {
         if let Expected::Positive(positive) = self.expected {
             let found = result.is_positive != 0.0;
@@ -203,7 +204,7 @@ impl Case {
 mod tests {
     use super::*;
 
-    /// The fault that is found after each of these replacements in the kernel's source.
+    /// Returns the fault that is found after these replacements in the kernel's source.
     fn fault_after(gpu: &Gpu, replacements: &[(&str, &str)]) -> Option<&'static str> {
         let mut wgsl = Kernel::CheckArithmetic.wgsl();
         for (right, wrong) in replacements {
@@ -220,7 +221,8 @@ mod tests {
         gpu.check_arithmetic().unwrap();
     }
 
-    /// Sums as written, as a compiler may rewrite them if nothing prevents it, and the fault to be found then.
+    /// Each row: a sum as written, the form to which a compiler may simplify it if nothing prevents that, and the fault
+    /// then to be found.
     const FOLDED: [(&str, &str, &str); 6] = [
         (
             "opaque(a - aa) + opaque(b - bb)",
@@ -265,7 +267,7 @@ mod tests {
     #[test]
     fn a_nan_area_that_passes_for_positive_is_found() {
         let gpu = Gpu::open(None).unwrap();
-        // !(x > 0) as written by a compiler that assumes there are no NaNs.
+        // `!(x > 0)` as a compiler writes it that assumes there are no NaNs.
         let careless = [("opaque_bits(x) - 1u < 0x7f7fffffu", "!(x <= 0.0)")];
         let operation = "an area that is inverted, flat or not a number passes for positive";
         assert_eq!(fault_after(&gpu, &careless), Some(operation));

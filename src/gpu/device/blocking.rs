@@ -1,11 +1,12 @@
-//! Blocking calls, where a thread can block.
+//! Blocking calls, for targets on which a thread can block.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
 use crate::error::GpuError;
 
-/// The result of a future, for which the thread is blocked if need be. What a browser would have to wait for is refused.
+/// Returns the result of a future, blocking the thread if need be. In a browser, which cannot block, it returns an
+/// error if the future is not ready at once.
 pub(crate) fn blocking<T, E: From<GpuError>>(
     future: impl Future<Output = Result<T, E>>,
 ) -> Result<T, E> {

@@ -1,4 +1,4 @@
-//! Buffers: filled on creation, zeroed, and bound in part.
+//! Buffers: creating them filled or zeroed, and binding parts of them.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -30,12 +30,13 @@ pub(crate) fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingRe
     })
 }
 
-/// Bytes of a large buffer that are sent at once.
+/// Bytes that are sent at once to a large buffer.
 const PIECE: usize = 16 << 20;
-/// How many pieces may be under way before one is waited for. With fewer than eight million vertices nothing waits.
+/// Number of pieces that may be in flight before one is waited for. With fewer than eight million vertices nothing
+/// waits.
 const UNDER_WAY: usize = 8;
 
-/// A buffer holding `contents`. To be called in an error scope.
+/// Creates a buffer that holds `contents`. To be called in an error scope.
 pub(crate) fn filled<T: bytemuck::NoUninit>(
     gpu: &Gpu,
     label: &str,
@@ -54,7 +55,7 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
         write_by_pieces(gpu, &buffer, 0, bytes);
         return buffer;
     }
-    // A device that is lost or out of memory maps nothing. The error scope or a later call reports that, where wgpu's own
+    // Mapping fails on a device that is lost or out of memory. The error scope or a later call reports that; wgpu's own
     // `create_buffer_init` would panic.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.slice(..bytes.len()).copy_from_slice(bytes);
@@ -63,8 +64,8 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     buffer
 }
 
-/// Writes to a large buffer piece by piece, from the byte `first` on. Until the device has a piece, it takes its size in memory again: so only a few
-/// are under way at once.
+/// Writes to a large buffer piece by piece, from the byte `first` on. A piece in flight takes its size in memory again,
+/// so only a few are in flight at once.
 pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, bytes: &[u8]) {
     let mut under_way = VecDeque::new();
     for (at, piece) in (first..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
@@ -79,7 +80,7 @@ pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, byte
     }
 }
 
-/// A buffer of zeros. To be called in an error scope.
+/// Creates a buffer of zeros. To be called in an error scope.
 pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&format!("gpu-smooth {label}")),

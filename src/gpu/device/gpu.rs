@@ -13,7 +13,7 @@ use crate::gpu::kernels::table::{Kernel, Positions};
 use crate::gpu::scope::poll;
 use crate::run::Options;
 
-/// A device with its pipelines. Made once, it serves many meshes. It is a handle: clones are the same device.
+/// A device with its pipelines. Created once, it serves many meshes. It is a handle: clones refer to the same device.
 #[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
@@ -21,31 +21,33 @@ pub struct Gpu {
     pub(crate) pipelines: Arc<Pipelines>,
     summary: Arc<AdapterSummary>,
     lost: Arc<Mutex<Option<String>>>,
-    /// The operation that [`Gpu::check_arithmetic`] found to be wrong, if any, once it was called.
+    /// The operation that [`Gpu::check_arithmetic`] found to be wrong, if any. Not set before the first call.
     pub(super) arithmetic: Arc<OnceLock<Option<&'static str>>>,
 }
 
 impl Gpu {
     /// Takes an application's own device and queue (both are handles, which can be cloned).
     ///
-    /// The device has to be made with [`Self::required_limits`] or better. Its callbacks for errors and for loss stay the
-    /// application's: this library catches the errors of its own calls in error scopes, and learns of a lost device by
-    /// reading back. Faults of an encoder that was passed in (it is of another device, or finished) are reported by wgpu
-    /// to the application when it finishes the encoder.
+    /// The device has to be created with [`Self::required_limits`] or higher. Its callbacks for errors and for loss
+    /// stay the application's: this library catches the errors of its own calls in error scopes, and finds out about a
+    /// lost device when it reads back. Faults of an encoder that was passed in, for example one of another device or a
+    /// finished one, are reported by wgpu to the application when it finishes the encoder.
     ///
-    /// Nothing is submitted and nothing waits, so this may be called on any thread. The device is polled once, which may
-    /// run callbacks of the application, to find out whether the queue is its own; while the device is busy that cannot be
-    /// found out, and wgpu reports a foreign queue later, to the handler of the queue's own device. The arithmetic of the adapter is
-    /// therefore not checked here: runs of [`Smoother`](crate::Smoother) check it first, and an application that encodes
-    /// sweeps itself calls [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
+    /// Nothing is submitted and nothing waits, so this may be called on any thread. The device is polled once, which
+    /// may run callbacks of the application, to check that the queue belongs to it. While the device is busy this
+    /// cannot be checked, and wgpu reports a foreign queue later, to the error handler of the queue's own device.
+    ///
+    /// The arithmetic of the adapter is not checked here, as that would wait: runs of [`Smoother`](crate::Smoother)
+    /// check it first, and an application that encodes sweeps itself calls [`Gpu::check_arithmetic`] or
+    /// [`Gpu::check_arithmetic_async`].
     ///
     /// # Panics
-    /// This library does not panic, but wgpu itself does where resources of two *instances* meet. An application should
-    /// have one [`wgpu::Instance`].
+    /// This library does not panic, but wgpu itself does if resources of two *instances* are combined. An application
+    /// should have one [`wgpu::Instance`].
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the device binds too few storage buffers, [`GpuError::Queue`] if the queue is that of another
-    /// device.
+    /// [`GpuError::Limit`] if the device binds too few storage buffers, [`GpuError::Queue`] if the queue belongs to
+    /// another device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         if !is_own(&queue, &device) {
             return Err(GpuError::Queue);
@@ -54,10 +56,10 @@ impl Gpu {
         Self::with(device, queue, summary, Arc::default())
     }
 
-    /// Compiles kernels with a pipeline cache of the application, which makes them start faster the next time. The
-    /// application makes it of its device, which has the feature `PIPELINE_CACHE` where the driver has caches (on Vulkan),
-    /// and saves its data ([`wgpu::PipelineCache::get_data`]). To be called before anything else: what is compiled already
-    /// is compiled again.
+    /// Sets a pipeline cache of the application, with which kernels compile faster the next time. The application
+    /// creates it on its device, which has the feature `PIPELINE_CACHE` where the driver has caches (on Vulkan), and
+    /// saves its data ([`wgpu::PipelineCache::get_data`]). To be called first: kernels that are compiled already are
+    /// compiled again.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, Options, SmoothError};
@@ -85,14 +87,15 @@ impl Gpu {
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
     }
 
-    /// Compiles the kernels that meshes need with these options: of sweeps, of objectives, and of the import and export of
-    /// vertices. Neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer then waits for the compiler; a
-    /// frame never does. Kernels that are compiled already cost nothing.
-    /// May be called on another thread. Meshes so large that their positions take two bindings need kernels of their own,
-    /// which are not included.
+    /// Compiles the kernels that meshes need with these options: those of sweeps, of objectives, and of the import and
+    /// export of vertices. Then neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for
+    /// the compiler; a frame never does. Kernels that are compiled already cost nothing. May be called on another
+    /// thread.
+    ///
+    /// Meshes so large that their positions take two bindings need kernels of their own, which are not included.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for an option out of its range, or what the device refuses.
+    /// [`SmoothError::Option`] for an option out of its range, or [`SmoothError::Gpu`] if the device fails.
     pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
         options.check()?;
         let mut kernels = Kernel::needed_by(&options.plan());
@@ -105,12 +108,12 @@ impl Gpu {
         Ok(())
     }
 
-    /// The device, a handle.
+    /// The device. It is a handle, which can be cloned.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// The queue, a handle.
+    /// The queue. It is a handle, which can be cloned.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
@@ -120,7 +123,7 @@ impl Gpu {
         &self.summary
     }
 
-    /// Fails if the device is lost: most calls on a lost device look as if they had worked.
+    /// Fails if the device is lost. Most calls on a lost device seem to succeed.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         match &*self.lost.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(message) => Err(GpuError::Lost(message.clone())),
@@ -135,16 +138,15 @@ impl Gpu {
         wgpu::Features::empty()
     }
 
-    /// The features this library makes use of where the device has them: `TIMESTAMP_QUERY`, for
-    /// [`Timestamps`](crate::gpu::Timestamps). An application that wants it asks for
-    /// `adapter.features() & Gpu::optional_features()`.
+    /// The optional features that this library uses: `TIMESTAMP_QUERY`, for [`Timestamps`](crate::gpu::Timestamps). An
+    /// application that wants it requests `adapter.features() & Gpu::optional_features()`.
     pub fn optional_features() -> wgpu::Features {
         wgpu::Features::TIMESTAMP_QUERY
     }
 
-    /// The limits to make a device with, for an application that needs `own` for itself and has meshes of up
-    /// to `size`: `own`, raised where the kernels or the meshes need more. Buffers larger than what the adapter binds at
-    /// once are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
+    /// Returns the limits to create a device with, for meshes of up to `size` and an application that itself needs
+    /// `own`: `own`, raised where the kernels or the meshes need more. Buffers larger than the adapter can bind at once
+    /// are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize, VertexBuffer};
@@ -172,9 +174,9 @@ impl Gpu {
     /// [`VertexBuffer::binding_size`](crate::gpu::VertexBuffer::binding_size).
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it
-    /// names the limit. [`GpuError::TooLarge`] for a mesh that the kernels cannot number on any device. `own` is not
-    /// checked here; the adapter checks it when it is asked for the device.
+    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it names the
+    /// limit. [`GpuError::TooLarge`] for a mesh with more vertices or triangles than the kernels can number on any
+    /// device. `own` is not checked here; the adapter checks it when the device is requested.
     pub fn required_limits(
         own: wgpu::Limits,
         size: MeshSize,
@@ -186,17 +188,17 @@ impl Gpu {
     /// Checks whether meshes of this size fit the device, bound part by part if need be. Allocates nothing.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if not; it names the buffer and the limit. [`GpuError::TooLarge`] for a mesh that the kernels
-    /// cannot number on any device.
+    /// [`GpuError::Limit`] if not; it names the buffer and the limit. [`GpuError::TooLarge`] for a mesh with more
+    /// vertices or triangles than the kernels can number on any device.
     pub fn check_size(&self, size: MeshSize) -> Result<(), GpuError> {
         size.check(&self.device.limits())
     }
 }
 
-/// Whether the queue is that of the device, as far as this can be found out without waiting: true where it cannot.
+/// Whether the queue belongs to the device. True if this cannot be found out without waiting.
 ///
-/// What a queue has done is reported by polls of its own device alone. A device without work that leaves the report
-/// of the queue outstanding is therefore another one. Browsers have no polls.
+/// Only polls of a queue's own device report that its work is done. So if a poll of an idle device brings no report,
+/// the queue belongs to another device. Browsers have no polls.
 fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     if cfg!(target_arch = "wasm32") {
         return true;
@@ -204,7 +206,7 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     let reported = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&reported);
     queue.on_submitted_work_done(move || flag.store(true, Ordering::Relaxed));
-    // Another thread may have taken the report in a poll of its own, and be about to make it.
+    // A poll on another thread may have taken the report, and be about to deliver it.
     (0..PATIENCE).any(|_| {
         let idle = poll(device, wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
         let is_own = reported.load(Ordering::Relaxed) || !idle;
@@ -215,5 +217,5 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     })
 }
 
-/// How often a queue that looks foreign is looked at, once in a millisecond.
+/// Number of polls, one each millisecond, before a queue counts as foreign.
 const PATIENCE: u32 = 30;

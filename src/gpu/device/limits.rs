@@ -7,7 +7,7 @@ use crate::gpu::kernels::pipelines::storage_bindings;
 use crate::gpu::kernels::table::Positions;
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, WORKGROUP};
 
-/// A limit, how much of it the kernels need, and what for.
+/// The name of a limit, its field, the value that the kernels need, and what they need it for.
 type Row = (&'static str, fn(&mut wgpu::Limits) -> &mut u32, u32, &'static str);
 
 macro_rules! row {
@@ -16,7 +16,8 @@ macro_rules! row {
     };
 }
 
-/// The limits that the kernels need on meshes whose positions are bound like this. Tests make a device of exactly these.
+/// The limits that the kernels need, given how the positions of a mesh are bound. Tests create a device with exactly
+/// these.
 fn rows(positions: Positions) -> [Row; 11] {
     let storage = storage_bindings(positions);
     let largest = FINISH_WORKGROUP.max(WORKGROUP);
@@ -35,7 +36,7 @@ fn rows(positions: Positions) -> [Row; 11] {
     ]
 }
 
-/// Bytes of memory a workgroup shares.
+/// Bytes of memory that a workgroup shares.
 const SHARED: u32 = FINISH_WORKGROUP * size_of::<[f32; 2]>() as u32;
 
 /// Fails if the kernels cannot run with these limits.
@@ -43,7 +44,7 @@ pub(crate) fn check(available: &wgpu::Limits) -> Result<(), GpuError> {
     raise(&mut available.clone(), available, Positions::Whole)
 }
 
-/// Raises limits as far as the kernels need.
+/// Raises limits to what the kernels need.
 fn raise(
     limits: &mut wgpu::Limits,
     available: &wgpu::Limits,
@@ -61,7 +62,7 @@ fn raise(
     Ok(())
 }
 
-/// The limits to make a device with; see [`Gpu::required_limits`](super::Gpu::required_limits).
+/// Returns the limits to create a device with; see [`Gpu::required_limits`](super::Gpu::required_limits).
 pub(crate) fn required(
     own: wgpu::Limits,
     size: MeshSize,

@@ -1,4 +1,4 @@
-//! Adapters and devices: what they can do, and memory on them.
+//! Adapters and devices: their limits and arithmetic, and memory on them.
 
 mod adapters;
 mod arithmetic;

@@ -1,4 +1,4 @@
-//! Opens adapters, and passes over those whose arithmetic is wrong.
+//! Opens adapters, and skips those whose arithmetic is wrong.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,21 +10,23 @@ use crate::gpu::device::readback::Waiting;
 use crate::gpu::scope::caught;
 
 impl Gpu {
-    /// Opens the best adapter, or the best whose name contains `name` (whatever the case). Discrete GPUs come before
-    /// integrated, virtual and software ones. An adapter that fails [`Gpu::check_arithmetic`] is passed over.
+    /// Opens the best adapter, or the best of those whose name contains `name`, ignoring case. Discrete GPUs come
+    /// before integrated, virtual and software ones. An adapter that fails [`Gpu::check_arithmetic`] is skipped.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] of the best adapter if none passes, or
-    /// what the device refuses.
+    /// [`GpuError::NoAdapter`] if there is none, or none with this name; [`GpuError::NoDevice`] if the adapter refuses
+    /// to create a device; [`GpuError::Arithmetic`] of the best adapter if none passes the check; or another
+    /// [`GpuError`] if the device fails.
     pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
         blocking(Self::open_async(name))
     }
 
-    /// As [`open`](Self::open), for a page in a browser, which cannot block. Elsewhere it blocks as `open` does while the
-    /// arithmetic is checked.
+    /// Opens the best adapter like [`open`](Self::open), for a page in a browser, which cannot block. On other targets
+    /// it blocks, as `open` does, while the arithmetic is checked.
     ///
     /// # Errors
-    /// As [`open`](Self::open).
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] or another [`GpuError`] if the device
+    /// fails; [`open`](Self::open) gives the conditions.
     pub async fn open_async(name: Option<&str>) -> Result<Self, GpuError> {
         let adapters = ranked_adapters_async().await;
         let has_name = |adapter: &&wgpu::Adapter| {
@@ -42,7 +44,7 @@ impl Gpu {
         }
     }
 
-    /// Opens an adapter with the highest limits that it offers, and checks its arithmetic.
+    /// Opens an adapter with the highest limits that it has, and checks its arithmetic.
     pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         blocking(Self::start_async(adapter))
     }
@@ -57,7 +59,7 @@ impl Gpu {
         };
         let none = |message| GpuError::NoDevice { adapter: summary.name.clone(), message };
         let requested = caught(|| adapter.request_device(&descriptor)).map_err(none)?;
-        // What wgpu says ends with a stop; the message goes on.
+        // wgpu's message ends with a period, but the sentence around it goes on.
         let said = |error: wgpu::RequestDeviceError| error.to_string().trim_end_matches('.').into();
         let (device, queue) = requested.await.map_err(|error| none(said(error)))?;
         let lost = Arc::new(Mutex::new(None));
@@ -66,17 +68,17 @@ impl Gpu {
             let text = if message.is_empty() { format!("{reason:?}") } else { message };
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
         });
-        // Every call is in an error scope; what still arrives here would otherwise panic.
+        // Every call is in an error scope. An error that still arrives here would otherwise panic.
         let flag = Arc::clone(&lost);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
         let gpu = Self::with(device, queue, summary, lost)?;
-        // A browser polls by itself. Elsewhere nobody else has the device to poll it.
+        // A browser polls by itself. On other targets nobody else has the device to poll it.
         let browser = cfg!(target_arch = "wasm32");
         let waiting = if browser { Waiting::Await } else { Waiting::Block };
         if let Err(error) = gpu.arithmetic_checked(waiting).await {
-            // Of a device that has failed, wgpu may miss what it never made.
+            // When a device that has failed is dropped, wgpu may panic because of resources that were never created.
             let _ = caught(|| drop(gpu));
             return Err(error);
         }
@@ -84,8 +86,8 @@ impl Gpu {
     }
 }
 
-/// All adapters of this machine, in the order in which they would be chosen, each with the reason if it cannot be used.
-/// Opens each of them; [`adapters`](crate::gpu::adapters) only lists them.
+/// Lists all adapters of this machine, in the order in which they would be chosen, each with the reason if it cannot be
+/// used. Each of them is opened, unlike by [`adapters`](crate::gpu::adapters).
 pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     let checked = |adapter: &wgpu::Adapter| {
         (AdapterSummary::new(&adapter.get_info()), Gpu::start(adapter).map(|_| ()))
@@ -93,8 +95,8 @@ pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     ranked_adapters().iter().map(checked).collect()
 }
 
-/// Opens candidates until one has the right arithmetic. If none has, the error is that of the first; `None` if there are
-/// no candidates.
+/// Opens candidates until one has the right arithmetic. If none has, returns the error of the first, and `None` if
+/// there are no candidates.
 async fn first_that_passes<A, G>(
     candidates: impl Iterator<Item = A>,
     open: impl AsyncFn(A) -> Result<G, GpuError>,
@@ -130,7 +132,7 @@ mod tests {
         assert_eq!(first(&["fast", "right", "other"]).unwrap().unwrap(), "right");
         let error = first(&["fast", "faster"]).unwrap().unwrap_err();
         assert!(matches!(&error, GpuError::Arithmetic { adapter, .. } if adapter == "fast"));
-        // Any other fault is reported, not worked around.
+        // Any other error is returned at once.
         assert!(matches!(first(&["gone", "right"]), Some(Err(GpuError::Lost(_)))));
         assert!(first(&[]).is_none());
     }

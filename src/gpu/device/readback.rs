@@ -1,4 +1,4 @@
-//! Reading buffers back to the host. Buffers are mapped for reading nowhere else.
+//! Reads buffers back to the host. No other module maps buffers for reading.
 
 use std::marker::PhantomData;
 
@@ -9,12 +9,12 @@ use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::scope::{poll, scoped};
 
-/// Who polls the device while a readback is under way.
+/// The party that polls the device while a readback is in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Waiting {
     /// This library, blocking the thread until the device is done.
     Block,
-    /// The application, as it does for its own work; the future completes after one of its polls.
+    /// The application polls, as it does for its own work. The future completes after one of its polls.
     Await,
 }
 
@@ -29,7 +29,7 @@ pub(crate) async fn read<T: Pod>(
 }
 
 /// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. A
-/// submission by itself would make some drivers block the thread until the work before it is done.
+/// separate submission for the copy would make some drivers block the thread until the work before it is done.
 pub(crate) fn submit_and_copy<'g, T: Pod>(
     gpu: &'g Gpu,
     encode: impl FnOnce(&mut wgpu::CommandEncoder),
@@ -52,7 +52,7 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
         encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
         gpu.queue.submit([encoder.finish()]);
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is only gone if this function has already failed.
+            // The receiver is dropped only if this function has already failed.
             let _ = sender.send(result);
         });
         staging
@@ -60,7 +60,7 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
     Ok(Copied { gpu, staging, arrival, values: PhantomData })
 }
 
-/// Values on their way to the host.
+/// Values that are being copied to the host.
 pub(crate) struct Copied<'g, T> {
     gpu: &'g Gpu,
     staging: wgpu::Buffer,
@@ -69,7 +69,7 @@ pub(crate) struct Copied<'g, T> {
 }
 
 impl<T: Pod> Copied<'_, T> {
-    /// The values, once they are there.
+    /// Waits for the values and returns them.
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
         let Self { gpu, staging, arrival, .. } = self;
         if waiting == Waiting::Block {

@@ -1,11 +1,11 @@
-//! How much memory a mesh takes on a device, known before anything is allocated.
+//! Computes the memory that a mesh takes on a device, before anything is allocated.
 
 use crate::error::GpuError;
 use crate::gpu::kernels::pipelines::storage_bindings;
 use crate::gpu::kernels::table::Positions;
 use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
 
-/// How large a mesh is, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits) and
+/// The size of a mesh, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits) and
 /// [`Gpu::check_size`](crate::gpu::Gpu::check_size).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshSize {
@@ -15,7 +15,7 @@ pub struct MeshSize {
     pub triangles: usize,
 }
 
-/// A buffer that grows with the mesh.
+/// The bytes that a buffer needs for a mesh.
 struct Need {
     what: &'static str,
     bytes: u64,
@@ -26,29 +26,30 @@ struct Need {
 enum Spread {
     /// It cannot be bound, as it is always bound whole.
     No,
-    /// As two bindings, half of the buffer in each.
+    /// In two bindings, half of the buffer in each.
     Two,
-    /// Part by part, with a dispatch for each. A part has at least this many bytes.
+    /// Part by part, with one dispatch for each. A part has at least `least` bytes.
     Parts { least: u64 },
 }
 
 /// Bytes of a position, a pair of floats for each coordinate.
 pub(crate) const POSITION: u64 = size_of::<[f32; 4]>() as u64;
-/// The largest alignment of the start of a binding.
+/// The largest alignment, in bytes, that a device may require of the start of a binding.
 pub(crate) const ALIGNMENT: u64 = 256;
 /// Bytes of a triangle.
 pub(crate) const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
 /// Bytes of a vertex number.
 pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
 
-/// The one-rings have at most one entry for each corner of a triangle, and the bit [`HELD`] of a ring start is taken.
+/// The most triangles that the kernels can number. The one-rings have at most one entry for each corner of a triangle,
+/// and the bit [`HELD`] of a ring start is in use.
 const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
-/// Kernels number vertices, and the end of their rings, in 32 bits.
+/// The most vertices that the kernels can number. They number vertices, and the end of the one-rings, in 32 bits.
 const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
-    /// The bytes of each buffer. Two are upper bounds: one-rings hold each corner of a triangle at most once, and best
-    /// positions are kept of free vertices only.
+    /// Returns the bytes of each buffer. Two are upper bounds: one-rings hold each corner of a triangle at most once,
+    /// and best positions are stored for free vertices only.
     fn needs(self, positions: Positions) -> [Need; 6] {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
@@ -70,20 +71,21 @@ impl MeshSize {
         ]
     }
 
-    /// The most bytes of device memory that the mesh and sweeps on it take: about 84 for each vertex. A scheme whose last
-    /// state is its best takes 68. Not included are corrections from coarser levels, which take some 60 more for each
-    /// vertex, and another 40 while they are accelerated. [`u64::MAX`] for a mesh that takes more than that.
+    /// Returns an upper bound on the bytes of device memory for the mesh and sweeps on it: about 84 for each vertex. A
+    /// scheme whose last state is its best takes 68. Corrections from coarser levels take some 60 more for each vertex,
+    /// and another 40 while they are accelerated; they are not included. [`u64::MAX`] for a mesh that would take more
+    /// than that.
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }
 
-    /// The largest buffer.
+    /// The size of the largest buffer, in bytes.
     pub(crate) fn largest(self, positions: Positions) -> u64 {
         self.needs(positions).iter().map(|need| need.bytes).fold(0, u64::max)
     }
 
-    /// Fails if the mesh has more corners than the kernels can number, or does not fit the limits, however it is
-    /// bound.
+    /// Fails if the mesh has more vertices or triangles than the kernels can number, or does not fit the limits,
+    /// however it is bound.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
         let Self { vertices, triangles } = self;
         if triangles > MOST_TRIANGLES || vertices > MOST_VERTICES {
@@ -114,7 +116,8 @@ impl MeshSize {
     }
 }
 
-/// Fails if a buffer of this many rows like positions does not fit the limits, however it is bound.
+/// Fails if a buffer with this number of rows, each as large as a position, does not fit the limits, however it is
+/// bound.
 pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuError> {
     let bytes = (rows as u64).saturating_mul(POSITION).saturating_add(ALIGNMENT);
     let what = || format!("the buffer of positions and targets ({rows} rows)");
@@ -127,7 +130,7 @@ pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuEr
     check_limit("max_storage_buffer_binding_size", bound, &what, at_once)
 }
 
-/// Fails if more is needed than there is.
+/// Fails if more is needed than is available.
 pub(crate) fn check_limit(
     limit: &'static str,
     available: u64,
@@ -140,8 +143,8 @@ pub(crate) fn check_limit(
     Ok(())
 }
 
-/// Invocations of a sum over the triangles: few enough to end it in one workgroup, enough to fill a large
-/// GPU.
+/// Number of invocations for a sum over the triangles: few enough to complete it in one workgroup, enough to fill a
+/// large GPU.
 pub(crate) fn objective_invocations(triangles: usize) -> u32 {
     u32::try_from(triangles).unwrap_or(u32::MAX).div_ceil(2048).clamp(1, 1024) * WORKGROUP
 }
@@ -150,7 +153,7 @@ pub(crate) fn objective_invocations(triangles: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// A device that binds whatever is asked for.
+    /// A device without limits.
     fn boundless() -> wgpu::Limits {
         wgpu::Limits {
             max_buffer_size: u64::MAX,

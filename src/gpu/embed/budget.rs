@@ -1,4 +1,4 @@
-//! How many sweeps a frame has time for.
+//! Chooses how many sweeps a frame has time for.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,12 +11,12 @@ use crate::gpu::device::buffers::zeroed;
 use crate::gpu::embed::Readback;
 use crate::gpu::scope::scoped;
 
-/// The time that sweeps may take on the device in each frame. It chooses the number of sweeps of the next frame from the
-/// time that those of the frames before took: at least one, and at most twice as many as in the frame before.
+/// The time that sweeps may take on the device in each frame. From the times of earlier frames it chooses the number of
+/// sweeps of the next one: at least one, and at most twice as many as in the last frame measured.
 ///
-/// [`timed_by`](Self::timed_by) lets the device measure; [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) then
-/// does all the rest. Where the device has no clock, the application tells what it has measured by
-/// [`record`](Self::record).
+/// With [`timed_by`](Self::timed_by) the device measures, and
+/// [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) then does all the rest. Where the device has no clock,
+/// the application measures and calls [`record`](Self::record).
 ///
 /// ```
 /// # use std::time::Duration;
@@ -35,33 +35,33 @@ use crate::gpu::scope::scoped;
 pub struct Budget {
     time: Duration,
     most: u32,
-    /// Seconds that a sweep took in the last frames that were measured.
+    /// Seconds for each sweep in the last frames that were measured, as a ring buffer.
     measured: [f64; FRAMES],
-    /// How many frames were measured.
+    /// Number of frames that were measured.
     count: usize,
-    /// The sweeps of the last measurement.
+    /// Number of sweeps in the last measurement.
     last: u32,
     pub(crate) clock: Option<Clock>,
 }
 
-/// How many frames count. A sweep is expected to take as long as in the slowest of them but one: rather too few sweeps than
-/// a late frame, but a single late frame, such as the first one of a driver, says nothing.
+/// Number of frames that count. A sweep is expected to take as long as in the second slowest of them. That prefers too
+/// few sweeps to a late frame, but ignores a single late frame, such as the first one of a driver.
 const FRAMES: usize = 6;
-/// The most sweeps of a frame unless the application sets another number.
+/// The most sweeps in a frame, unless the application sets another number.
 const MOST: u32 = 100;
 
 impl Budget {
-    /// A budget of this many microseconds in each frame.
+    /// Makes a budget of this many microseconds for each frame.
     pub fn micros(micros: u64) -> Self {
         Self::new(Duration::from_micros(micros))
     }
 
-    /// A budget of this time in each frame.
+    /// Makes a budget of this time for each frame.
     pub fn new(time: Duration) -> Self {
         Self { time, most: MOST, measured: [0.0; FRAMES], count: 0, last: 1, clock: None }
     }
 
-    /// Sets the most sweeps of a frame, whatever the budget: 100 by default, at least 1.
+    /// Sets the most sweeps in a frame, whatever the budget: 100 by default, at least 1.
     pub fn at_most(self, sweeps: u32) -> Self {
         Self { most: sweeps.max(1), ..self }
     }
@@ -75,7 +75,7 @@ impl Budget {
         Ok(Self { clock: Some(Clock::new(gpu)?), ..self })
     }
 
-    /// The number of sweeps that the next frame has time for.
+    /// Returns the number of sweeps that the next frame has time for.
     pub fn sweeps(&self) -> u32 {
         let Some(each) = self.seconds() else { return 1 };
         // A float too large for an integer becomes the largest one.
@@ -83,8 +83,8 @@ impl Budget {
         fit.min(self.last.saturating_mul(2)).clamp(1, self.most)
     }
 
-    /// Takes account of what was measured: that `sweeps` sweeps have taken `time`. Not to be called for sweeps
-    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had nothing more to do.
+    /// Records a measurement: `sweeps` sweeps have taken `time`. Not to be called for sweeps
+    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had already ended.
     pub fn record(&mut self, sweeps: u32, time: Duration) {
         if sweeps == 0 {
             return;
@@ -102,12 +102,12 @@ impl Budget {
         measured.get(measured.len().saturating_sub(2)).copied()
     }
 
-    /// The time that a sweep is estimated to take; `None` before the first measurement.
+    /// Returns the time that a sweep is estimated to take; `None` before the first measurement.
     pub fn estimate(&self) -> Option<Duration> {
         self.seconds().map(Duration::from_secs_f64)
     }
 
-    /// Takes account of what the device has measured since the last call.
+    /// Records the latest measurement by the device, if there is a new one.
     pub(crate) fn collect(&mut self) {
         if let Some((sweeps, time)) = self.clock.as_mut().and_then(Clock::measured) {
             self.record(sweeps, time);
@@ -119,10 +119,10 @@ impl Budget {
 #[derive(Debug)]
 pub(crate) struct Clock {
     queries: wgpu::QuerySet,
-    /// The times before and after the sweeps, and whether they had ended by themselves.
+    /// The times before and after the sweeps, and whether the sweeps had ended by the stop rule.
     times: wgpu::Buffer,
     readback: Readback<[u64; 3]>,
-    /// Copies under way: their numbers, and the sweeps that were measured.
+    /// Copies in flight: the number of each, and the sweeps that it measures.
     measuring: VecDeque<(u64, u32)>,
     taken: Option<u64>,
     /// Seconds of a tick.
@@ -149,7 +149,7 @@ impl Clock {
         Ok(Self { queries, times, readback, measuring, taken, period })
     }
 
-    /// Where the pass of the sweeps writes its times.
+    /// Returns where the pass of the sweeps writes its times.
     pub(crate) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -158,7 +158,8 @@ impl Clock {
         }
     }
 
-    /// Encodes the readback of the times, after the pass of the sweeps. `control` starts with whether they have ended.
+    /// Encodes the readback of the times, after the pass of the sweeps. The first word of `control` tells whether they
+    /// have ended.
     pub(crate) fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -172,15 +173,15 @@ impl Clock {
         }
     }
 
-    /// The latest measurement that was not taken yet. There is none of sweeps that had ended by themselves: they took no
-    /// time. A lost device measures nothing.
+    /// Returns the latest measurement if it is new. Sweeps that had ended by the stop rule give none, as they took no
+    /// time; nor does a lost device.
     fn measured(&mut self) -> Option<(u32, Duration)> {
         let &[[start, end, ended]] = self.readback.latest().ok()?? else { return None };
         let number = self.readback.arrived().filter(|&number| self.taken != Some(number))?;
         self.taken = Some(number);
         self.measuring.retain(|&(older, _)| older >= number);
         let &(_, sweeps) = self.measuring.front().filter(|(first, _)| *first == number)?;
-        // Clocks of devices are known to go back now and then.
+        // Clocks of devices are known to jump back now and then.
         let seconds = end.checked_sub(start)? as f64 * self.period;
         (ended == 0).then_some((sweeps, Duration::try_from_secs_f64(seconds).ok()?))
     }
@@ -190,7 +191,8 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// Frames of a device on which a frame costs a constant and each sweep its part.
+    /// Simulates frames on a device where a frame takes a constant time plus a time for each sweep, and returns the
+    /// sweeps of the frame after them.
     fn settle(budget: &mut Budget, constant: f64, each: f64, frames: u32) -> u32 {
         for _ in 0..frames {
             let sweeps = budget.sweeps();
@@ -211,7 +213,7 @@ mod tests {
         }
         let mut budget = Budget::micros(1_000_000).at_most(7);
         assert_eq!(settle(&mut budget, 0.0, 1.0, 20), 7);
-        // No time at all.
+        // A budget without any time.
         let mut budget = Budget::micros(0);
         assert_eq!(settle(&mut budget, 0.0, 1.0, 5), 1);
         let mut budget = Budget::micros(500);
@@ -226,7 +228,7 @@ mod tests {
         assert_eq!(settle(&mut budget, 0.0, 100.0, 2), 10);
         assert_eq!(settle(&mut budget, 0.0, 20.0, 4), 10);
         assert_eq!(settle(&mut budget, 0.0, 20.0, 4), 50);
-        // A single late frame says nothing, nor does a frame without sweeps.
+        // Neither a single late frame nor a frame without sweeps changes the estimate.
         budget.record(50, Duration::from_secs(1));
         budget.record(0, Duration::from_secs(1));
         assert_eq!(budget.sweeps(), 50);

@@ -1,4 +1,4 @@
-//! Vertices that an application moves as far as the triangles allow.
+//! Moves vertices of an application as far as the triangles allow.
 
 use wgpu::BufferUsages as Usage;
 
@@ -18,13 +18,14 @@ use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 use crate::run::multilevel::NONE;
 
-/// The largest bound on the inverse mean ratio by which single precision surely tells a triangle from a flat one.
+/// The largest bound on the inverse mean ratio that is accepted. Up to it, single precision surely tells a triangle
+/// from a flat one.
 const LARGEST_BOUND: f64 = 1e5;
 
-/// What is to be moved.
+/// The vertices to be moved, and the bound on triangles.
 pub(crate) struct Moves {
-    /// The number of each vertex on the device, and the number of its target. Where a vertex is repeated, its last target
-    /// counts.
+    /// For each vertex its number on the device, and the number of its target. If a vertex is listed twice, its last
+    /// target counts.
     pub(crate) ways: Vec<[u32; 2]>,
     /// The number of targets.
     pub(crate) listed: usize,
@@ -33,7 +34,8 @@ pub(crate) struct Moves {
 }
 
 impl Moves {
-    /// The triangles of the vertices that move, each with its corners and the way of each of them, or [`NONE`].
+    /// Returns the triangles around vertices that move: for each the three corners, and then the index in `ways` of
+    /// each corner, or [`NONE`].
     fn corners(&mut self, problem: &Problem) -> Vec<[u32; 6]> {
         // The last target of each vertex counts.
         self.ways.reverse();
@@ -51,8 +53,9 @@ impl Moves {
     }
 }
 
-/// Vertices that an application moves, bound to a buffer of targets and to a place for the share of their ways. Made by
-/// [`DeviceMesh::bind_move`](crate::gpu::DeviceMesh::bind_move); it can be used after the mesh is dropped.
+/// Vertices that an application moves, bound to a buffer of targets and to a word of a buffer that receives the share
+/// of their ways. Created by [`DeviceMesh::bind_move`](crate::gpu::DeviceMesh::bind_move); it can be used after the
+/// mesh is dropped.
 ///
 /// ```no_run
 /// # use gpu_smooth::*;
@@ -141,14 +144,15 @@ impl BoundMove {
         Ok(Self { find_share, move_vertices, bind_group, count })
     }
 
-    /// Encodes the move: when the command buffer runs, the vertices go straight toward their targets as they are in the
-    /// buffer then, all by the same share of their ways, as far as the triangles allow. The share is written; 1 is all the
-    /// way.
+    /// Encodes the move. When the command buffer runs, the vertices go straight toward the targets that are then in the
+    /// buffer, all by the same share of their ways, as far as the triangles allow. The share is written to the buffer;
+    /// 1 means that the targets were reached.
     ///
-    /// It is the move of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on the device: no
-    /// triangle inverts or becomes flat, neither on the way nor at the end, and none gets an inverse mean ratio above the
-    /// bound, but for rounding (5e-7 of the ratio, times the ratio). A triangle that already has a larger one does not get
-    /// worse. Triangles that are inverted or flatter than 500,000 beforehand do not limit the move. A target that is not a
+    /// It is the move of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on the device.
+    /// No triangle inverts or becomes flat, neither on the way nor at the end. None gets an inverse mean ratio above
+    /// the bound, except for rounding (a relative error of 5e-7 times the ratio). A triangle that already has a larger
+    /// one does not get worse. Triangles that are inverted beforehand, or have an inverse mean ratio above 500,000, do
+    /// not limit the move. If a target is not finite, its vertex stays.
     /// finite point counts as where its vertex is.
     pub fn encode_move(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth move");

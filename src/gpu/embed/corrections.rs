@@ -1,4 +1,5 @@
-//! Corrections from coarser levels, for sweeps that an application encodes: the device searches along them by itself.
+//! Corrections from coarser levels, for sweeps that an application encodes. The line search along them runs on the
+//! device.
 
 use crate::error::GpuError;
 use crate::gpu::device::readback::Waiting;
@@ -11,8 +12,8 @@ use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
 use crate::run::multilevel::Hierarchy;
 
-/// Coarser levels of a mesh on the device, and a line search along what they propose that reads nothing back: a fixed number of
-/// lengths is tried, and those after the last that is needed do nothing.
+/// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. It
+/// encodes a fixed number of trials; those after the last one needed do nothing.
 pub(crate) struct EncodedCorrections {
     levels: Levels,
     begin: Pipeline,
@@ -21,10 +22,10 @@ pub(crate) struct EncodedCorrections {
 }
 
 impl EncodedCorrections {
-    /// Builds the levels for the positions that the device has now, once all is done that was submitted before.
+    /// Builds the levels for the positions on the device, after all work submitted before has been done.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the levels are too large for the device, or what it refuses.
+    /// [`GpuError::Limit`] if the levels are too large for the device, or another [`GpuError`] if the device fails.
     pub(crate) async fn new(
         mesh: &DeviceMesh,
         dispatches: &Dispatches,
@@ -46,7 +47,7 @@ impl EncodedCorrections {
         Ok(Self { levels, begin, judge, bind_group })
     }
 
-    /// Encodes one correction. It does nothing if the sweeps have ended by themselves.
+    /// Encodes one correction. It does nothing if the sweeps have ended by the stop rule.
     pub(crate) fn encode(&self, passes: &mut Passes<'_>) {
         self.run(passes, &self.begin);
         self.levels.encode_gradient(passes);

@@ -1,4 +1,4 @@
-//! Positions in a vertex buffer of the application.
+//! Copies positions to and from a vertex buffer of the application.
 
 use wgpu::BufferUsages as Usage;
 
@@ -15,7 +15,7 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 
-/// A vertex buffer bound to a mesh for import and export. Made by
+/// A vertex buffer bound to a mesh for import and export. Created by
 /// [`DeviceMesh::bind_vertices`](crate::gpu::DeviceMesh::bind_vertices). It keeps the buffer alive, and can be used after
 /// the mesh is dropped.
 pub struct BoundVertices {
@@ -65,21 +65,23 @@ impl BoundVertices {
         Ok(Self { import: import?, export: export?, bind_group, count })
     }
 
-    /// Encodes the import: when the command buffer runs, all positions, those of fixed vertices too, are read from the
-    /// application's vertex buffer.
+    /// Encodes the import. When the command buffer runs, the positions of all vertices, fixed ones included, are read
+    /// from the application's vertex buffer.
     ///
-    /// A vertex whose floats are those of the last export has not been moved by the application and
-    /// keeps its full precision. A position that is not a finite number is not taken: the vertex stays
-    /// where it was. Any other floats are taken as moved by the application: where several buffers show one mesh, import
-    /// only the one that was exported to last. Two buffers that take turns, each imported and exported in its own frames,
-    /// would take the mesh back to where it was two frames ago. The application may have inverted
-    /// triangles; sweeps then invert no others and improve the rest, and
+    /// A vertex whose floats are those of the last export has not been moved by the application, and keeps its full
+    /// precision. Any other floats count as moved by the application. A position that is not finite is ignored, and the
+    /// vertex stays where it was.
+    ///
+    /// If several buffers show one mesh, import only the one that was exported to last. Two buffers that take turns,
+    /// each imported and exported in its own frames, would take the mesh back to where it was two frames ago.
+    ///
+    /// The application may have inverted triangles. Sweeps then invert no others and improve the rest, and
     /// [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) turn them back.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }
 
-    /// Encodes the export: when the command buffer runs, x and y of every vertex that a triangle uses are written into
+    /// Encodes the export. When the command buffer runs, x and y of every vertex that a triangle uses are written into
     /// the application's vertex buffer.
     pub fn encode_export(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth export", &self.export);

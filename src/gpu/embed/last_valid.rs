@@ -1,4 +1,4 @@
-//! A mesh that goes back to where it was valid.
+//! Restores a mesh to its last valid state.
 
 use wgpu::BufferUsages as Usage;
 
@@ -17,7 +17,7 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::Options;
 
-/// The positions of a mesh when it was valid last. Made by
+/// The positions of a mesh when it was last valid. Created by
 /// [`DeviceMesh::keep_last_valid`](crate::gpu::DeviceMesh::keep_last_valid); it can be used after the mesh is dropped.
 pub struct LastValid {
     evaluation: Dispatches,
@@ -57,12 +57,12 @@ impl LastValid {
         Ok(Self { evaluation, restore, parts })
     }
 
-    /// Encodes the keeping or the restoring: when the command buffer runs, a mesh without inverted and flat triangles is
-    /// remembered as it is then, and one with such triangles goes back to where it was remembered last, or, if it never was,
-    /// to where it was uploaded. All its vertices do, those of the boundary too. To be encoded before the export, so that
-    /// the application's vertices go back with it.
+    /// Encodes saving or restoring. When the command buffer runs, the positions of a mesh without inverted and flat
+    /// triangles are saved. A mesh with such triangles goes back to the positions that were saved last or, if none
+    /// were, to those that were uploaded. All its vertices go back, including those of the boundary. To be encoded
+    /// before the export, so that the application's vertices go back too.
     ///
-    /// It takes an evaluation of f and a copy of the positions: less than a sweep.
+    /// It takes an evaluation of f and a copy of the positions, which is less time than a sweep.
     pub fn encode_restore_last_valid(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth restore");
         self.evaluation.encode_evaluation(&mut passes);

@@ -1,4 +1,4 @@
-//! Objectives in a buffer of the application.
+//! Writes objectives into a buffer of the application.
 
 use std::sync::Arc;
 
@@ -21,8 +21,8 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::{Plan, Stop};
 
-/// What [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command buffer. The application
-/// casts the bytes that it reads back to this struct, or declares it in its shaders:
+/// The values that [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command
+/// buffer. The application casts the bytes that it reads back to this struct, or declares it in its shaders:
 ///
 /// ```wgsl
 /// struct ObjectiveValues {
@@ -37,33 +37,34 @@ use crate::run::{Plan, Stop};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ObjectiveValues {
-    /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]; 0 for one that is not the scheme's base
-    /// unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted, f by a metric with
-    /// a barrier ([`Properties::barrier`](crate::Properties::barrier)) is meaningless.
+    /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]. Only the scheme's base metric is evaluated, and
+    /// the others are 0, unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted,
+    /// f by a metric with a barrier ([`Properties::barrier`](crate::Properties::barrier)) is meaningless.
     pub f: [f32; Metric::ALL.len()],
-    /// How many triangles are inverted or flat, in single precision.
+    /// Number of triangles that are inverted or flat, in single precision.
     pub inverted: u32,
-    /// The largest inverse mean ratio of a triangle, 1 being equilateral; infinite while triangles are inverted.
+    /// The largest inverse mean ratio of a triangle, 1 for an equilateral one; infinite while triangles are inverted.
     pub worst_imr: f32,
-    /// Why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that further ones do nothing:
-    /// 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for [`Stop::MaxSweeps`]; see
-    /// [`stop`](Self::stop). 0 if they go on, and always for sweeps that do not end by themselves.
+    /// The reason why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that further ones
+    /// do nothing: 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for
+    /// [`Stop::MaxSweeps`]; see [`stop`](Self::stop). 0 if they have not ended, and always for sweeps that do not end
+    /// by the stop rule.
     pub stop: u32,
-    /// How many sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) were done since they began, or began anew
-    /// as the mesh was changed. Always 0 for sweeps that do not end by themselves.
+    /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since they began, or began again
+    /// because the mesh was changed. Always 0 for sweeps that do not end by the stop rule.
     pub sweeps: u32,
-    /// The number on the device of the triangle that has the largest inverse mean ratio, or of one that is inverted or flat
-    /// while there are any; [`DeviceMesh::corners`](crate::DeviceMesh::corners) tells its vertices.
+    /// The number on the device of the triangle with the largest inverse mean ratio or, while there are inverted or
+    /// flat triangles, of one of these. [`DeviceMesh::corners`](crate::DeviceMesh::corners) returns its vertices.
     pub worst_triangle: u32,
 }
 
 impl ObjectiveValues {
-    /// f by a metric.
+    /// Returns f by a metric.
     pub fn of(&self, metric: Metric) -> f32 {
         self.f[metric as usize]
     }
 
-    /// Why the sweeps have ended, so that further ones do nothing; `None` if they go on.
+    /// Returns why the sweeps have ended, so that further ones do nothing; `None` if they have not ended.
     pub fn stop(&self) -> Option<Stop> {
         Stop::from_code(self.stop)
     }
@@ -75,30 +76,31 @@ impl ObjectiveValues {
     }
 }
 
-/// A place in a buffer of the application for the objectives of one [`Sweeps`](crate::gpu::Sweeps), or of the vertices as they
-/// are drawn. Made by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
-/// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective); it can be used after these are dropped.
+/// Part of a buffer of the application that receives objectives: those of one [`Sweeps`](crate::gpu::Sweeps), or those
+/// of the vertices as they are drawn. Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
+/// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective); it can be used after these are
+/// dropped.
 pub struct BoundObjective {
     evaluation: Arc<Dispatches>,
     publish: Pipeline,
     bind_group: wgpu::BindGroup,
-    /// The vertices of the application that are evaluated, where they are and not those of the mesh.
+    /// The application's vertices, if these are evaluated instead of the positions of the mesh.
     drawn: Option<BoundVertices>,
 }
 
-/// What sweeps and objectives of one scheme on one mesh share.
+/// The data that sweeps and objectives of one scheme on one mesh share.
 pub(crate) struct Run {
-    /// The sweeps, and where they are judged.
+    /// The dispatches of the sweeps, and of the evaluations by which they are judged.
     pub(crate) dispatches: Arc<Dispatches>,
-    /// The evaluations that the application asks for. Where sweeps are judged, these are apart: the history of a run has
-    /// one evaluation for each sweep.
+    /// The dispatches of evaluations that the application asks for. They are separate if sweeps are judged, as the
+    /// history of a judged run has one evaluation for each sweep.
     pub(crate) evaluation: Arc<Dispatches>,
     pub(crate) changes: Changes,
     pub(crate) triangles: usize,
 }
 
 impl Run {
-    /// A run of which there are evaluations only.
+    /// Makes a run with evaluations only.
     pub(crate) fn of_no_sweeps(
         gpu: &Gpu,
         problem: &Problem,
@@ -117,7 +119,7 @@ impl Run {
 }
 
 impl BoundObjective {
-    /// Evaluates what `drawn` imports, if given.
+    /// Binds the evaluation of the mesh or, if given, of the vertices that `drawn` imports.
     pub(crate) fn new(
         gpu: &Gpu,
         run: &Run,
@@ -154,9 +156,10 @@ impl BoundObjective {
         Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group, drawn })
     }
 
-    /// Encodes the evaluation of the mesh as it is at this point of the command buffer, and the writing of
-    /// [`ObjectiveValues`]; if it was made by [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective), of what
-    /// is in the vertex buffer then.
+    /// Encodes an evaluation, and the writing of its [`ObjectiveValues`]. It evaluates the mesh as it is at this point
+    /// of the command buffer, or, if made by
+    /// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective), the vertices in the vertex buffer
+    /// at this point.
     pub fn encode_objective(&self, encoder: &mut impl Encoder) {
         if let Some(drawn) = &self.drawn {
             drawn.encode_import(encoder);

@@ -1,4 +1,4 @@
-//! Vertices that are held where they are: on the host's word, or by a mask of the application.
+//! Vertices that are held in place, by the host or by a mask of the application.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -17,11 +17,11 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
 use crate::layout::Problem;
 
-/// Which vertices the host holds. They are named by their numbers on the device.
+/// The vertices that the host holds, by their numbers on the device.
 pub(crate) struct Pins {
-    /// Of each vertex that is free or held: [`FIXED`], [`PINNED`].
+    /// For each vertex that is free or held, the flags [`FIXED`] and [`PINNED`].
     flags: Mutex<Vec<u8>>,
-    /// On the device, a bit for each vertex that is fixed or pinned.
+    /// On the device: one bit for each vertex, set if it is fixed or pinned.
     bits: wgpu::Buffer,
 }
 
@@ -29,9 +29,10 @@ pub(crate) struct Pins {
 const FIXED: u8 = 1;
 const PINNED: u8 = 2;
 
-/// Places between two changes that are sent with them: a write of its own costs more.
+/// Changes with at most this number of unchanged vertices between them are sent in one write, together with these
+/// vertices. A separate write would cost more.
 const GAP: u32 = 64;
-/// The most writes in one call; more changes than that are sent as one range.
+/// The most writes in one call. More changes than that are sent as one range.
 const WRITES: usize = 32;
 
 impl Pins {
@@ -58,7 +59,7 @@ impl Pins {
         self.flags.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Pins vertices and lets go of others, and sends what is different to the device.
+    /// Pins vertices and unpins others, and sends what has changed to the device.
     pub(crate) fn change(
         &self,
         gpu: &Gpu,
@@ -86,7 +87,7 @@ impl Pins {
                 set(&mut flags, places, PINNED);
             }
         }
-        // A vertex that was let go of and pinned again is listed twice.
+        // A vertex that was unpinned and pinned again is listed twice.
         changed.sort_unstable();
         let once = changed.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
         let changed: Vec<u32> = once.map(|same| same[0]).collect();
@@ -99,7 +100,7 @@ impl Pins {
         mesh.changes.count(gpu)
     }
 
-    /// Sends to the device what holds for vertices that have changed, in ascending order.
+    /// Sends the flags of vertices that have changed to the device. `changed` is in ascending order.
     fn send(
         &self,
         gpu: &Gpu,
@@ -132,17 +133,17 @@ impl Pins {
 pub(crate) enum Change<'a> {
     Pin(&'a [u32]),
     Unpin(&'a [u32]),
-    /// These and no others.
+    /// Pin these and unpin all others.
     PinThese(&'a [u32]),
 }
 
-/// The places that have a flag, in ascending order.
+/// Returns the vertices that have a flag, in ascending order.
 fn with(flags: &[u8], flag: u8) -> Vec<u32> {
     let has = |&(_, flags): &(u32, &u8)| flags & flag != 0;
     (0..).zip(flags).filter(has).map(|(place, _)| place).collect()
 }
 
-/// The ranges, ends included, in which these places are sent.
+/// Returns the ranges, ends included, in which these vertices are sent.
 fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
     let parts = places.chunk_by(|&a, &b| b - a <= GAP);
     let ends = |part: &[u32]| part.first().copied().zip(part.last().copied());
@@ -153,7 +154,7 @@ fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
     }
 }
 
-/// A mask in a buffer of the application, which holds vertices. Made by
+/// A mask in a buffer of the application, which holds vertices. Created by
 /// [`DeviceMesh::bind_mask`](crate::gpu::DeviceMesh::bind_mask); it can be used after the mesh is dropped.
 pub struct BoundMask {
     pipeline: Pipeline,
@@ -190,10 +191,10 @@ impl BoundMask {
         Ok(Self { pipeline, bind_group, count })
     }
 
-    /// Encodes the holding of vertices: when the command buffer runs, those whose word in the mask is not 0 then are held
-    /// from there on, and the others are let go, but for vertices of [`Mesh::fixed`](crate::Mesh::fixed) and those that are
-    /// [pinned](crate::gpu::DeviceMesh::pin). To be encoded again after the mask has changed, and after a vertex that the
-    /// mask holds was unpinned.
+    /// Encodes the holding of vertices by the mask. When the command buffer runs, vertices whose word in the mask is
+    /// not 0 are held from then on, and the others are released. Vertices of [`Mesh::fixed`](crate::Mesh::fixed) and
+    /// those that are [pinned](crate::gpu::DeviceMesh::pin) stay held. To be encoded again after the mask has changed,
+    /// and after a vertex that the mask holds was unpinned.
     pub fn encode_mask(&self, encoder: &mut impl Encoder) {
         encoder.passes("gpu-smooth mask").run(&self.pipeline, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);

@@ -1,4 +1,4 @@
-//! Buffers that are read in each frame without waiting for the device.
+//! Reads buffers in each frame without waiting for the device.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -11,12 +11,12 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
 
-/// How many copies may be under way. A device that is further behind gets no more until one arrives.
+/// The most copies in flight. A device that is further behind gets no more until one arrives.
 const COPIES: usize = 3;
 
 /// Reads part of a buffer in each frame, such as [`ObjectiveValues`](crate::gpu::ObjectiveValues), the vertices or the
-/// share of a move. Neither call ever waits: [`latest`](Self::latest) has what has arrived, usually that of a frame or two
-/// ago. The application polls the device, as it does for its own work.
+/// share of a move. Neither call ever waits: [`latest`](Self::latest) returns the values that have arrived, usually
+/// those of a frame or two ago. The application polls the device, as it does for its own work.
 ///
 /// ```no_run
 /// # use gpu_smooth::*;
@@ -40,10 +40,10 @@ pub struct Readback<T> {
     offset: u64,
     bytes: u64,
     copies: Vec<Staged>,
-    /// How many copies were encoded.
+    /// Number of copies that were encoded.
     encoded: u64,
     latest: Vec<T>,
-    /// The number of the copy that is the latest.
+    /// The number of the latest copy that has arrived.
     arrived: Option<u64>,
 }
 
@@ -52,7 +52,7 @@ pub struct Readback<T> {
 struct Staged {
     staging: wgpu::Buffer,
     state: Arc<AtomicU8>,
-    /// The number of the copy that is in it.
+    /// The number of the copy that it holds.
     number: u64,
 }
 
@@ -61,7 +61,8 @@ const UNDER_WAY: u8 = 1;
 const ARRIVED: u8 = 2;
 const LOST: u8 = 3;
 
-/// Tells that a copy has arrived. If it never will, as the command buffer was dropped, its staging buffer is free again.
+/// Reports that a copy has arrived. If it never will, as the command buffer was dropped, its staging buffer becomes
+/// free again.
 struct Arrival(Arc<AtomicU8>);
 
 impl Arrival {
@@ -74,17 +75,18 @@ impl Arrival {
 impl Drop for Arrival {
     fn drop(&mut self) {
         let (from, to) = (UNDER_WAY, FREE);
-        // It fails if the copy has arrived.
+        // This exchange fails if the copy has arrived, which is fine.
         let _ = self.0.compare_exchange(from, to, Ordering::AcqRel, Ordering::Relaxed);
     }
 }
 
 impl<T: Pod> Readback<T> {
-    /// Readbacks of `count` values from byte `offset` of a buffer of the application on. It takes three times that memory
+    /// Reads `count` values from byte `offset` on, of a buffer of the application. Staging takes three times their size
     /// on the device.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, was made without `COPY_SRC` or is of another device, or if the offset
+    /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC` or belongs to another device, or
+    /// if the offset or the size of a value is not a multiple of 4. Another [`GpuError`] if the device fails.
     /// or the size of a value is no multiple of 4; or what the device refuses.
     pub fn new(
         gpu: &Gpu,
@@ -118,7 +120,7 @@ impl<T: Pod> Readback<T> {
             };
             (0..COPIES).map(copy).collect()
         })?;
-        // Encoded for nothing: a buffer of another device shows now and not in a frame.
+        // A copy that is never submitted: it finds a buffer of another device now, not in a frame.
         scoped_to_buffer(&gpu.device, || {
             let descriptor = wgpu::CommandEncoderDescriptor::default();
             let mut encoder = gpu.device.create_command_encoder(&descriptor);
@@ -129,13 +131,14 @@ impl<T: Pod> Readback<T> {
         Ok(Self { source, offset, bytes, copies, encoded, latest, arrived })
     }
 
-    /// Encodes a copy of what the buffer holds at this point of the command buffer. Does nothing while three copies are
-    /// under way: then the device is behind, or nobody polls it. In an encoder that is not submitted it counts for nothing.
+    /// Encodes a copy of the buffer as it is at this point of the command buffer. Does nothing while three copies are
+    /// in flight, because the device is behind or nobody polls it. A copy in an encoder that is not submitted has no
+    /// effect.
     pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.encode(encoder);
     }
 
-    /// Encodes a copy, and returns its number, from 0 on, if there was room.
+    /// Encodes a copy if fewer than three are in flight, and returns its number, from 0 on.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Option<u64> {
         let Self { source, offset, bytes, copies, encoded, .. } = self;
         let copy = copies.iter_mut().find(|copy| copy.state.load(Ordering::Acquire) == FREE)?;
@@ -149,7 +152,7 @@ impl<T: Pod> Readback<T> {
         Some(copy.number)
     }
 
-    /// The values that have arrived last; `None` until the first have.
+    /// Returns the values that have arrived last; `None` before the first have arrived.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -158,17 +161,17 @@ impl<T: Pod> Readback<T> {
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
     }
 
-    /// How many copies were encoded after the one that [`latest`](Self::latest) has returned.
+    /// Returns the number of copies encoded after the one that [`latest`](Self::latest) has returned.
     pub fn age(&self) -> Option<u64> {
         self.arrived.map(|number| self.encoded - 1 - number)
     }
 
-    /// The number of the copy that has arrived last.
+    /// Returns the number of the copy that has arrived last.
     pub(crate) fn arrived(&self) -> Option<u64> {
         self.arrived
     }
 
-    /// Takes what has arrived.
+    /// Reads the copies that have arrived.
     fn collect(&mut self) -> Result<(), GpuError> {
         let lost = || GpuError::Lost("a buffer could not be read back".into());
         for copy in &self.copies {
@@ -182,7 +185,7 @@ impl<T: Pod> Readback<T> {
                 self.latest.clear();
                 match bytemuck::try_cast_slice(&view) {
                     Ok(values) => self.latest.extend_from_slice(values),
-                    // A value whose alignment is larger than that of mapped memory.
+                    // The alignment of a value may be larger than that of mapped memory.
                     Err(_) => {
                         let values = view.chunks_exact(size_of::<T>());
                         self.latest.extend(values.map(bytemuck::pod_read_unaligned::<T>));

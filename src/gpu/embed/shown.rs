@@ -1,4 +1,4 @@
-//! How the handles show themselves in debug output: by name and what tells one from another, not by their buffers.
+//! Debug output of the handles: their name and what tells one from another, but not their buffers.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl fmt::Debug for Sweeps {
     }
 }
 
-/// Handles of which there is nothing to tell.
+/// Debug output of handles that show only their name.
 macro_rules! by_name {
     ($($handle:ident),*) => {$(
         impl fmt::Debug for $handle {

@@ -17,8 +17,8 @@ use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
 use crate::run::{Method, OMEGA_BETWEEN, Options, Plan, Step};
 
-/// A scheme bound to a mesh on the device. Encodes sweeps into the application's command encoder; never submits and never
-/// reads back. Those of [`new`](Self::new) never stop by themselves, those
+/// A scheme bound to a mesh on the device. It encodes sweeps into the application's command encoder; it never submits
+/// and never reads back. Sweeps made by [`new`](Self::new) never end. Those made by
 /// [`until_converged`](Self::until_converged) do nothing once they have converged.
 ///
 /// Several schemes can be bound to one mesh, and the sweeps of several meshes interleaved in one encoder.
@@ -33,7 +33,7 @@ pub struct Sweeps {
 /// The label of the pass of sweeps.
 const LABEL: &str = "gpu-smooth sweeps";
 
-/// What sweeps that end by themselves take besides.
+/// The additional resources of sweeps that end by the stop rule.
 struct Judged {
     reopen: Pipeline,
     resume: Pipeline,
@@ -43,56 +43,61 @@ struct Judged {
 impl Sweeps {
     /// Binds the scheme, relaxation and derivatives of `options` to a mesh.
     ///
-    /// What `options` say on stopping has no effect here. Metrics without a barrier (RMS, EDGE, AREA) leave no triangle with an
-    /// inverse mean ratio above 30 unless its patch had a worse one.
+    /// The stop rule and the goal of `options` have no effect. Metrics without a barrier (RMS, EDGE, AREA) leave no
+    /// triangle with an inverse mean ratio above 30 unless its patch had a worse one.
     ///
-    /// With [`Method::Multilevel`] each sweep is followed by a correction from coarser levels: a large mesh is near its optimum
-    /// after a dozen of these pairs instead of hundreds of sweeps, and a pair takes as long as some four sweeps. The
-    /// default, [`Method::Auto`], is sweeps alone here. A correction is taken only if it lowers f, inverts no triangle and
-    /// breaks no shape guard; while a triangle is inverted, there is none. EDGE and metrics that
-    /// alternate have corrections in whole runs only.
-    /// The levels are built for the mesh as it is on the device when the call is made, which waits for all that was submitted
-    /// before. Their aggregates stay; each correction fits them to the present sizes of elements. Levels take some 70 bytes on the
+    /// With [`Method::Multilevel`] each sweep is followed by a correction from coarser levels. A large mesh is near its
+    /// optimum after a dozen of these pairs instead of hundreds of sweeps, and a pair takes as long as some four
+    /// sweeps. The default, [`Method::Auto`], means sweeps alone here. A correction is taken only if it lowers f,
+    /// inverts no triangle and breaks no shape guard; while a triangle is inverted, there are no corrections. EDGE and
+    /// alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
+    ///
+    /// The levels are built for the positions that are on the device at the call, which waits for all work submitted
+    /// before. Their aggregates stay the same; each correction fits the levels to the present sizes of elements. Levels
+    /// take some 70 bytes on the device for each vertex.
     /// device for each vertex.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] does so beforehand.
     ///
-    /// # Errors
-    /// [`SmoothError::Option`] for an option out of its range, or corrections of a scheme that has none;
-    /// [`GpuError::Limit`] if the levels are too large for the device, or what else it refuses. In a browser, corrected
+    /// [`SmoothError::Option`] for an option out of its range, or for corrections of a scheme that has none;
+    /// [`GpuError::Limit`] if the levels are too large for the device; another [`GpuError`] if the device fails. A
+    /// browser returns an error for sweeps with corrections, which only [`new_async`](Self::new_async) makes there.
     /// sweeps are made by [`new_async`](Self::new_async) only.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Never, Waiting::Block))
     }
 
-    /// As [`new`](Self::new), without blocking: completes once the application has polled the device, if the sweeps are to be
-    /// corrected, and at once if not.
+    /// Binds options to a mesh like [`new`](Self::new), without blocking. If the sweeps are to be corrected, the future
+    /// completes once the application has polled the device; otherwise it completes at once.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub async fn new_async(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         Self::by(mesh, options, Ending::Never, Waiting::Await).await
     }
 
-    /// As [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once f is within
-    /// [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing. (A GPU spends
-    /// next to no time on them; a software driver, which starts every kernel all the same, a fifth of that of others.) [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells. The goal of `options` has no effect.
+    /// Binds options to a mesh like [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once
+    /// f is within [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing.
+    /// [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells whether they have ended. The goal of
+    /// `options` has no effect. Sweeps that do nothing take a GPU next to no time; a software driver, which starts
+    /// every kernel all the same, takes a fifth of the usual time for them.
     ///
-    /// They begin anew when the application changes the mesh: where an import finds a vertex that was moved, after a move
-    /// that was not in vain, after [`DeviceMesh::pin`] and the like, a mask that has changed, and [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count. Each sweep is followed by an
-    /// evaluation of f, which takes about a sixth of its time.
+    /// The sweeps begin again when the application changes the mesh: when an import finds a vertex that was moved,
+    /// after a move with a share above 0, after [`DeviceMesh::pin`] and similar calls, after a change of a mask, and
+    /// after [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count as a change. Each sweep is
+    /// followed by an evaluation of f, which takes about a sixth of its time.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub fn until_converged(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Judged, Waiting::Block))
     }
 
-    /// As [`until_converged`](Self::until_converged), without blocking: completes once the application has polled the device, if
-    /// the sweeps are to be corrected, and at once if not.
+    /// Binds options to a mesh like [`until_converged`](Self::until_converged), without blocking. If the sweeps are to
+    /// be corrected, the future completes once the application has polled the device; otherwise it completes at once.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub async fn until_converged_async(
         mesh: &DeviceMesh,
         options: &Options,
@@ -149,14 +154,15 @@ impl Sweeps {
         Ok(Self { gpu: gpu.clone(), run, judged, corrections, done: 0 })
     }
 
-    /// Encodes `sweeps` further sweeps, each with its correction if they are corrected. The scheme goes on where the last call left it, whether or not that encoder was
-    /// submitted: alternate metrics and over-relaxation count the sweeps that were encoded.
+    /// Encodes `sweeps` further sweeps, each followed by its correction if the sweeps are corrected. The scheme
+    /// continues where the last call left it, even if that encoder was not submitted: alternating metrics and
+    /// over-relaxation count the sweeps that were encoded.
     pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
         self.encode(&mut encoder.passes(LABEL), sweeps);
     }
 
-    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget is
-    /// [timed](Budget::timed_by) by the device.
+    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget
+    /// is [timed](Budget::timed_by) by the device.
     pub fn encode_within(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -196,27 +202,27 @@ impl Sweeps {
         }
     }
 
-    /// The scheme that is swept by.
+    /// The scheme of the sweeps.
     pub fn scheme(&self) -> &Scheme {
         &self.run.dispatches.plan.scheme
     }
 
-    /// Starts the scheme anew, with plain sweeps before over-relaxed ones. To be called when the application has moved
-    /// vertices far. Sweeps [`until_converged`](Self::until_converged), of all schemes on the mesh, begin anew in what is
-    /// submitted after the call.
+    /// Starts the scheme again, with plain sweeps before over-relaxed ones. To be called when the application has moved
+    /// vertices far. Sweeps [`until_converged`](Self::until_converged), of all schemes on the mesh, begin again in
+    /// submissions after the call.
     pub fn restart(&mut self) {
         self.done = 0;
         if self.judged.is_some() {
-            // A device that refuses this is lost, and no sweep begins on it.
+            // Only a lost device refuses this, and no sweep begins on it.
             let _ = self.run.changes.count(&self.gpu);
         }
     }
 
-    /// Binds a place in a buffer of the application for the objectives, the bytes of
+    /// Binds a part of a buffer of the application for the objectives: the bytes of
     /// [`ObjectiveValues`](crate::gpu::ObjectiveValues) from byte `offset` on.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`.
+    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was created without `STORAGE`.
     pub fn bind_objective(
         &self,
         buffer: &wgpu::Buffer,
@@ -226,12 +232,12 @@ impl Sweeps {
     }
 }
 
-/// The step of sweeps that are followed by corrections.
+/// The step of sweeps between corrections.
 fn between(plan: &Plan) -> Step {
     plan.base_step(OMEGA_BETWEEN)
 }
 
-/// When encoded sweeps end by themselves.
+/// Whether encoded sweeps end by the stop rule.
 enum Ending {
     Never,
     Judged,

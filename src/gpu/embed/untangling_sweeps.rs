@@ -1,4 +1,4 @@
-//! Sweeps that turn inverted triangles back, for an application's command encoder.
+//! Sweeps that untangle a mesh, for an application's command encoder.
 
 use std::ops::Range;
 
@@ -17,12 +17,12 @@ use crate::gpu::mesh::Parts;
 use crate::gpu::scope::scoped;
 use crate::layout::{Problem, target_areas};
 
-/// How many vertices or triangles an invocation visits.
+/// Number of vertices or triangles that an invocation visits.
 const EACH: u32 = 8;
 
-/// Sweeps that turn inverted triangles back, bound to a mesh on the device: for frames in which vertices have come in that
-/// tangle it. They may be encoded in every frame, in front of ordinary sweeps. As long as no triangle is inverted or
-/// flat they look at the triangles once and leave every position as it is, bit by bit.
+/// Sweeps that turn inverted triangles back, bound to a mesh on the device. They serve frames in which the application
+/// has moved vertices so that triangles are inverted. They may be encoded in every frame, before ordinary sweeps. If no
+/// triangle is inverted or flat, they check the triangles once and leave every position as it is, bit by bit.
 ///
 /// ```no_run
 /// # use gpu_smooth::*;
@@ -41,31 +41,33 @@ const EACH: u32 = 8;
 /// ```
 ///
 /// A sweep moves vertices by Newton steps on the energy of [`untangle`](crate::untangle()), at first those around
-/// inverted triangles, and with each further sweep also those one edge farther off. Vertices that are held stay. A triangle
-/// all of whose vertices are held, or on the boundary, is passed over: no sweep can mend it. Whether others are left is told
-/// by [`ObjectiveValues::inverted`](crate::ObjectiveValues::inverted); there is no proof that every mesh that can be
-/// untangled is. Inverted is what it counts: the area is not positive in single precision.
+/// inverted triangles, and with each further sweep also those one edge farther off. Held vertices stay. A triangle
+/// whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
+///
+/// There is no proof that every mesh that can be untangled is.
+/// [`ObjectiveValues::inverted`](crate::ObjectiveValues::inverted) tells how many triangles are left. Inverted means
+/// the same as there: the area is not positive in single precision.
 pub struct UntanglingSweeps {
     find: Pipeline,
     regularize: Pipeline,
     untangle: Pipeline,
-    /// One, or one for each part of the mesh.
+    /// One bind group, or one for each part of the mesh.
     bind_groups: Vec<wgpu::BindGroup>,
     dispatches: Dispatches,
 }
 
-/// The dispatches, one uniform each: those of the triangles for the first of the sweeps that are encoded together, those for
-/// further ones, then those of the vertices.
+/// The dispatches, with one uniform each, in this order: those of the triangles for the first of the sweeps that are
+/// encoded together, those of the triangles for further sweeps, and those of the vertices.
 struct Dispatches {
     triangles: Vec<Range<u32>>,
-    /// The color and the part of the mesh of each.
+    /// The color, the part of the mesh and the vertices of each dispatch.
     vertices: Vec<(u32, usize, Range<u32>)>,
     /// Bytes from one uniform to the next.
     stride: u32,
 }
 
 impl Dispatches {
-    /// With the content of the uniforms.
+    /// Lists the dispatches, and returns them with the bytes of their uniforms.
     fn new(problem: &Problem, parts: &Parts, alignment: u32) -> (Self, Vec<u8>) {
         let stride = alignment.max(size_of::<UntanglePart>() as u32);
         let free = problem.free_count() as u32;
@@ -98,13 +100,14 @@ impl Dispatches {
 }
 
 impl UntanglingSweeps {
-    /// Binds untangling to a mesh on the device. Takes 8 bytes more there for each vertex. The areas that triangles should have
-    /// are those of the mesh as it was uploaded; only their ratios count, and only while triangles are inverted.
+    /// Binds untangling to a mesh on the device, where it takes 8 more bytes for each vertex. The areas that triangles
+    /// should have are those of the mesh as it was uploaded. Only their ratios matter, and only while triangles are
+    /// inverted.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::Gpu::prepare) does so beforehand.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// A [`GpuError`] if the device fails or is out of memory.
     pub fn new(mesh: &DeviceMesh) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
         let form = buffers.parts.form();
@@ -118,7 +121,7 @@ impl UntanglingSweeps {
         let vertices: Vec<TangledVertex> = vertices.collect();
         let targets = problem.positions().len() as u32;
         let params = Params { targets, ..Params::zeroed() };
-        // Vertices are marked by numbers of sweeps, and none is marked yet.
+        // Vertices are marked by numbers of sweeps, from 1 on. None is marked yet.
         let tangle = Tangle { sweep: 1, since: 1, ..Tangle::zeroed() };
         let bind_groups = scoped(&gpu.device, || {
             let params = filled(gpu, "untangling params", &[params], Usage::UNIFORM);
@@ -147,10 +150,11 @@ impl UntanglingSweeps {
         Ok(Self { find, regularize, untangle, bind_groups, dispatches })
     }
 
-    /// Encodes at most this many sweeps: when the command buffer runs, they end with the last inverted or flat triangle.
+    /// Encodes at most this many sweeps. When the command buffer runs, they end as soon as no triangle is inverted or
+    /// flat.
     ///
-    /// Each begins with a look at all triangles, the first one always. They count as a change of the mesh: sweeps
-    /// [`until_converged`](crate::Sweeps::until_converged) begin anew.
+    /// Each sweep begins with a check of all triangles. Sweeps that find inverted triangles count as a change of the
+    /// mesh: sweeps [`until_converged`](crate::Sweeps::until_converged) begin again.
     pub fn encode_untangle(&self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth untangling");
         let Dispatches { triangles, vertices, .. } = &self.dispatches;
@@ -168,7 +172,7 @@ impl UntanglingSweeps {
         }
     }
 
-    /// Encodes one dispatch, in a part of the mesh, with the uniform of this number.
+    /// Encodes one dispatch, in the given part of the mesh, with the uniform of the given number.
     fn run(
         &self,
         passes: &mut Passes<'_>,

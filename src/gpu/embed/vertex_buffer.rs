@@ -1,4 +1,4 @@
-//! Where an application keeps its vertices, and in which coordinates.
+//! The layout of an application's vertex buffer, and its coordinates.
 
 use glam::DVec2;
 
@@ -9,10 +9,10 @@ use crate::gpu::embed::window::Window;
 use crate::layout::Problem;
 use crate::topology::predicates::not_positive;
 
-/// Where an application keeps its vertices, and in which coordinates: x and y of vertex i are two f32, the first at byte
-/// `offset + i * stride`. Made by [`new`](Self::new); the rest has defaults.
+/// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32, the first at byte
+/// `offset + i * stride`. Made by [`new`](Self::new); all else has defaults.
 ///
-/// What follows y within the stride, a z or anything else, is neither read nor written.
+/// Data behind y within the stride, such as a z, are neither read nor written.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexBuffer<'a> {
     pub(crate) buffer: &'a wgpu::Buffer,
@@ -23,8 +23,8 @@ pub struct VertexBuffer<'a> {
 }
 
 impl<'a> VertexBuffer<'a> {
-    /// Vertices in `buffer`, which has usage `STORAGE` beside what the application needs. `stride` is the number of bytes
-    /// from one vertex to the next, a multiple of 4, at least 8.
+    /// Describes vertices in `buffer`, which has usage `STORAGE` in addition to what the application needs. `stride` is
+    /// the number of bytes from one vertex to the next, a multiple of 4, at least 8.
     pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
         Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0 }
     }
@@ -34,32 +34,33 @@ impl<'a> VertexBuffer<'a> {
         Self { offset, ..self }
     }
 
-    /// Sets the point of the mesh, in its unit, that is 0, 0 in the buffer: (0, 0) by default. Coordinates far from it have
-    /// few digits in an f32: a mesh of a town in meters of its country needs an origin in the town.
+    /// Sets the point of the mesh, in its unit, that becomes 0, 0 in the buffer: (0, 0) by default. Coordinates far
+    /// from it have few digits in an f32: a mesh of a town, in meters of a country's grid, needs an origin in the town.
     pub fn origin(self, origin: [f64; 2]) -> Self {
         Self { origin, ..self }
     }
 
-    /// Sets what differences from the origin are multiplied by in the buffer: 1 by default. Above 0.
+    /// Sets the factor, above 0, by which differences from the origin are multiplied in the buffer: 1 by default.
     pub fn scale(self, scale: f64) -> Self {
         Self { scale, ..self }
     }
 
-    /// The `max_storage_buffer_binding_size` that a device needs to bind the coordinates of this many vertices, for
-    /// [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). Of a buffer in which many meshes stand one after the
-    /// other, only the part of this mesh is bound, so `offset` hardly counts. [`u64::MAX`] where no device can bind it.
+    /// Returns the `max_storage_buffer_binding_size`, in bytes, that a device needs to bind the coordinates of this
+    /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). If a buffer holds many meshes one
+    /// after the other, only the part of this mesh is bound, so `offset` hardly matters. [`u64::MAX`] if no device can
+    /// bind it.
     pub fn binding_size(vertices: usize, stride: u64, offset: u64) -> u64 {
-        // A binding starts at a multiple of the device's alignment, 256 bytes at most.
+        // A binding starts at a multiple of the device's alignment, at most 256 bytes.
         (vertices.saturating_sub(1) as u64)
             .saturating_mul(stride)
             .saturating_add(8 + offset % ALIGNMENT)
     }
 
-    /// The coordinates of the buffer.
+    /// Returns the coordinates of the buffer.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the origin or the scale is not usable, or if the vertices of a triangle of the problem would
-    /// invert it or make it flat as they are rounded to single precision.
+    /// [`GpuError::Buffer`] if the origin or the scale is not usable, or if rounding to single precision would invert
+    /// or flatten a triangle of the problem.
     pub(crate) fn coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let given = self.unjudged_coordinates(problem)?;
         let (center, size) = problem.normalization();
@@ -83,7 +84,7 @@ impl<'a> VertexBuffer<'a> {
         Err(GpuError::Buffer(format!("{problem_text}: {remedy}")))
     }
 
-    /// The coordinates of the buffer, whatever rounding does to the problem's triangles.
+    /// Returns the coordinates of the buffer, even if rounding inverts triangles of the problem.
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the origin or the scale is not usable.
@@ -101,10 +102,10 @@ impl<'a> VertexBuffer<'a> {
         Ok(Coordinates { center, scale: size / scale })
     }
 
-    /// The words from one vertex to the next.
+    /// Returns the number of words from one vertex to the next.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the stride is not one that kernels can take.
+    /// [`GpuError::Buffer`] if the stride is not a multiple of 4, or out of its range.
     pub(crate) fn words(&self) -> Result<u32, GpuError> {
         let stride = self.stride;
         if !stride.is_multiple_of(4) || stride < 8 {
@@ -117,10 +118,10 @@ impl<'a> VertexBuffer<'a> {
         })
     }
 
-    /// The part of the buffer that holds this many vertices.
+    /// Returns the part of the buffer that holds this many vertices.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] or [`GpuError::Limit`] if that cannot be bound.
+    /// [`GpuError::Buffer`] or [`GpuError::Limit`] if this part cannot be bound.
     pub(crate) fn window(&self, gpu: &Gpu, vertices: usize) -> Result<Window<'a>, GpuError> {
         let steps = vertices.saturating_sub(1) as u64;
         let bytes = steps.saturating_mul(self.stride).saturating_add(8);
@@ -128,7 +129,7 @@ impl<'a> VertexBuffer<'a> {
     }
 }
 
-/// How normalized positions p stand in a vertex buffer: as `center + p / scale`.
+/// How normalized positions p are stored in a vertex buffer: as `center + p / scale`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coordinates {
     pub(crate) center: DVec2,
@@ -136,8 +137,8 @@ pub(crate) struct Coordinates {
 }
 
 impl Coordinates {
-    /// How many triangles that are counter-clockwise are not once their vertices are rounded to single precision. `None`
-    /// if a number is not finite then, or the scale vanishes.
+    /// Counts the triangles that are counter-clockwise, but no longer so once their vertices are rounded to single
+    /// precision. `None` if a number is then not finite, or the scale vanishes.
     fn inverted_by_rounding(&self, problem: &Problem) -> Option<usize> {
         let is_usable = |x: f64| (x as f32).is_normal();
         if !is_usable(self.scale) || !is_usable(1.0 / self.scale) {

@@ -1,4 +1,4 @@
-//! The part of an application's buffer that a kernel sees.
+//! The part of an application's buffer that a kernel can access.
 
 use wgpu::BufferUsages as Usage;
 
@@ -10,7 +10,7 @@ pub(crate) struct Window<'a> {
     buffer: &'a wgpu::Buffer,
     start: u64,
     size: u64,
-    /// Words from the start of the binding.
+    /// Number of words from the start of the binding to the range.
     pub(crate) offset: u32,
 }
 

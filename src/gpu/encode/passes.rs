@@ -6,11 +6,11 @@ use crate::error::GpuError;
 use crate::gpu::encode::timestamps::{Spans, Timestamps};
 use crate::gpu::kernels::pipelines::Pipeline;
 
-/// What this library encodes into: an application's [`wgpu::CommandEncoder`], a [`wgpu::ComputePass`] that it has begun, or
-/// an encoder whose kernels are timed, made by [`Timestamps::time`].
+/// A target for the kernels of this library: an application's [`wgpu::CommandEncoder`], a [`wgpu::ComputePass`] that it
+/// has begun, or an encoder whose kernels are timed, made by [`Timestamps::time`].
 ///
-/// In a pass of the application, the pipeline and bind group 0 are other ones after a call than before. One dispatch sees
-/// what those before it have written, of the application's own too.
+/// In a pass of the application, each call sets another pipeline and bind group 0. A dispatch sees what earlier ones
+/// have written, including the application's own.
 pub trait Encoder: sealed::Target {}
 
 impl Encoder for wgpu::CommandEncoder {}
@@ -43,7 +43,7 @@ impl sealed::Target for wgpu::ComputePass<'_> {
     }
 }
 
-/// A pass that an application has begun, whatever its lifetime.
+/// A pass that an application has begun, with any lifetime.
 trait Given {
     fn with(&mut self, encode: &mut dyn FnMut(&mut wgpu::ComputePass<'_>));
 }
@@ -57,19 +57,19 @@ impl Given for wgpu::ComputePass<'_> {
 /// The compute passes that the kernels of one call are encoded into.
 pub struct Passes<'e>(State<'e>);
 
-// It lives on the stack of one call: a box would cost more than the space.
+// Not boxed, as it lives on the stack during one call, and a box would cost more than the space.
 #[allow(clippy::large_enum_variant)]
 enum State<'e> {
     /// All kernels in one pass. `set` is the pipeline that is set in it.
     One { pass: wgpu::ComputePass<'e>, set: Option<wgpu::ComputePipeline> },
     /// All kernels in a pass of the application.
     Given { pass: &'e mut (dyn Given + 'e), set: Option<wgpu::ComputePipeline> },
-    /// Each kernel in a pass of its own: core WebGPU takes the time at the ends of a pass only.
+    /// Each kernel in a pass of its own, as core WebGPU takes timestamps only at the ends of a pass.
     Timed { encoder: &'e mut wgpu::CommandEncoder, timestamps: &'e mut Timestamps },
 }
 
 impl<'e> Passes<'e> {
-    /// All kernels in one pass, which is timed as a whole.
+    /// Begins one pass for all kernels, which is timed as a whole.
     pub(crate) fn clocked(
         encoder: &'e mut wgpu::CommandEncoder,
         label: &'static str,
@@ -106,7 +106,7 @@ impl<'e> Passes<'e> {
             }
             State::Given { pass, set } => {
                 let is_set = set.as_ref() == Some(&pipeline.raw);
-                // It is called once.
+                // The closure is called once.
                 let mut dispatch = Some(dispatch);
                 pass.with(&mut |pass| {
                     if !is_set {
@@ -134,7 +134,7 @@ impl<'e> Passes<'e> {
 }
 
 /// An application's encoder in which the kernels of this library are timed. All calls of this library that take an
-/// encoder take it. It dereferences to the encoder, so that the application can encode untimed work of its own.
+/// encoder accept it. It dereferences to the encoder, so that the application can encode untimed work of its own.
 pub struct Timed<'t> {
     encoder: &'t mut wgpu::CommandEncoder,
     timestamps: &'t mut Timestamps,
@@ -169,11 +169,10 @@ impl Timestamps {
 }
 
 impl Timed<'_> {
-    /// Ends the timing and encodes the copy of the times into a buffer. Without this call the times are lost, but
-    /// nothing else is.
+    /// Ends the timing and encodes the copy of the times into a buffer. Without this call only the times are lost.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// A [`GpuError`] if the device fails or is out of memory.
     pub fn resolve(self) -> Result<Spans, GpuError> {
         self.timestamps.resolve(self.encoder)
     }

@@ -10,7 +10,7 @@ use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::scoped;
 
-/// Spans in a query set; WebGPU allows 4096 queries.
+/// Number of spans in a query set. WebGPU allows 4096 queries in a set.
 const SET: usize = 1024;
 /// Bytes of a span: two timestamps.
 const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
@@ -18,7 +18,8 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// Times the kernels that this library encodes, by the device's clock. It needs a device with
 /// [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), see [`Gpu::optional_features`].
 ///
-/// Every timed kernel gets a pass of its own, each color of a sweep too, so that a frame takes a little longer.
+/// Every timed kernel gets a pass of its own, and so does each color of a sweep. A timed frame therefore takes a little
+/// longer.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::Timestamps};
@@ -41,7 +42,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// ```
 pub struct Timestamps {
     gpu: Gpu,
-    /// The query sets: kept from one encoder to the next, and more made as more spans are taken.
+    /// The query sets. They are reused for the next encoder, and more are created when more spans are taken.
     sets: Vec<wgpu::QuerySet>,
     /// The timed kernels in the order of encoding, with their colors.
     taken: Vec<(Kernel, Option<u32>)>,
@@ -49,10 +50,10 @@ pub struct Timestamps {
 }
 
 impl Timestamps {
-    /// Times kernels on one device. It serves any number of encoders, one after the other.
+    /// Makes timestamps for one device. They serve any number of encoders, one after the other.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] if the device was made without `TIMESTAMP_QUERY`.
+    /// [`GpuError::Feature`] if the device was created without `TIMESTAMP_QUERY`.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         if !gpu.device.features().contains(Gpu::optional_features()) {
             return Err(GpuError::Feature { what: "timing", feature: "TIMESTAMP_QUERY" });
@@ -87,7 +88,7 @@ impl Timestamps {
         Ok(Spans { gpu: gpu.clone(), times, taken })
     }
 
-    /// The places for the times of a pass that is about to be encoded.
+    /// Returns where a pass that is about to be encoded writes its times.
     pub(crate) fn next(
         &mut self,
         kernel: &Kernel,
@@ -124,7 +125,7 @@ pub struct Spans {
     taken: Vec<(Kernel, Option<u32>)>,
 }
 
-/// The time one kernel took.
+/// The time that one kernel took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
     /// The kernel; [`Kernel::label`] names it.
@@ -138,7 +139,7 @@ pub struct Span {
 }
 
 impl Spans {
-    /// Reads the times, in the order of encoding; blocks until the device has done all that was submitted.
+    /// Reads the times, in the order of encoding. Blocks until the device has done all work submitted so far.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -146,7 +147,8 @@ impl Spans {
         blocking(self.wait(Waiting::Block))
     }
 
-    /// As [`read`](Self::read), without blocking: completes once the application has polled the device.
+    /// Reads the times like [`read`](Self::read), without blocking. The future completes once the application has
+    /// polled the device.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -162,7 +164,7 @@ impl Spans {
         let times: Vec<[u64; 2]> = readback::read(&gpu, &times, taken.len(), waiting).await?;
         let period = f64::from(gpu.queue.get_timestamp_period());
         let origin = times.first().map_or(0, |&[start, _]| start);
-        // Clocks of devices are known to go back now and then.
+        // Clocks of devices are known to jump back now and then.
         let between = |from: u64, to: u64| to.saturating_sub(from) as f64 * period;
         let spans = taken.into_iter().zip(times).map(|((kernel, color), [start, end])| {
             let nanoseconds = between(start, end);

@@ -1,11 +1,11 @@
-//! Dispatches of more workgroups than one dimension takes.
+//! Dispatches of more workgroups than fit in one dimension.
 
 use crate::gpu::kernels::uniforms::WORKGROUP;
 
-/// Workgroups along x of a dispatch too long for one dimension.
+/// Number of workgroups along x of a dispatch that is too long for one dimension.
 pub(crate) const FOLD: u32 = 32768;
 
-/// Dispatches enough workgroups for `invocations`, folded where one dimension is too short.
+/// Dispatches enough workgroups for `invocations`, in two dimensions if one is too short.
 pub(crate) fn dispatch(pass: &mut wgpu::ComputePass<'_>, invocations: u32) {
     let groups = invocations.div_ceil(WORKGROUP);
     if groups <= FOLD {

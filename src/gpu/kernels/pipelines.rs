@@ -1,4 +1,4 @@
-//! Makes pipelines and bind groups. The pipelines of runs are made once for a device.
+//! Creates pipelines and bind groups. The pipelines of runs are created once for a device.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -7,7 +7,7 @@ use crate::error::GpuError;
 use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
 use crate::gpu::scope::scoped;
 
-/// The bindings of group 0, in order. Tests compare them with the WGSL.
+/// Returns the bindings of group 0, in order. Tests compare them with the WGSL.
 fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
     let mut bindings = bindings_of_whole(interface).to_vec();
     if interface.sees(positions) == Positions::InTwo {
@@ -16,7 +16,7 @@ fn bindings(interface: Interface, positions: Positions) -> Vec<Binding> {
     bindings
 }
 
-/// The bindings of group 0 where the positions are one binding.
+/// Returns the bindings of group 0 for positions in one binding.
 fn bindings_of_whole(interface: Interface) -> &'static [Binding] {
     use Binding::{ReadOnly, ReadWrite, Uniform};
     const UNIFORM: Binding = Uniform { dynamic: false };
@@ -108,25 +108,25 @@ impl Binding {
     }
 }
 
-/// The most storage buffers that a kernel binds, to be compared with the device's limit.
+/// The most storage buffers that a kernel binds.
 pub(crate) fn storage_bindings(positions: Positions) -> u32 {
     let bindings = bindings(Interface::Run, positions);
     bindings.iter().filter(|b| !matches!(b, Binding::Uniform { .. })).count() as u32
 }
 
-/// A kernel made ready to run.
+/// A kernel that is ready to run.
 #[derive(Clone)]
 pub(crate) struct Pipeline {
     pub(crate) kernel: Kernel,
     pub(crate) raw: wgpu::ComputePipeline,
 }
 
-/// The pipelines of a device, made when first asked for.
+/// The pipelines of a device, each created when it is first requested.
 #[derive(Default)]
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; Interface::ALL.len()],
     made: Mutex<HashMap<(Kernel, MeshForm), wgpu::ComputePipeline>>,
-    /// A cache of the application's.
+    /// A pipeline cache of the application.
     cache: Option<wgpu::PipelineCache>,
 }
 
@@ -163,7 +163,7 @@ impl Layout {
 }
 
 impl Pipelines {
-    /// No pipelines yet, and a cache that they are compiled with.
+    /// Makes an empty set of pipelines, which will be compiled with the given cache.
     pub(crate) fn with_cache(cache: wgpu::PipelineCache) -> Self {
         Self { cache: Some(cache), ..Self::default() }
     }
@@ -196,7 +196,7 @@ impl Pipelines {
         })
     }
 
-    /// The pipeline of a kernel, compiled when first asked for.
+    /// Returns the pipeline of a kernel, which is compiled when it is first requested.
     pub(crate) fn get(
         &self,
         device: &wgpu::Device,

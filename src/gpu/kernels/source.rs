@@ -89,17 +89,18 @@ const MULTIPLY_CORRECTION: &str = include_str!("../../../shaders/secants/multipl
 const OPEN_SECANT: &str = include_str!("../../../shaders/secants/open.wgsl");
 
 impl Kernel {
-    /// The complete WGSL module.
+    /// Returns the complete WGSL module.
     pub fn wgsl(&self) -> String {
         self.composed(Positions::Whole.into())
     }
 
-    /// The complete WGSL module for a mesh whose positions are more than the device binds at once.
+    /// Returns the complete WGSL module for a mesh whose positions take two bindings, as they are more than the device
+    /// binds at once.
     pub fn wgsl_for_large_meshes(&self) -> String {
         self.composed(Positions::InTwo.into())
     }
 
-    /// The complete WGSL module for a mesh with targets.
+    /// Returns the complete WGSL module for a mesh with targets.
     pub fn wgsl_for_targets(&self) -> String {
         self.composed(MeshForm { positions: Positions::Whole, has_targets: true })
     }
@@ -165,7 +166,7 @@ impl Kernel {
             Kernel::FindInverted => source.push_str(FIND_INVERTED),
             Kernel::Regularize => source.push_str(REGULARIZE),
             Kernel::Untangle => {
-                // The energy is a form of the inverse mean ratio.
+                // The energy is a variant of the inverse mean ratio.
                 let floor = Metric::Imr.properties().eigenvalue_floor;
                 let _ = writeln!(source, "const EIGENVALUE_FLOOR: f32 = {floor:?}f;");
                 let parts = [ONE_RING, DESCENT, ENERGY, UNTANGLE];
@@ -214,7 +215,7 @@ impl Kernel {
     }
 }
 
-/// The constants that kernels share with Rust.
+/// Returns the constants that kernels share with Rust.
 fn constants() -> String {
     let mut text = String::new();
     for (name, value) in [
@@ -265,7 +266,7 @@ fn constants() -> String {
     text
 }
 
-/// The metric a sweep minimizes, under the names newton.wgsl calls.
+/// Returns the functions of the metric that a sweep minimizes, under the names that newton.wgsl calls.
 fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
     let properties = metric.properties();
     let name = wgsl_name(metric);
@@ -327,8 +328,8 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// Two functions of a triangle: `tracked_values`, which returns q² - ideal² of each metric and then 1 if the area is
-/// not positive, and `shape_excess`, which returns imr² - 1.
+/// Returns two functions of a triangle: `tracked_values`, which gives q² - ideal² of each metric and then 1 if the area
+/// is not positive, and `shape_excess`, which gives imr² - 1.
 fn tracked_metrics(metrics: &[Metric]) -> String {
     let mut text = INVARIANTS.to_owned();
     text.extend(metrics.iter().map(|m| m.properties().wgsl));
@@ -358,12 +359,12 @@ fn shape_excess(t: Corner) -> f32 {{
     text
 }
 
-/// The name of a metric in its WGSL.
+/// Returns the prefix of a metric's functions in WGSL.
 fn wgsl_name(metric: Metric) -> String {
     metric.name().replace('-', "_")
 }
 
-/// The slots of the history that the tracked sums belong to.
+/// Returns the slots of the history that the tracked sums belong to.
 fn tracked_slots(metrics: &[Metric]) -> String {
     let slots: Vec<String> = metrics
         .iter()

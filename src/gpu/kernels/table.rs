@@ -20,23 +20,23 @@ pub enum Kernel {
     Export,
     /// Writes objectives to an application's buffer.
     Publish,
-    /// Begins judged sweeps anew where an application has changed the mesh.
+    /// Makes judged sweeps begin again if an application has changed the mesh.
     Reopen,
-    /// Lets judged sweeps go on after [`Reopen`](Self::Reopen) and the evaluation that follows it.
+    /// Lets judged sweeps continue after [`Reopen`](Self::Reopen) and the evaluation that follows it.
     Resume,
-    /// Keeps the positions of a valid mesh, and puts them back where it is not.
+    /// Saves the positions of a valid mesh, and restores the saved ones if the mesh is not valid.
     RestoreLastValid,
     /// Holds vertices by a mask of the application.
     HoldByMask,
-    /// Finds how far an application's moves can go before a triangle gives way.
+    /// Finds the share of its way that an application's move can go before a triangle gets inverted or too flat.
     FindShare,
-    /// Moves vertices by what [`FindShare`](Self::FindShare) has found.
+    /// Moves vertices by the share that [`FindShare`](Self::FindShare) has found.
     MoveVertices,
-    /// Finds the triangles that are inverted, and how much.
+    /// Finds the triangles that are inverted, and the most inverted one.
     FindInverted,
-    /// Begins a sweep that turns back what [`FindInverted`](Self::FindInverted) has found.
+    /// Begins an untangling sweep if [`FindInverted`](Self::FindInverted) has found inverted triangles.
     Regularize,
-    /// Newton steps that turn inverted triangles back, on the free vertices of one color.
+    /// Newton steps that untangle, on the free vertices of one color.
     Untangle,
     /// The gradient of Σ q² at the free vertices.
     Gradient(Metric),
@@ -50,29 +50,29 @@ pub enum Kernel {
     MatrixVector,
     /// One step of Chebyshev's iteration on a coarse level.
     Chebyshev,
-    /// Solves on the coarsest level: its inverse matrix times the right-hand side.
+    /// Solves on the coarsest level, by the inverse matrix times the right-hand side.
     CoarsestSolve,
-    /// Partial sums of the objective with the vertices moved along the correction, and of the slope there.
+    /// Partial sums of the objective before and after a step along the correction, and of its slope along it.
     ObjectiveAlongCorrection(Metric),
     /// Completes the sums of [`ObjectiveAlongCorrection`](Self::ObjectiveAlongCorrection).
     SumAlongCorrection,
     /// Moves the free vertices along the correction.
     MoveAlongCorrection,
-    /// Finds the vertices of triangles that the correction would invert or bring to break the shape guard.
+    /// Finds the vertices of triangles that the correction would invert or make break the shape guard.
     FindBroken,
-    /// Leaves what [`FindBroken`](Self::FindBroken) has found out of the correction.
+    /// Leaves the vertices found by [`FindBroken`](Self::FindBroken) out of the correction.
     LeaveOutBroken,
     /// Begins the line search of a correction that an application encodes.
     BeginSearch,
-    /// Judges a trial of that line search and chooses the next length.
+    /// Judges a trial of the line search that [`BeginSearch`](Self::BeginSearch) began, and chooses the next length.
     JudgeTrial,
-    /// The root of the stiffness at the free vertices, from which the coarser levels are built.
+    /// The square root of the stiffness at the free vertices, from which the coarser levels are built.
     Stiffness(Metric),
-    /// Closes the open secant pair, with partial sums of its products.
+    /// Completes the open secant pair, with partial sums of its products.
     CloseSecant,
     /// Completes the sums of products of secant pairs.
     SumSecants,
-    /// Bends the gradient by the secant pairs, before the levels are given it.
+    /// Subtracts what the secant pairs account for from the gradient, before the levels are applied.
     BendGradient,
     /// Partial sums of products of secant pairs with the correction.
     MultiplyCorrection,
@@ -103,7 +103,7 @@ pub enum Interface {
     Untangle,
     /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
     Fine,
-    /// Between a mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
+    /// A mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
     Transfer,
     /// The coarse levels: `shaders/levels/coarse.wgsl`.
     Coarse,
@@ -133,7 +133,7 @@ impl Interface {
         Interface::Arithmetic,
     ];
 
-    /// How the kernels of this interface bind the positions of a mesh that are bound as `positions` says. Interfaces
+    /// How the kernels of this interface bind the positions, given the form `positions` that the mesh needs. Interfaces
     /// without positions have one form only.
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         match self {
@@ -160,14 +160,14 @@ impl Interface {
 pub(crate) enum Positions {
     /// As one binding.
     Whole,
-    /// As two bindings, the high parts and the low parts, where a device binds less than the buffer at once.
+    /// As two bindings, one of high parts and one of low parts, for a buffer larger than the device binds at once.
     InTwo,
 }
 
 impl Positions {
     pub(crate) const ALL: [Self; 2] = [Positions::Whole, Positions::InTwo];
 
-    /// The form that positions of this many vertices take.
+    /// Returns the form that this number of positions takes.
     pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
         let bytes = (vertices as u64).saturating_mul(size_of::<[f32; 4]>() as u64);
         let fits = bytes <= limits.max_storage_buffer_binding_size;
@@ -175,29 +175,29 @@ impl Positions {
     }
 }
 
-/// The form of a mesh on a device, which kernels are composed for.
+/// The form of a mesh on a device, for which kernels are composed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MeshForm {
     pub(crate) positions: Positions,
-    /// Whether there are target maps behind the positions.
+    /// Whether target maps follow the positions.
     pub(crate) has_targets: bool,
 }
 
 impl From<Positions> for MeshForm {
-    /// A mesh without targets.
+    /// The form of a mesh without targets.
     fn from(positions: Positions) -> Self {
         Self { positions, has_targets: false }
     }
 }
 
 impl Kernel {
-    /// The form that the kernel sees of a mesh.
+    /// Returns the form of the mesh as far as the kernel depends on it.
     pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
         let positions = self.interface().sees(form.positions);
         MeshForm { positions, has_targets: form.has_targets && self.sees_targets() }
     }
 
-    /// Whether the kernel goes by target maps where there are any.
+    /// Whether the kernel uses target maps if there are any.
     pub(crate) fn sees_targets(&self) -> bool {
         matches!(
             self,
@@ -215,7 +215,7 @@ impl Kernel {
         )
     }
 
-    /// Every kernel that a run by this plan, or an application's frame, may need.
+    /// Lists the kernels that a run by this plan, or an application's frame, may need, without those of corrections.
     pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
         let sweeps =
             plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives[m as usize]));
@@ -228,7 +228,7 @@ impl Kernel {
         kernels
     }
 
-    /// Every kernel that corrections from coarser levels need.
+    /// Lists the kernels that corrections from coarser levels need.
     pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
         let of_metric = [
             Kernel::Stiffness(metric),
@@ -257,7 +257,7 @@ impl Kernel {
         of_metric.into_iter().chain(others).collect()
     }
 
-    /// The name of the entry point.
+    /// Returns the name of the entry point.
     pub fn entry_point(&self) -> &'static str {
         match self {
             Kernel::Sweep(..) => "sweep",
@@ -300,7 +300,7 @@ impl Kernel {
         }
     }
 
-    /// The bindings of the kernel.
+    /// Returns the bindings of the kernel.
     pub fn interface(&self) -> Interface {
         match self {
             Kernel::Import | Kernel::Export => Interface::Exchange,
@@ -334,7 +334,7 @@ impl Kernel {
         }
     }
 
-    /// A label for tools such as RenderDoc.
+    /// Returns a label for tools such as RenderDoc.
     pub fn label(&self) -> String {
         match self {
             Kernel::Sweep(metric, Derivatives::Analytic) => format!("gpu-smooth sweep {metric}"),

@@ -5,32 +5,34 @@ use glam::DVec2;
 
 use crate::metric::{Metric, Smoothing};
 
-/// Evaluations the device remembers; the host reads them before they are overwritten.
+/// Number of evaluations that the device stores. The host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Invocations in a workgroup of every kernel but `finish`, `find_share`, `sum_along_correction`, `publish`, and those that look at a
-/// few numbers: `reopen`, `resume`, `regularize`, `begin_search` and `judge_trial`.
+/// Number of invocations in a workgroup of most kernels. Exceptions are `finish`, `find_share`, `sum_along_correction`,
+/// `sum_secants`, `publish`, and those that need only one invocation: `reopen`, `resume`, `regularize`, `begin_search`
+/// and `judge_trial`.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Invocations of the `finish`, `find_share` and `sum_along_correction` kernels.
+/// Number of invocations in a workgroup of `finish`, `find_share`, `sum_along_correction` and `sum_secants`.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
-/// The values kept of an evaluation: the sum of q² - ideal² for every metric, the number of inverted triangles, and the
-/// worst imr² - 1.
+/// Number of values stored for an evaluation: the sum of q² - ideal² for every metric, the number of inverted
+/// triangles, and the largest imr² - 1.
 pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
 /// The slot of the number of inverted triangles.
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
-/// The slot of the worst imr² - 1.
+/// The slot of the largest imr² - 1.
 pub(crate) const WORST: u32 = INVERTED + 1;
 /// The bits of the least float that is neither zero nor denormal.
 pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
-/// Set in the ring start of a free vertex that the application holds in place. Ring starts themselves are less.
+/// The bit that is set in the ring start of a free vertex that the application holds in place. Ring starts themselves
+/// are smaller.
 pub(crate) const HELD: u32 = 1 << 31;
-/// The guard of steps that have none. Larger than any inverse mean ratio, and a number in single precision.
+/// The shape guard of steps without one: larger than any inverse mean ratio, and finite in single precision.
 pub(crate) const NO_GUARD: f64 = 1e38;
 
 /// Number of lengths tried along each correction that an application encodes.
 pub(crate) const SEARCH_TRIALS: u32 = 3;
-/// Vectors in front of the partial sums in those of the levels: totals, and the state of a line search on the device, as in
-/// shaders/search/places.wgsl.
+/// Number of entries in front of the partial sums in the vectors of the levels: the totals, and the state of a line
+/// search on the device, as in shaders/search/places.wgsl.
 pub(crate) const SEARCH_STATE: u32 = 7;
 
 /// `Params` in shaders/params.wgsl.
@@ -252,7 +254,7 @@ pub(crate) fn split(p: DVec2) -> [f32; 4] {
     [x, y, x_low, y_low]
 }
 
-/// The point that pairs of floats stand for: the inverse of [`split`].
+/// The point that pairs of floats represent: the inverse of [`split`].
 pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
     DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
 }
@@ -264,7 +266,7 @@ mod tests {
     use super::*;
     use crate::gpu::Kernel;
 
-    /// Size, and name and offset of each member but padding, of a struct as naga lays it out.
+    /// Returns the size of a struct as naga lays it out, and the name and offset of each member except padding.
     fn reflected(kernel: &Kernel, name: &str) -> (usize, Vec<(String, usize)>) {
         let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
         let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();

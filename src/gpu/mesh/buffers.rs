@@ -19,7 +19,7 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
-    /// How often an application has changed the mesh.
+    /// Counters of the changes that an application has made to the mesh.
     pub(crate) changes: Changes,
     /// How the buffers are bound.
     pub(crate) parts: Parts,
@@ -50,10 +50,10 @@ impl MeshBuffers {
         })
     }
 
-    /// The same mesh with positions, and changes, of its own.
+    /// Makes the same mesh with its own positions and its own counters of changes.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// A [`GpuError`] if the device fails or is out of memory.
     pub(crate) fn with_positions(
         &self,
         gpu: &Gpu,
@@ -72,8 +72,8 @@ impl MeshBuffers {
         })
     }
 
-    /// The binding of the positions; where they take two bindings, that of their high parts and that of their low
-    /// parts.
+    /// Returns the binding of the positions. If they take two bindings, returns that of the high parts and that of the
+    /// low parts.
     pub(crate) fn bind_positions(
         &self,
     ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
@@ -103,7 +103,7 @@ impl MeshBuffers {
         Ok(joined.collect())
     }
 
-    /// Writes the first positions, as [`read_positions`](Self::read_positions) gave them.
+    /// Writes the first positions, in the form that [`read_positions`](Self::read_positions) returns.
     pub(crate) fn write_positions(
         &self,
         gpu: &Gpu,
@@ -121,22 +121,22 @@ impl MeshBuffers {
         })
     }
 
-    /// The one-rings of a part.
+    /// Returns the binding of the one-rings of a part.
     pub(crate) fn bind_ring(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
     }
 
-    /// The triangles of a part.
+    /// Returns the binding of the triangles of a part.
     pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
     }
 }
 
-/// Bytes of the high parts of a position; its low parts have as many.
+/// Bytes of the high parts of a position. Its low parts take as many.
 const PART: u64 = POSITION / 2;
 
-/// The content of the buffer of positions: high and low parts of one vertex after the other, or, with `low`, all high
-/// parts and from that byte on all low parts. Target maps follow the positions, as if they were positions.
+/// Returns the content of the buffer of positions: high and low parts of one vertex after the other, or, with `low`,
+/// first all high parts and from that byte on all low parts. Target maps follow the positions in the same form.
 fn laid_out(positions: &[DVec2], targets: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
     let count = positions.len() + targets.map_or(0, <[_]>::len);
     let (step, low, length) = match low {

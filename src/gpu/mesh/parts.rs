@@ -1,9 +1,9 @@
 //! How a mesh is bound where its buffers are larger than a binding: part by part.
 //!
-//! Buffers stay whole. A sweep over a color is one dispatch, or several where the one-rings of the color do not fit
-//! one binding; each dispatch binds the one-rings of its own vertices. Likewise the objective takes a dispatch for each
-//! part of the triangles. Any position may be read, so that every kernel binds all of them, in two bindings if need
-//! be: the high parts and the low parts.
+//! Buffers stay whole. A sweep over a color is one dispatch, or several if the one-rings of the color do not fit one
+//! binding; each dispatch binds the one-rings of its own vertices. Likewise the objective takes a dispatch for each
+//! part of the triangles. A kernel may read any position, so every kernel binds all of them, if need be in two
+//! bindings: the high parts and the low parts.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use crate::gpu::kernels::table::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 
-/// The parts of a mesh, by kind. A kind that fits one binding has one part.
+/// The parts into which the data of a mesh are cut, for each kind of data. A kind that fits one binding has one part.
 #[derive(Clone)]
 pub(crate) struct Parts {
     /// The byte at which the low parts start in the buffer of positions, if they take a binding of their own.
@@ -35,9 +35,9 @@ pub(crate) struct Parts {
 /// The one-rings that are bound at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RingPart {
-    /// The vertices that these one-rings surround.
+    /// The vertices inside these one-rings.
     pub(crate) vertices: Range<u32>,
-    /// The range that is bound of the buffer of one-rings. Its start is aligned.
+    /// The range of the buffer of one-rings that is bound, in entries. Its start is aligned.
     pub(crate) entries: Range<u32>,
 }
 
@@ -45,7 +45,7 @@ impl Parts {
     /// Cuts a mesh into parts that fit the limits.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if no parts of the mesh do.
+    /// [`GpuError::Limit`] if the mesh cannot be cut into parts that fit.
     pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
         let triangles = problem.triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
@@ -54,8 +54,9 @@ impl Parts {
         let rows = if has_targets { 2 * size.vertices } else { size.vertices };
         check_rows(rows, limits)?;
         let free = problem.free_count() as u32;
-        // A part has whole rounds of the objective, so that the sums do not depend on the parts. A binding may start
-        // after a round, as the bytes of 64 triangles are a multiple of the alignment; so are those of 64 positions.
+        // A part consists of whole rounds of the objective's invocations, so that the sums do not depend on the parts.
+        // A binding may start after any round, as the bytes of 64 triangles are a multiple of the alignment; so are
+        // those of 64 positions.
         let round = objective_invocations(triangles);
         Ok(Self {
             low_positions: low_positions(rows, limits),
@@ -67,12 +68,12 @@ impl Parts {
         })
     }
 
-    /// How many parts there are, of the kind that has the most.
+    /// Returns the number of parts of the kind that has the most.
     pub(crate) fn count(&self) -> usize {
         self.rings.len().max(self.triangles.len()).max(self.free.len())
     }
 
-    /// The form of the mesh, for kernels.
+    /// Returns the form of the mesh, for kernels.
     pub(crate) fn form(&self) -> MeshForm {
         let in_two = self.low_positions.is_some();
         let positions = if in_two { Positions::InTwo } else { Positions::Whole };
@@ -80,19 +81,19 @@ impl Parts {
     }
 }
 
-/// The part with this number, or the last one of a kind that has fewer.
+/// Returns the part with this number, or the last part of a kind that has fewer.
 pub(crate) fn of_part<T>(parts: &[T], part: usize) -> &T {
     &parts[part.min(parts.len() - 1)]
 }
 
-/// The byte at which the low parts of this many positions start, if they take a binding of their own.
+/// Returns the byte at which the low parts of this number of positions start, if they take a binding of their own.
 fn low_positions(vertices: usize, limits: &wgpu::Limits) -> Option<u64> {
     let in_two = Positions::of(vertices, limits) == Positions::InTwo;
     let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
     in_two.then(|| (vertices as u64 * POSITION / 2).next_multiple_of(alignment))
 }
 
-/// Cuts `count` rows of `bytes` each into parts that fit a binding, all but the last a multiple of `step` rows.
+/// Cuts `count` rows of `bytes` each into parts that fit a binding. All but the last have a multiple of `step` rows.
 fn ranges(count: u32, bytes: u64, step: u32, limits: &wgpu::Limits) -> Vec<Range<u32>> {
     let most = limits.max_storage_buffer_binding_size;
     let per_part = match u64::from(count) * bytes <= most {
@@ -149,11 +150,11 @@ mod tests {
 
     #[test]
     fn rings_are_cut_between_vertices_and_bound_from_an_aligned_place_on() {
-        // 256 bytes are 64 numbers; a binding holds 256 of them.
+        // 256 bytes are 64 numbers, and a binding holds 256 numbers.
         let parts = rings(&[0, 100, 200, 257, 300, 500], &binding(1024)).unwrap();
         let part = |vertices, entries| RingPart { vertices, entries };
         assert_eq!(parts, [part(0..2, 0..200), part(2..4, 192..300), part(4..5, 256..500)]);
-        // No vertex is left out, whatever the size of a binding.
+        // No vertex is left out, for any size of a binding.
         let start: Vec<u32> = (0..1000u32).map(|v| 6 * v + v % 5).collect();
         for size in [512, 1000, 1028, 4096] {
             let parts = rings(&start, &binding(size)).unwrap();

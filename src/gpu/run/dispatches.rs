@@ -1,4 +1,4 @@
-//! The dispatches of a run: which kernels a sweep and an evaluation take.
+//! The dispatches of a run: the kernels that a sweep and an evaluation consist of.
 
 use std::ops::Range;
 
@@ -20,13 +20,13 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::{Derivatives, Plan, Step, StopRule};
 
-/// The dispatches of a plan, bound to a mesh on the device: encodes sweeps and evaluations, submits nothing.
+/// The dispatches of a plan, bound to a mesh on the device. They encode sweeps and evaluations, and submit nothing.
 pub(crate) struct Dispatches {
     pub(crate) plan: Plan,
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
-    /// One, or one for each part of the mesh; see [`Parts`].
+    /// One bind group, or one for each part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
     objective: Pipeline,
@@ -36,8 +36,8 @@ pub(crate) struct Dispatches {
     uniforms: Uniforms,
 }
 
-/// The steps and ranges of all dispatches, one uniform each: first those of sweeps, by step, then by color and part; then
-/// those of the triangles; then those of the free vertices.
+/// The uniforms of all dispatches, one for each: first those of sweeps, by step, then by color and part; then those of
+/// the triangles; then those of the free vertices.
 struct Uniforms {
     /// Every different step of the run.
     steps: Vec<Step>,
@@ -49,10 +49,10 @@ struct Uniforms {
     stride: u32,
 }
 
-/// Free vertices of one color whose one-rings are bound at once.
+/// Free vertices of one color whose one-rings fit one binding.
 struct ColorPart {
     color: u32,
-    /// The number of the part.
+    /// The number of the part of the mesh.
     part: usize,
     vertices: Range<u32>,
     ring_base: u32,
@@ -102,7 +102,7 @@ impl Uniforms {
         bytes
     }
 
-    /// The number of the first uniform of a step, if it is one of the run's.
+    /// Returns the number of the first uniform of a step, if it is one of the run's steps.
     fn of_step(&self, step: &Step) -> Option<usize> {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
@@ -117,8 +117,8 @@ impl Uniforms {
 }
 
 impl Dispatches {
-    /// Makes the pipelines and buffers of a plan whose sweeps are among `steps`. With `keep_best`, an evaluation keeps a
-    /// copy of the best positions.
+    /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, an evaluation
+    /// copies the best positions.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
@@ -151,7 +151,7 @@ impl Dispatches {
             let params = filled(gpu, "params", &[params], Usage::UNIFORM);
             let parts = filled(gpu, "parts", &uniforms.bytes(), Usage::UNIFORM);
             let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
-            // Zeros: not done, nothing evaluated.
+            // Zeros mean: not done, nothing evaluated.
             let control = zeroed(
                 gpu,
                 "control",
@@ -202,7 +202,7 @@ impl Dispatches {
     pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &Step) {
         let key = (step.metric, step.derivatives);
         let pipeline = self.sweeps.iter().find(|known| (known.0, known.1) == key);
-        // Both were made for every step of the run.
+        // Both exist, as they were created for every step of the run.
         let (Some((_, _, pipeline)), Some(first)) = (pipeline, self.uniforms.of_step(step)) else {
             debug_assert!(false, "no step of this run: {step:?}");
             return;

@@ -1,4 +1,4 @@
-//! The wgpu engine: several sweeps to a submission, judged on the device.
+//! The wgpu engine. It submits several sweeps at a time, which are judged on the device.
 
 use std::borrow::Cow;
 
@@ -22,18 +22,18 @@ use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
 
-/// A sum of q² - ideal² that is so large has a triangle in it that is not finite.
+/// If a sum of q² - ideal² is at least this large, a triangle is not finite.
 const LEAST_NOT_FINITE: f64 = 1e38;
-/// Number of totals that the objective along a correction leaves.
+/// Number of totals that the kernels of the objective along a correction compute.
 const TOTALS: usize = 4;
 
-/// The names of what a state of this engine holds: the free vertices' positions as pairs of floats, those of the best state, and the
-/// control block.
+/// Names of the data in a saved state of this engine: the free vertices' positions as pairs of floats, those of the
+/// best state, and the control block.
 const POSITIONS: &str = "positions";
 const BEST: &str = "best positions";
 const CONTROL: &str = "control";
 
-/// A mesh that is swept on a device.
+/// The state of a run on a device.
 pub(crate) struct GpuEngine<'a> {
     gpu: &'a Gpu,
     problem: &'a Problem,
@@ -45,17 +45,17 @@ pub(crate) struct GpuEngine<'a> {
     /// The hierarchy that the levels were made from.
     hierarchy: Option<Hierarchy>,
     waiting: Waiting,
-    /// Evaluations read back so far.
+    /// Number of evaluations read back so far.
     evaluated: u32,
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `start` (normalized and in the problem's order) and makes the pipelines
-    /// of `steps`, which are all that a run by the plan may take. The device ends [`Engine::sweeps`] by the plan's stop
-    /// rule.
+    /// Uploads the problem with its vertices at `start`, which is normalized and in the problem's order, and creates
+    /// the pipelines of `steps`: all steps that a run by the plan may take. The device ends [`Engine::sweeps`] by the
+    /// plan's stop rule.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the mesh is too large for the device, or what the device refuses.
+    /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
     pub(crate) fn new(
         gpu: &'a Gpu,
         problem: &'a Problem,
@@ -116,7 +116,7 @@ impl<'a> GpuEngine<'a> {
         control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
     }
 
-    /// Submits sweeps, with an evaluation in front if there was none yet, and adds the device's results to the history.
+    /// Submits sweeps, preceded by an evaluation if there was none yet, and adds the device's results to the history.
     async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
         let sweeps = |passes: &mut Passes<'_>| {
             if self.evaluated == 0 {
@@ -137,12 +137,13 @@ impl<'a> GpuEngine<'a> {
         Ok(())
     }
 
-    /// The objectives from the sums of one evaluation.
+    /// Returns the objectives, given the sums of one evaluation.
     fn objectives_of(&self, sums: &[[f32; 2]; SLOTS]) -> Objectives {
         let mut values = Objectives::untracked();
         for metric in self.dispatches.plan.tracked() {
             let sum = unpair(sums[metric as usize]);
-            // `NOT_FINITE` in objective.wgsl, of one triangle or more. Sums that are left to a device are far smaller.
+            // A larger sum holds `NOT_FINITE` of objective.wgsl for at least one triangle. Sums of finite triangles on
+            // a device are far smaller.
             let sum = if sum < LEAST_NOT_FINITE { sum } else { f64::NAN };
             let excess = sum / self.problem.triangles().len() as f64;
             values.set(metric, metric.ideal_squared() + excess);
@@ -150,8 +151,8 @@ impl<'a> GpuEngine<'a> {
         values
     }
 
-    /// All positions, given those of the free vertices on the device. A vertex that has not moved keeps the bits that it
-    /// had at the start, of which the device's pairs of floats do not hold all.
+    /// Returns all positions, given those of the free vertices on the device. A vertex that has not moved keeps the
+    /// bits of its start, of which the device's pairs of floats do not hold all.
     fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
         let mut positions = self.start.to_vec();
         for (position, now) in positions.iter_mut().zip(free) {
@@ -162,7 +163,7 @@ impl<'a> GpuEngine<'a> {
         positions
     }
 
-    /// The proposal that four totals of the objective along the correction make.
+    /// Returns the proposal, given the four totals of the objective along the correction.
     async fn proposal(&self, totals: Copied<'_, [f32; 2]>) -> Result<Proposal, GpuError> {
         let totals = totals.values(self.waiting).await?;
         let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
@@ -221,7 +222,7 @@ impl Engine for GpuEngine<'_> {
     }
 
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
-        // The old levels go first: both at once would take more memory than the mesh itself.
+        // The old levels are dropped first, as both at once would take more memory than the mesh itself.
         self.levels = None;
         let Self { gpu, problem, mesh, dispatches, secants, .. } = self;
         let levels = Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost)?;

@@ -21,7 +21,7 @@ use crate::metric::Smoothing;
 use crate::run::LEFT_OUT;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
-/// A hierarchy bound to a mesh on the device: encodes, submits nothing.
+/// A hierarchy bound to a mesh on the device. It encodes corrections and submits nothing.
 pub(crate) struct Levels {
     bind_groups: Vec<wgpu::BindGroup>,
     ops: wgpu::Buffer,
@@ -31,9 +31,9 @@ pub(crate) struct Levels {
     smoothing: Smoothing,
     /// What computes the gradient from the positions.
     find_gradient: Vec<Dispatch>,
-    /// What computes the correction from the gradient.
+    /// The dispatches that compute the correction from the gradient.
     correction: Vec<Dispatch>,
-    /// What leaves vertices out of the correction once, where there is a shape guard.
+    /// The dispatches that leave vertices of broken triangles out of the correction, once.
     left_out: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
@@ -47,7 +47,7 @@ pub(crate) struct Levels {
 
 /// When the levels are fitted to the present stiffness of the mesh.
 pub(crate) enum Fitting {
-    /// When the host hands others over.
+    /// When the host provides new levels.
     ByHost,
     /// In each correction, by a factor at each free vertex.
     EachTime,
@@ -68,7 +68,7 @@ enum Groups {
     Just(u32),
 }
 
-/// What a dispatch binds: a part of the mesh, pages of the structure and the values.
+/// The resources that a dispatch binds: a part of the mesh, or pages of the structure and of the values, or both.
 #[derive(Clone, Copy, PartialEq)]
 enum Bound {
     Fine { part: usize },
@@ -76,9 +76,9 @@ enum Bound {
     Coarse { structure: usize, values: usize },
 }
 
-/// The place of the four totals in `vectors`: the start, from where they are read back.
+/// Where the four totals are in `vectors`: at the start, as they are read back from there.
 const TOTALS: u32 = 0;
-/// The place of the partial sums in `vectors`. The vectors of the coarse levels follow.
+/// Where the partial sums begin in `vectors`. The vectors of the coarse levels follow.
 const SUMS: u32 = SEARCH_STATE;
 
 /// The content of the kernels' arrays, collected while the dispatches are listed.
@@ -99,7 +99,7 @@ impl Listing<'_> {
         at
     }
 
-    /// Places a matrix and the reciprocals of its diagonal, which may be empty.
+    /// Stores a matrix and the reciprocals of its diagonal, which may be empty.
     fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, LevelOp), GpuError> {
         let (structure, [starts, columns]) =
             self.structure.place([matrix.starts(), matrix.columns()])?;
@@ -127,8 +127,8 @@ impl Listing<'_> {
         Ok(Dispatch { pipeline, op, number, bind_group, groups })
     }
 
-    /// Lists the dispatches of one V-cycle over the levels. `right` is the place of the right-hand side; the place of the
-    /// solution is returned.
+    /// Lists the dispatches of one V-cycle over the levels. `right` is where the right-hand side begins in `vectors`;
+    /// returns where the solution begins.
     fn solve(
         &mut self,
         levels: &[Level],
@@ -148,7 +148,8 @@ impl Listing<'_> {
         let (other, step) = (self.vector(rows), self.vector(rows));
         let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
         let smoother = LevelOp { right, step, ..operator };
-        // Two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, one on to `to`.
+        // Lists two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, and one on to
+        // `to`.
         let smooth = |listing: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
             let [first, again, now] = CHEBYSHEV;
             let one = LevelOp { x: from, out: over, b: first, ..smoother };
@@ -170,7 +171,7 @@ impl Listing<'_> {
         Ok(end)
     }
 
-    /// out = right + M x.
+    /// Lists the dispatch of out = right + M x.
     fn matrix_vector(
         &mut self,
         matrix: &Sparse,
@@ -183,7 +184,7 @@ impl Listing<'_> {
         self.step(Kernel::MatrixVector, bound, Groups::ForRows, op)
     }
 
-    /// Makes the buffers, and the bind groups of the dispatches listed. `params` are those of the run on `mesh`.
+    /// Creates the buffers, and the bind groups of the listed dispatches. `params` are those of the run on `mesh`.
     fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
         let gpu = self.gpu;
         let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
@@ -238,7 +239,7 @@ struct Uploaded {
 }
 
 impl Levels {
-    /// Uploads a hierarchy and makes the pipelines it needs, for corrections of a run by its base metric.
+    /// Uploads a hierarchy and creates the pipelines for corrections of a run by its base metric.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if it is too large for the device.
@@ -277,7 +278,7 @@ impl Levels {
             Fitting::EachTime => listing.vector(problem.free_count()),
         };
         let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::default() };
-        // Lists a step on the free vertices, a dispatch for each part of the one-rings.
+        // Lists an operation on the free vertices, with one dispatch for each part of the one-rings.
         let by_rings =
             |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
                 for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
@@ -306,7 +307,7 @@ impl Levels {
 
         let mut left_out = Vec::new();
         if guard < NO_GUARD as f32 {
-            // Between cycles nothing in these vectors is needed any more.
+            // Between cycles these vectors hold nothing that is still needed.
             listing.vectors = listing.vectors.max(SUMS + free);
             let find = LevelOp { out: SUMS, shape_guard: guard, ..fine };
             let leave = LevelOp { x: SUMS, ..fine };
@@ -376,13 +377,13 @@ impl Levels {
         self.find_gradient.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Encodes the computation of the correction from the gradient, or from what stands in its place.
+    /// Encodes the computation of the correction from the gradient, or from the vector that replaces it.
     pub(crate) fn encode_cycle(&self, passes: &mut Passes<'_>) {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Encodes that vertices of triangles which would give way are left out of the correction. If `anew`, it is first computed
-    /// again without their gradients.
+    /// Encodes that vertices of triangles which the correction would break are left out of it. With `anew`, the
+    /// correction is first computed again without the gradients of these vertices.
     pub(crate) fn encode_left_out(&self, passes: &mut Passes<'_>, anew: bool) {
         let leave_out = |passes: &mut Passes<'_>| {
             self.left_out.iter().for_each(|step| self.encode(passes, step));
@@ -394,7 +395,7 @@ impl Levels {
         (0..LEFT_OUT).for_each(|_| leave_out(passes));
     }
 
-    /// Encodes the objective along the correction. The totals are then at the start of `vectors`.
+    /// Encodes the evaluation of the objective along the correction. The totals are then at the start of `vectors`.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
         self.encode(passes, &self.sum);
@@ -421,7 +422,7 @@ impl Levels {
         self.set_length(gpu, length)
     }
 
-    /// Sets how far what is submitted next goes along the correction.
+    /// Sets the step length along the correction for later submissions.
     pub(crate) fn set_length(&self, gpu: &Gpu, length: f32) -> Result<(), GpuError> {
         scoped(&gpu.device, || {
             let of_length = self.left_out.iter().chain(&self.objective).chain([&self.movement]);

@@ -1,4 +1,4 @@
-//! Many arrays in few buffers, none larger than what the device binds.
+//! Stores many arrays in few buffers, none larger than a binding of the device may be.
 
 use wgpu::BufferUsages as Usage;
 
@@ -7,23 +7,24 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
 use crate::gpu::device::size::check_limit;
 
-/// Arrays, page by page; each page becomes a buffer.
+/// Arrays, grouped into pages. Each page becomes a buffer.
 pub(crate) struct Pages<T> {
     what: &'static str,
-    /// Bytes of a page at the most.
+    /// The largest size of a page, in bytes.
     most: u64,
     pages: Vec<Vec<T>>,
 }
 
 impl<T: bytemuck::NoUninit> Pages<T> {
-    /// No arrays yet. `what` names their content in labels and errors.
+    /// Makes pages without any arrays. `what` names their content in labels and errors.
     pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
         let limits = gpu.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         Self { what, most, pages: vec![Vec::new()] }
     }
 
-    /// Places arrays that a kernel binds together. Returns their page, and where in it each of them starts.
+    /// Places arrays that a kernel binds together. Returns the number of their page, and where in it each of them
+    /// starts.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if they do not fit one page.

@@ -17,14 +17,14 @@ use crate::gpu::run::levels::Levels;
 use crate::gpu::scope::scoped;
 use crate::run::EngineState;
 
-/// Scalars in front of the partial sums in the buffer of sums, as in shaders/secants/common.wgsl.
+/// Number of scalars in front of the partial sums in the buffer of sums, as in shaders/secants/common.wgsl.
 const SCALARS: u32 = 4;
 
-/// Names of what a state of the engine holds of the pairs.
+/// Names of the data of the pairs in a saved state of the engine.
 const STEPS: &str = "steps";
 const OP: &str = "secants";
 
-/// Two secant pairs bound to a mesh and its levels: encodes, submits nothing.
+/// Two secant pairs bound to a mesh and its levels. They encode dispatches and submit nothing.
 pub(crate) struct Secants {
     bind_group: wgpu::BindGroup,
     ops: wgpu::Buffer,
@@ -41,7 +41,7 @@ pub(crate) struct Secants {
 }
 
 impl Secants {
-    /// Pairs of which none is there yet; `None` if the device cannot bind them.
+    /// Creates an empty set of pairs; `None` if the device cannot bind them.
     pub(crate) fn new(
         gpu: &Gpu,
         mesh: &MeshBuffers,
@@ -62,7 +62,7 @@ impl Secants {
         let multiply = pipeline(Kernel::MultiplyCorrection)?;
         let open = pipeline(Kernel::OpenSecant)?;
         let partials = objective_invocations(free as usize);
-        // The first pair opens in the place of the older one.
+        // The first pair opens in the slot of the older one.
         let op = SecantOp { free, newer: free, partials, ..SecantOp::default() };
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<SecantOp>() as u32).next_multiple_of(alignment);
@@ -99,14 +99,15 @@ impl Secants {
         Ok(())
     }
 
-    /// The names of the buffers in a state of the engine, and how many pairs of floats each has there.
+    /// The names of the buffers in a saved state of the engine, and the number of pairs of floats that it holds of
+    /// each.
     fn parts(&self) -> [(&'static str, usize); 4] {
         let free = self.op.free as usize;
-        // Of the sums only the scalars outlive a correction.
+        // Of the sums, only the scalars are needed after a correction.
         [(STEPS, 2 * free), ("changes", 2 * free), ("starts", free), ("sums", SCALARS as usize)]
     }
 
-    /// Adds the pairs to a state of the engine.
+    /// Adds the pairs to a saved state of the engine.
     pub(crate) async fn save(
         &self,
         gpu: &Gpu,
@@ -120,12 +121,13 @@ impl Secants {
         Ok(())
     }
 
-    /// Whether a state of the engine holds pairs.
+    /// Whether a saved state of the engine holds pairs.
     pub(crate) fn are_in(state: &EngineState) -> bool {
         state.own.iter().any(|(name, _)| name == STEPS)
     }
 
-    /// Takes the pairs from a state of the engine. Returns whether it holds them, for as many vertices.
+    /// Restores the pairs from a saved state of the engine. Returns whether it holds them for the same number of
+    /// vertices.
     pub(crate) fn restore(&mut self, gpu: &Gpu, state: &EngineState) -> Result<bool, GpuError> {
         let Some([op]) = state.own::<SecantOp>(OP, 1).and_then(|ops| <[_; 1]>::try_from(ops).ok())
         else {
@@ -192,7 +194,7 @@ impl Secants {
     }
 }
 
-/// The bind group of pairs: `buffers` are the steps, changes, low starts and sums.
+/// Creates the bind group of pairs. `buffers` are the steps, changes, low starts and sums.
 fn bound(
     gpu: &Gpu,
     mesh: &MeshBuffers,

@@ -1,4 +1,4 @@
-//! The stiffness of the base metric at the free vertices, found on the device.
+//! Computes the stiffness of the base metric at the free vertices on the device.
 
 use wgpu::BufferUsages as Usage;
 
@@ -41,7 +41,7 @@ pub(crate) async fn roots(
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
         let size = u64::from(op.free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
-        // The kernel has no use for these two bindings of its interface.
+        // The kernel does not use these two bindings of its interface.
         let [direction, vectors] = ["no correction", "no vectors"]
             .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
         let label = "gpu-smooth stiffness";

@@ -7,12 +7,12 @@ use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::yielding::yield_now;
 
-/// Number of corrections tried after which the levels are fitted to the stiffness of the mesh again, if that has changed. Once
-/// corrections are accelerated, they are whenever it has: vertices then move far, and levels that stay as they were built gain
-/// little (a layer that opens up took three times the sweeps).
+/// Number of corrections tried after which the levels are fitted again, if the stiffness of the mesh has changed.
+/// Accelerated corrections fit them whenever it has changed: vertices then move far, and levels that stay as they were
+/// built gain little (a layer that opens up took three times the sweeps).
 const REFIT_AFTER: u32 = 2;
-/// The stiffness is taken to have changed if the excess of f has dropped by more than this share since the levels were built or
-/// fitted.
+/// The stiffness counts as changed if the excess of f has dropped by more than this share since the levels were built
+/// or fitted.
 const REFIT_IF: f64 = 0.15;
 /// Once corrections are accelerated, the levels are built anew when the excess of f has dropped by more than this share since they
 /// were built: the factors by which they are fitted are only close to the Galerkin operators. So there are at most four fits
@@ -30,8 +30,8 @@ pub(super) enum Change {
 }
 
 impl Corrections<'_> {
-    /// What becomes of the levels before the next correction, of which `proposed` were tried in this stage. `now` is the index
-    /// of the last evaluation.
+    /// Decides how the levels change before the next correction. `proposed` is the number of corrections tried in this
+    /// stage, `now` the index of the last evaluation.
     pub(super) fn change_of_levels(
         &self,
         history: &History,
@@ -54,8 +54,8 @@ impl Corrections<'_> {
         }
     }
 
-    /// Builds the levels or fits them to the present stiffness, and hands them to the engine. Returns whether it has room for
-    /// them. `now` is the index of the last evaluation.
+    /// Builds the levels, or fits them to the present stiffness, and hands them to the engine. Returns whether the
+    /// engine has room for them. `now` is the index of the last evaluation.
     pub(super) async fn change_levels(
         &mut self,
         engine: &mut impl Engine,
@@ -63,7 +63,7 @@ impl Corrections<'_> {
         now: usize,
     ) -> Result<bool, GpuError> {
         yield_now().await;
-        // Levels that are not used again are freed before new ones are built.
+        // Levels that are not needed again are freed before new ones are built.
         let before = engine.take_hierarchy().filter(|_| change == Change::Fit);
         self.fitted = now;
         if before.is_none() {

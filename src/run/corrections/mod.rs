@@ -26,42 +26,43 @@ const MANY_SWEEPS: usize = 12;
 /// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
 /// perturbed and smoothly distorted meshes of 2,000 to a million vertices.
 const OMEGA_BEFORE: f64 = 1.5;
-/// Over-relaxation of sweeps before corrections begin where metrics alternate: each would have to undo the overshoot of the
-/// one before.
+/// Over-relaxation of sweeps before corrections begin, if metrics alternate: each metric would have to undo the
+/// overshoot of the one before.
 const OMEGA_ALTERNATING: f64 = 1.0;
 /// Over-relaxation of sweeps that are followed by corrections. Chosen by the same measurements as [`OMEGA_BEFORE`].
 pub(crate) const OMEGA_BETWEEN: f64 = 1.3;
-/// A correction that is shorter than this counts as refused, though it is taken: it hardly helps. One for EDGE, of which lengths
-/// are a tenth of what they are otherwise, as its p-norm is stiffer across its kinks than the levels know.
+/// A correction shorter than this helps so little that it counts as refused, though it is taken. For EDGE lengths are a
+/// tenth of the usual ones, as its p-norm is stiffer across its kinks than the levels assume.
 const SHORT: f64 = 0.05;
 const SHORT_FOR_EDGE: f64 = 0.005;
-/// As [`LEAST_FIRST`], for EDGE.
+/// The least length that is tried first for EDGE; see [`LEAST_FIRST`] for other metrics.
 const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
-/// After this many refused corrections in a row, the run goes back to sweeps alone.
+/// Number of refused corrections in a row after which the run goes back to sweeps alone.
 const MOST_REFUSED: u32 = 2;
 /// The least number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
-/// How many times corrections can begin. If they are refused the last time, the run ends with sweeps alone.
+/// The most times that corrections can begin. If they are refused the last time, the run ends with sweeps alone.
 const ATTEMPTS: u32 = 5;
 
-/// A run is over if corrections have nothing to gain and a sweep gains less than this share of the tolerance.
+/// A run ends if a correction is expected to gain nothing and a sweep gains less than this share of the tolerance.
 const SWEPT: f64 = 0.1;
 
-/// A window longer than any history: turns off the tests of the stop rule that look at the decay.
+/// A window longer than any history. It turns off the tests of the stop rule that depend on the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
-/// Corrections are accelerated once the slope along one is more than this share of that along the one before: on most
-/// meshes it falls to a sixth or less each time, and there is nothing to gain.
+/// Corrections are accelerated once the slope along one is more than this share of the slope along the one before. On
+/// most meshes it falls to a sixth or less each time, and there is nothing to gain.
 const ACCELERATED_FROM: f64 = 0.3;
 
-/// A run with accelerated corrections is over when as many estimates in a row say so, as its gains are irregular. One is
-/// enough if the last gains were each less than [`STEADY`] of the one before.
+/// Number of estimates in a row that must agree before a run with accelerated corrections ends, as its gains are
+/// irregular. One is enough if the last gains were each less than [`STEADY`] times the one before.
 const ESTIMATES: usize = 4;
 /// As many for EDGE, where they are of a p-norm that is near f by itself.
 const ESTIMATES_FOR_EDGE: usize = 2;
 const STEADY: f64 = 0.3;
-/// Factor on these estimates: after gains that halved each time, some runs were left with modes that the last ones had not touched.
-/// With three estimates and without the factor, 5 of 21 runs from hard starts said less than was left, by up to a third.
+/// Factor on these estimates. Some runs gained half as much each time and were left with modes that the last
+/// corrections had not touched. With three estimates and without the factor, 5 of 21 runs from hard starts estimated
+/// too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
 /// The state of a run with corrections from coarser levels.
@@ -69,7 +70,7 @@ pub(crate) struct Corrections<'a> {
     problem: &'a Problem,
     plan: &'a Plan,
     stage: Stage,
-    /// How many times corrections have begun.
+    /// Number of times that corrections have begun.
     attempts: u32,
     /// Number of corrections taken.
     taken: u32,
@@ -81,8 +82,8 @@ pub(crate) struct Corrections<'a> {
     slope: Option<f64>,
     /// log2 of the present exponent of EDGE's p-norm.
     sharpness: u32,
-    /// The objective that corrections lower, f or EDGE's p-norm, before the present stage and after each of its sweeps. What
-    /// the p-norm is before the stage is not known.
+    /// The objective that corrections lower, f or EDGE's p-norm, after each sweep of the present stage. For f it begins
+    /// with the value before the stage; that of the p-norm is not known.
     lowered: Vec<f64>,
     /// Whether corrections are accelerated by secant pairs.
     accelerated: bool,
@@ -93,29 +94,31 @@ pub(crate) struct Corrections<'a> {
     /// The indices in the history at which the levels were built, and at which they were last built or fitted.
     built: usize,
     fitted: usize,
-    /// The latest estimates of the share of f that is left to gain, infinite where there is none.
+    /// The latest estimates of the share of f that is left to gain, infinite if there is none.
     estimates: [f64; ESTIMATES],
-    /// Why there are no corrections, if the engine has no room for the levels.
+    /// The error if there are no corrections, as the engine has no room for the levels.
     left_out: Option<GpuError>,
-    /// Whether that was so before the run went on from a saved state.
+    /// Whether the engine had no room for the levels before the run continued from a saved state.
     was_left_out: bool,
 }
 
 /// The stage of a run. `since` and `until` are indices in the history.
 #[derive(Clone, Copy)]
 enum Stage {
-    /// Sweeps alone, at least up to `until`, and then as long as they pay: by the metrics of the scheme in turn, by the base metric
-    /// once corrections have been tried.
+    /// Sweeps alone, at least up to `until`, and then as long as they gain enough: by the metrics of the scheme in
+    /// turn, or by the base metric once corrections have been tried.
     Before { until: usize },
-    /// Each sweep, by the base metric, is followed by a correction. `length` is the last one taken, `proposed` the number of corrections
-    /// tried in this stage, `refused` how many of the latest were refused in a row.
+    /// Each sweep, by the base metric, is followed by a correction. `length` is that of the last correction taken,
+    /// `proposed` the number of corrections tried in this stage, and `refused` the number of refused ones in a row at
+    /// the end.
     Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
-    /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the levels.
+    /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the
+    /// levels.
     Without { since: usize },
 }
 
 impl<'a> Corrections<'a> {
-    /// The start of a run.
+    /// Makes the state at the start of a run.
     pub(crate) fn new(problem: &'a Problem, plan: &'a Plan) -> Self {
         Self {
             problem,
@@ -139,7 +142,7 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// All distinct steps that a run can take.
+    /// Lists all distinct steps that a run can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
         let base = plan.scheme.base();
         let by_base = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, base.properties().omega];
@@ -154,7 +157,7 @@ impl<'a> Corrections<'a> {
         exponents(plan).flat_map(of_exponent).collect()
     }
 
-    /// Does up to `sweeps` further sweeps; fewer if the run ends.
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -185,22 +188,22 @@ impl<'a> Corrections<'a> {
         Ok(())
     }
 
-    /// Number of sweeps in which the metrics of the scheme took turns, if these are over.
+    /// Returns the number of sweeps in which the metrics of the scheme took turns, once these are over.
     pub(crate) fn alternated(&self) -> Option<u32> {
         (self.attempts > 0).then_some(self.alternated)
     }
 
-    /// Number of corrections taken so far.
+    /// Returns the number of corrections taken so far.
     pub(crate) fn taken(&self) -> u32 {
         self.taken
     }
 
-    /// Why the run does without corrections, if the engine has no room for the levels.
+    /// Returns the error if the run has no corrections, as the engine has no room for the levels.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         self.left_out.as_ref()
     }
 
-    /// Whether the run does without corrections because the engine has no room for the levels.
+    /// Whether the run has no corrections, as the engine has no room for the levels.
     pub(crate) fn is_left_out(&self) -> bool {
         self.was_left_out || self.left_out.is_some()
     }
@@ -209,18 +212,18 @@ impl<'a> Corrections<'a> {
         self.plan.scheme.base()
     }
 
-    /// A step of the base metric, with the present exponent.
+    /// Returns a step of the base metric, with the present exponent.
     fn step(&self, omega: f64) -> Step {
         self.plan.step_with(self.metric(), omega, self.sharpness)
     }
 
-    /// The metrics of sweeps alone, in turn. They alternate until corrections have begun once.
+    /// Returns the metrics of sweeps alone, in turn. They alternate until corrections have begun once.
     fn turns(&self) -> &[Metric] {
         let metrics = self.plan.scheme.metrics();
         if self.attempts == 0 { metrics } else { &metrics[..1] }
     }
 
-    /// The step of a sweep alone, of which `done` were done.
+    /// Returns the step of a sweep alone, after `done` of them.
     fn step_before(&self, done: usize) -> Step {
         let turns = self.turns();
         let omega = match done {
@@ -241,7 +244,7 @@ impl<'a> Corrections<'a> {
         self.stage = Stage::Correcting { since: done, length, proposed: 0, refused: 0 };
     }
 
-    /// One sweep before corrections. Decides whether they begin with the next.
+    /// Does one sweep before corrections. Decides whether they begin with the next.
     async fn sweep_before(
         &mut self,
         engine: &mut impl Engine,
@@ -251,7 +254,7 @@ impl<'a> Corrections<'a> {
         let done = history.f().len();
         engine.sweep(&self.step_before(done - 1)).await?;
         let objectives = engine.objectives().await?;
-        // Compared with the last sweep by the same metric, where metrics alternate.
+        // If metrics alternate, compares with the last sweep by the same metric.
         let period = self.turns().len();
         let last = self.excess(history, done.saturating_sub(period));
         let f = objectives.of(self.metric()).unwrap_or(f64::NAN);
@@ -272,14 +275,14 @@ impl<'a> Corrections<'a> {
         Ok(objectives)
     }
 
-    /// One sweep when corrections are over.
+    /// Does one sweep after corrections have ended.
     async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
         let own = self.metric().properties().omega;
         engine.sweep(&self.step(own)).await?;
         engine.objectives().await
     }
 
-    /// One sweep with a correction after it, if one lowers the objective.
+    /// Does one sweep and then a correction, if one lowers the objective.
     async fn sweep_and_correct(
         &mut self,
         engine: &mut impl Engine,
@@ -305,8 +308,8 @@ impl<'a> Corrections<'a> {
             proposal = engine.leave_out(length, !self.accelerated).await?;
         }
         let Proposal { here, slope, there } = proposal;
-        // The slope is the squared norm of the gradient, as the levels weigh it: about twice what is left to gain in what
-        // is smooth. The rest is left to sweeps, which take most of it each.
+        // The slope is the squared norm of the gradient, weighted by the levels: about twice what is left to gain in
+        // smooth modes. The other modes are left to sweeps, each of which removes most of them.
         let ideal = self.metric().ideal_squared();
         let scale = (here + ideal).max(LEAST_SCALE);
         let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
@@ -328,7 +331,7 @@ impl<'a> Corrections<'a> {
             }
             None => (here, last_length, refused + 1),
         };
-        // A direction that fails may do so because of what was remembered. It is forgotten.
+        // The secant pairs may be the reason why a direction fails, so they are dropped.
         let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
         self.accelerated = (self.accelerated || slow) && refused == 0;
         self.slope = Some(slope);
@@ -341,7 +344,7 @@ impl<'a> Corrections<'a> {
             _ => Stage::Correcting { since, length, proposed: proposed + 1, refused },
         };
         self.lowered.push(ideal + excess);
-        // Where f may rise, the engine keeps the best state as it evaluates the objectives.
+        // If f may rise, the engine stores the best state when it evaluates the objectives.
         if self.plan.track_all || !self.plan.is_monotone() {
             return engine.objectives().await;
         }
@@ -350,7 +353,7 @@ impl<'a> Corrections<'a> {
         Ok(objectives)
     }
 
-    /// The excess of the base objective over its ideal value, at an index of the history.
+    /// Returns the excess of the base objective over its ideal value, at an index of the history.
     fn excess(&self, history: &History, evaluation: usize) -> f64 {
         history.f()[evaluation] - self.metric().ideal_squared()
     }
@@ -358,11 +361,11 @@ impl<'a> Corrections<'a> {
     /// Records objectives and applies the stop rule to the present stage.
     fn record(&mut self, objectives: Objectives, history: &mut History) {
         history.add(objectives);
-        // The decay is extrapolated from the present stage alone, with the last exponent alone. A window of one sweep is
-        // enough with corrections, as they leave no slow modes.
+        // The decay is extrapolated from the present stage only, and from the last exponent only. With corrections a
+        // window of one sweep is enough, as they leave no slow modes.
         let (of_stage, window) = match self.stage {
             Stage::Before { .. } => (history.f(), NO_ESTIMATE),
-            // A refused correction gains little whatever is left to gain.
+            // A refused correction gains little, however much is left to gain.
             Stage::Correcting { refused: 1.., .. } => (&self.lowered[..], NO_ESTIMATE),
             Stage::Correcting { .. } => (&self.lowered[..], 1),
             Stage::Without { since } => {
@@ -370,7 +373,7 @@ impl<'a> Corrections<'a> {
             }
         };
         let window = if self.is_sharpest() { window } else { NO_ESTIMATE };
-        // What corrections lower need not be f, which the goal and the number of sweeps do not go by.
+        // Corrections may lower another objective than f, but the goal and the number of sweeps refer to f.
         let rule = history.rule();
         let of_f = StopRule { tolerance: 0.0, ..rule }.judge(history.f(), 0, NO_ESTIMATE);
         let target = rule.target.map(|_| f64::NEG_INFINITY);
@@ -411,13 +414,13 @@ impl<'a> Corrections<'a> {
     }
 }
 
-/// The index of the least value, the first of several.
+/// Returns the index of the least value, the first if there are several.
 fn least(values: &[f64]) -> usize {
     let indices = 0..values.len();
     indices.min_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
 }
 
-/// Whether the last two gains of f were each less than [`STEADY`] of the one before.
+/// Whether the last two gains of f were each less than [`STEADY`] times the one before.
 fn decays_steadily(f: &[f64]) -> bool {
     let [.., a, b, c, d] = f else { return false };
     let gains = [a - b, b - c, c - d];

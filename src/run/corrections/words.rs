@@ -1,10 +1,10 @@
-//! What decides how a corrected run goes on, as words of a checkpoint.
+//! The state of a corrected run as words of a checkpoint.
 
 use super::exponent::exponents;
 use super::{Corrections, ESTIMATES, Stage};
 
 impl Corrections<'_> {
-    /// All that decides how the run goes on, as numbers that [`restore`](Self::restore) understands.
+    /// Returns the state that decides how the run continues, as numbers for [`restore`](Self::restore).
     pub(crate) fn save(&self) -> Vec<u64> {
         let (stage, at, length, proposed, refused) = match self.stage {
             Stage::Before { until } => (0, until, 0.0, 0, 0),
@@ -26,8 +26,8 @@ impl Corrections<'_> {
         words
     }
 
-    /// Takes on what [`save`](Self::save) gave after `evaluations`. Without levels, they are built before the next correction.
-    /// Returns whether the words make sense.
+    /// Restores the state from the numbers that [`save`](Self::save) returned after `evaluations`. Without levels, they
+    /// are built before the next correction. Returns whether the words are valid.
     pub(crate) fn restore(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> bool {
         let Some(([stage, at, length, attempts, taken, proposed, refused], rest)) =
             words.split_first_chunk()
@@ -62,7 +62,7 @@ impl Corrections<'_> {
         if self.lowered.len() > evaluations || !self.lowered.iter().all(|f| f.is_finite()) {
             return false;
         }
-        // Nothing can have happened more often than there were sweeps.
+        // No event can have happened more often than there were sweeps.
         let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
         let (
             Some(attempts),

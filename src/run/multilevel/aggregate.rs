@@ -1,6 +1,6 @@
 //! Aggregates: groups of unknowns of one level, each a single unknown of the next coarser level.
 
-/// Stands for no aggregate, at an unknown that belongs to none.
+/// The aggregate of an unknown that belongs to none.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Disjoint groups of neighboring unknowns.
@@ -13,9 +13,9 @@ pub(crate) struct Aggregates {
 }
 
 impl Aggregates {
-    /// Makes a group of each unknown and all its neighbors if none of them is in a group yet. Unknowns left over then
-    /// join a neighboring group (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation a
-    /// group has eight or nine members.
+    /// Makes a group of each unknown and all its neighbors, unless one of them is in a group already. Unknowns left
+    /// over then join a neighboring group (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation a group has
+    /// eight or nine members.
     pub(crate) fn new<N: Iterator<Item = u32>>(
         unknowns: usize,
         neighbors: impl Fn(usize) -> N,
@@ -45,7 +45,7 @@ impl Aggregates {
         Self { of, count: count as usize }
     }
 
-    /// Lets each unknown that is in no group join that of the first of these neighbors that is in one.
+    /// Lets each unknown without a group join the group of the first of the given neighbors that has one.
     pub(crate) fn with_the_rest<N: Iterator<Item = u32>>(
         mut self,
         neighbors: impl Fn(usize) -> N,
@@ -58,7 +58,8 @@ impl Aggregates {
         self
     }
 
-    /// The members of each group as compressed rows: where each group starts, with one past the last, and all members.
+    /// Returns the members of each group as compressed rows: where each group starts, with one past the last, and all
+    /// members.
     pub(crate) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let grouped = || self.of.iter().enumerate().filter(|(_, group)| **group != NONE);
         let mut start = vec![0u32; self.count + 1];
@@ -105,7 +106,7 @@ mod tests {
 
     #[test]
     fn whoever_is_left_over_joins_a_neighbor() {
-        // A path of four, and a vertex that none of them takes for a neighbor.
+        // A path of four, and a vertex that is not in the lists of neighbors of the others.
         let neighbors = |k: usize| {
             let (before, after) = (k.checked_sub(1), Some(k + 1).filter(|&n| n < 4));
             before.into_iter().chain(after).filter(move |_| k < 4).map(|n| n as u32)

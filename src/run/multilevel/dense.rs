@@ -2,7 +2,7 @@
 
 use crate::run::multilevel::sparse::Sparse;
 
-/// The inverse of a symmetric positive definite matrix, in row-major order.
+/// Returns the inverse of a symmetric positive definite matrix, in row-major order.
 ///
 /// If rounding has made a pivot small or negative, the row and column of its unknown are zero.
 pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
@@ -13,7 +13,7 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
             lower[row * n + column] = f64::from(value);
         }
     }
-    // The Cholesky factor, in place.
+    // Computes the Cholesky factor in place.
     for j in 0..n {
         let diagonal = lower[j * n + j];
         let square = diagonal - (0..j).map(|k| lower[j * n + k].powi(2)).sum::<f64>();
@@ -26,7 +26,8 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
             row_i[j] = if pivot.is_finite() { (row_i[j] - dot) / pivot } else { 0.0 };
         }
     }
-    // The inverse of the factor, in column-major order. The product of its transpose with it is the inverse.
+    // The inverse of the factor, in column-major order. The inverse of the matrix is the product of its transpose with
+    // itself.
     let mut columns = vec![0.0f64; n * n];
     for c in 0..n {
         columns[c * n + c] = 1.0 / lower[c * n + c];

@@ -12,7 +12,7 @@ const DIRECT: usize = 96;
 /// Damping factor of the Jacobi step that smooths the prolongation.
 pub(crate) const SMOOTHING: f32 = 0.9;
 
-/// Factors of two steps of the Chebyshev iteration for D⁻¹A, over [0.45, 1.8]: the upper three quarters of its
+/// Coefficients of two steps of the Chebyshev iteration for D⁻¹A over [0.45, 1.8], the upper three quarters of its
 /// spectrum, which is assumed to end at 1.8. In order: the factor of D⁻¹r in the first step d, then the factors of d
 /// and of D⁻¹r in the second step.
 pub(crate) const CHEBYSHEV: [f32; 3] = {
@@ -32,7 +32,7 @@ pub(crate) struct Hierarchy {
     member_start: Vec<u32>,
     member: Vec<u32>,
     root: Vec<f32>,
-    /// The roots that the levels were built from and fitted to before `root`, in that order.
+    /// The roots that the levels were built from and then fitted to, in this order, before `root`.
     earlier: Vec<Vec<f32>>,
     inverse_diagonal: Vec<f32>,
     levels: Vec<Level>,
@@ -41,38 +41,39 @@ pub(crate) struct Hierarchy {
 /// A level coarser than the free vertices.
 pub(crate) struct Level {
     pub(crate) operator: Sparse,
-    /// The reciprocals of the operator's diagonal.
+    /// The reciprocals of the diagonal entries of the operator.
     pub(crate) inverse_diagonal: Vec<f32>,
     pub(crate) coarser: Coarser,
 }
 
-/// What is below a level.
+/// The next coarser level, or how this one is solved.
 pub(crate) enum Coarser {
-    /// A level of fewer unknowns, and the transfer to it.
+    /// A level with fewer unknowns, and the transfer to it.
     Level { prolongation: Sparse, restriction: Sparse },
-    /// Nothing: the level is solved by the inverse of its operator, in row-major order.
+    /// No further level: this one is solved by the inverse of its operator, in row-major order.
     Direct(Vec<f32>),
-    /// Nothing: no two unknowns are neighbors, so smoothing is enough.
+    /// No further level: no two unknowns are neighbors, so smoothing is enough.
     Nothing,
 }
 
 impl Hierarchy {
-    /// Builds the levels. The weight of an edge is the product of the `roots` of its ends, one for each free vertex: the
-    /// square roots of the objective's stiffness there.
+    /// Builds the levels. `roots` has the square root of the objective's stiffness at each free vertex. The weight of
+    /// an edge is the product of the roots at its ends.
     pub(crate) fn new(problem: &Problem, roots: Vec<f32>) -> Self {
         Self::with_roots(problem, || usable(roots))
     }
 
-    /// Builds the levels, with the reciprocals of the areas that elements should have at each vertex as weights.
+    /// Builds the levels for untangling. The weights are the reciprocals of the areas that elements should have at each
+    /// vertex.
     pub(crate) fn of_sizes(problem: &Problem, areas: &[f64]) -> Self {
         Self::with_roots(problem, || {
             areas[..problem.free_count()].iter().map(|area| (0.5 / area).sqrt() as f32).collect()
         })
     }
 
-    /// Builds the levels with weights by the square roots that `roots` gives for the free vertices.
+    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices.
     fn with_roots(problem: &Problem, roots: impl FnOnce() -> Vec<f32> + Send) -> Self {
-        // Aggregation is serial, so the weights are computed beside it.
+        // Aggregation is serial, so the weights are computed at the same time.
         let (aggregates, root) = rayon::join(|| aggregates(problem), roots);
         let (member_start, member) = aggregates.members();
         let mut hierarchy = Self {
@@ -89,9 +90,9 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fits the levels to new `roots`. Aggregates stay, and couplings between them are scaled by the average change of
-    /// their members. Roots change by nearly the same factors in neighboring aggregates, so this is close to the Galerkin
-    /// operator at a small part of the work.
+    /// Fits the levels to new `roots`. Aggregates stay the same, and couplings between them are scaled by the average
+    /// change of their members. Roots change by nearly the same factors in neighboring aggregates, so this is close to
+    /// the Galerkin operator at a small part of the work.
     pub(crate) fn fitted_to(mut self, problem: &Problem, roots: Vec<f32>) -> Self {
         let root = usable(roots);
         let mean = |members: &[u32]| {
@@ -117,13 +118,13 @@ impl Hierarchy {
         self
     }
 
-    /// All that it takes to make the same levels again: the roots that they were built from, and then those that they were
-    /// fitted to, one after the other.
+    /// Returns the data from which the same levels can be made again: the roots that they were built from, and then
+    /// those that they were fitted to, in order.
     pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }
 
-    /// The levels of a [`recipe`](Self::recipe); `None` if it is empty or of another mesh.
+    /// Makes the levels of a [`recipe`](Self::recipe). `None` if it is empty or from another mesh.
     pub(crate) fn of_recipe(problem: &Problem, recipe: &[Vec<f32>]) -> Option<Self> {
         let (built_from, fitted_to) = recipe.split_first()?;
         if recipe.iter().any(|roots| roots.len() != problem.free_count()) {
@@ -133,22 +134,22 @@ impl Hierarchy {
         Some(fitted_to.iter().fold(built, |levels, roots| levels.fitted_to(problem, roots.clone())))
     }
 
-    /// The reciprocal of each free vertex's diagonal entry, from the weights.
+    /// Returns the reciprocal of each free vertex's diagonal entry, which follows from the weights.
     fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
             |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
         collect(problem.free_count(), |v| 1.0 / diagonal(v))
     }
 
-    /// The Galerkin operator on the aggregates. The prolongation to the vertices is not kept, as it follows from
-    /// the aggregates and the one-rings.
+    /// Returns the Galerkin operator on the aggregates. The prolongation to the vertices is not stored, as it follows
+    /// from the aggregates and the one-rings.
     fn first_coarse_operator(&self, problem: &Problem) -> Sparse {
         let free = problem.free_count();
         let of = &self.aggregates.of;
         let free_neighbors =
             |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
-        // The weight of an edge is the product of two roots, so A = R (E - N) R with R the diagonal matrix of the
-        // roots, E diagonal, and N the adjacency matrix. So `prolongation` here is R P, and the matrix in the
+        // The weight of an edge is the product of two roots, so A = R (E - N) R, with R the diagonal matrix of the
+        // roots, E diagonal, and N the adjacency matrix. Therefore `prolongation` is R P here, and the matrix in the
         // product is E - N, with entries -1 off the diagonal.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
@@ -170,11 +171,11 @@ impl Hierarchy {
         })
     }
 
-    /// The weight of the edge from a free vertex `v` to its neighbor `k`.
+    /// Returns the weight of the edge from a free vertex `v` to its neighbor `k`.
     #[inline]
     pub(crate) fn weight(&self, v: usize, k: usize) -> f32 {
         let near = self.root[v];
-        // Fixed vertices have no root. The free vertex's is used for both.
+        // Fixed vertices have no root, so the free vertex's root is used twice.
         near * self.root.get(k).copied().unwrap_or(near)
     }
 
@@ -210,7 +211,7 @@ impl Hierarchy {
     }
 }
 
-/// The coarse levels, given the operator of the finest of them.
+/// Makes the coarse levels, given the operator of the finest of them.
 fn levels(mut operator: Sparse) -> Vec<Level> {
     let mut levels = Vec::new();
     loop {
@@ -252,9 +253,9 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
     }
 }
 
-/// The aggregates of the free vertices. Where weights are equal, the share that [`STRONG`] bounds is one over the geometric
-/// mean of the numbers of neighbors. So a vertex of fifty makes no aggregate with all its neighbors: their corrections would
-/// be one, and the prolongation to it could not be smoothed.
+/// Makes the aggregates of the free vertices. With equal weights, the share that [`STRONG`] bounds is the inverse of
+/// the geometric mean of the numbers of neighbors. So a vertex with fifty neighbors does not form one aggregate with
+/// all of them: they would share one correction, and the prolongation to that vertex could not be smoothed.
 fn aggregates(problem: &Problem) -> Aggregates {
     let free = problem.free_count();
     let degree = |v: u32| problem.ring_of(v).len() as f32;
@@ -272,7 +273,8 @@ fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
     problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
 }
 
-/// Roots with those replaced by the least that are no finite numbers above zero, so that every weight is one.
+/// Replaces roots that are not positive and finite by the least of the others, so that every weight is positive and
+/// finite.
 fn usable(mut roots: Vec<f32>) -> Vec<f32> {
     let is_usable = |root: &f32| *root > 0.0 && *root < f32::INFINITY;
     let least = roots.iter().copied().filter(is_usable).fold(f32::INFINITY, f32::min);

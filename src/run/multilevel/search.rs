@@ -1,19 +1,18 @@
 //! The line search along a correction.
 
-/// The most lengths tried along one correction.
+/// The most lengths that are tried along one correction.
 const TRIALS: u32 = 8;
 /// Share of the predicted decrease that a trial must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// The first length tried is good enough if the minimum of the fitted parabola differs from it by no more than this
-/// share.
+/// The first length tried is good enough if it differs from the minimum of the fitted parabola by at most this share.
 pub(crate) const CLOSE: f64 = 0.2;
 
-/// The least length that is tried first along a correction by a smooth metric, as a single nearly flat triangle may have shortened
-/// the last one; and the most.
+/// The least and the largest length that is tried first along a correction by a smooth metric. The last length taken
+/// may be shorter because of a single nearly flat triangle.
 pub(crate) const LEAST_FIRST: f64 = 0.6;
 pub(crate) const MOST_FIRST: f64 = 3.0;
 
-/// A line search that proposes lengths. The caller evaluates the objective at them.
+/// A line search that chooses lengths. The caller evaluates the objective at them.
 pub(crate) struct Search {
     here: f64,
     slope: f64,
@@ -22,7 +21,7 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// The first length to try, given the last one taken and the least that is tried first.
+    /// Returns the first length to try, given the last one taken and the least that may be tried first.
     pub(crate) fn first_length(last_taken: f64, least: f64) -> f64 {
         last_taken.clamp(least, MOST_FIRST)
     }
@@ -32,8 +31,8 @@ impl Search {
         Self { here, slope, trials: 0, best: None }
     }
 
-    /// Takes the objective at a length, `None` if a triangle is inverted or breaks the shape guard there. Returns the
-    /// length to try next, if any.
+    /// Takes the objective at a length, or `None` if a triangle is inverted or breaks the shape guard there. Returns
+    /// the length to try next, if any.
     pub(crate) fn tried(&mut self, length: f64, objective: Option<f64>) -> Option<f64> {
         self.trials += 1;
         let next = match objective {
@@ -58,7 +57,7 @@ impl Search {
         (self.trials < TRIALS).then_some(next)
     }
 
-    /// The best length and the objective there; `None` if no length tried lowers the objective enough.
+    /// Returns the best length and the objective there; `None` if no length tried lowers the objective enough.
     pub(crate) fn best(&self) -> Option<(f64, f64)> {
         self.best
     }
@@ -68,7 +67,7 @@ impl Search {
 mod tests {
     use super::*;
 
-    /// Searches along a function and returns the length taken and the evaluations it took.
+    /// Searches along a function, and returns the length taken and the number of evaluations.
     fn search(f: impl Fn(f64) -> Option<f64>, slope: f64, first: f64) -> (Option<f64>, u32) {
         let mut search = Search::new(f(0.0).unwrap(), slope);
         let mut next = Some(first);

@@ -37,7 +37,7 @@ impl Sparse {
         })
     }
 
-    /// [`Self::from_rows`] with scratch memory, which rows of one task share.
+    /// Does the same as [`Self::from_rows`] with scratch memory, which rows of one task share.
     fn from_rows_with<S>(
         rows: usize,
         scratch: impl Fn() -> S + Sync,
@@ -94,14 +94,14 @@ impl Sparse {
         columns.zip(self.value[range].iter().copied())
     }
 
-    /// The reciprocals of the diagonal entries.
+    /// Returns the reciprocals of the diagonal entries.
     pub(crate) fn diagonal_inverted(&self) -> Vec<f32> {
         let diagonal =
             |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
         (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
     }
 
-    /// Multiplies each entry off the diagonal by the factors of its row and its column. Sets the diagonal such that
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. Then sets the diagonal so that
     /// each row sum is multiplied by the square of the row's factor.
     pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
         for row in 0..self.rows() {
@@ -122,7 +122,7 @@ impl Sparse {
         }
     }
 
-    /// For each row the mean of `values` over its columns, weighted by the absolute values of its entries.
+    /// Returns for each row the mean of `values` over its columns, weighted by the absolute values of its entries.
     pub(crate) fn means(&self, values: &[f32]) -> Vec<f32> {
         let mean = |row: usize| {
             let (mut sum, mut weights) = (0.0, 0.0);
@@ -135,7 +135,7 @@ impl Sparse {
         (0..self.rows()).map(mean).collect()
     }
 
-    /// The transpose of a matrix with `columns` columns. Entries of its rows ascend by column.
+    /// Returns the transpose of a matrix with `columns` columns. The entries of each of its rows ascend by column.
     pub(crate) fn transposed(&self, columns: usize) -> Self {
         let mut start = vec![0u32; columns + 1];
         for &column in &self.column {
@@ -162,14 +162,14 @@ impl Sparse {
     }
 }
 
-/// A sum of sparse rows, as a hash table by column. A row has some tens of entries, so the table stays in
-/// the first-level cache whatever the size of the mesh.
+/// A sum of sparse rows, as a hash table by column. A row has some tens of entries, so the table stays in the
+/// first-level cache for meshes of any size.
 pub(crate) struct RowSum {
     /// Column and value of each slot. The number of slots is a power of two.
     slots: Vec<(u32, f32)>,
     /// The slots in use, in the order in which they were taken.
     taken: Vec<u32>,
-    /// How far a 32-bit hash is shifted right to be the number of a slot.
+    /// Number of bits by which a 32-bit hash is shifted right to give the index of a slot.
     shift: u32,
 }
 
