@@ -72,7 +72,7 @@ def by_mfem(folder, metric, count, tolerance):
     area = 1.0 / count
     target = tmop.TargetConstructor(tmop.TargetConstructor.IDEAL_SHAPE_EQUAL_SIZE)
     target.SetNodes(x)
-    # MFEM takes the mean area for the determinant of W, which is twice the area of a triangle.
+    # MFEM takes the mean area as the determinant of W, which is twice the area of a triangle.
     target.SetVolumeScale(2.0)
     integrator = tmop.TMOP_Integrator(metric, target)
     rules = mfem.IntegrationRules(0, mfem.Quadrature1D.GaussLobatto)
