@@ -26,13 +26,13 @@ def run(program, *arguments):
 
 
 def contents(path):
-    """The bytes of a mesh's files, by their endings."""
+    """Returns the bytes of a mesh's files, by the endings of their names."""
     return {beside.suffix: beside.read_bytes() for beside in path.parent.glob(path.stem + ".*")
             if path.suffix == ".node" or beside == path}
 
 
 def tried(program, mesh, folder):
-    """What the result is, the name of the format, and whether all holds."""
+    """Returns the result as text, the name of the format, and whether all checks passed."""
     same = folder / "same" / mesh.name
     moved = folder / "moved" / mesh.name
     for path in (same, moved):
