@@ -30,7 +30,7 @@ fn required_limits_name_the_limit_that_is_too_low() {
         &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffer_binding_size",
         7_900,
-        // The positions in two bindings, of which each needs half.
+        // Positions may be bound in two halves, so a binding needs half of their bytes.
         "the buffer of vertex positions (1000 vertices) needs 8000, \
          but the device's max_storage_buffer_binding_size is 7900",
     );
