@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Minimizes the same objective on the same mesh by gpu-smooth and by MFEM's TMOP, and compares the minima and the times.
 
-    pip install mfem numpy                      # tried with 4.10: its wheel has the library in C++, which does the work
+    pip install mfem numpy                      # tried with 4.10: its wheel contains the C++ library, which does the work
     python3 benches/against_mfem.py target/release/gpu-smooth [CELLS]
 
-The mesh is a square of CELLS x CELLS cells, halved along random diagonals, its vertices moved by up to 0.3 cells along each axis. The
-target is the equilateral triangle of the mean area (IDEAL_SHAPE_EQUAL_SIZE), the boundary is fixed. A linear
-triangle has one T, so a quadrature of one point is exact. MFEM takes Newton steps with MINRES, as its mesh-optimizer does, on one
-thread; so does gpu-smooth here, on the CPU.
+The mesh is a square of CELLS x CELLS cells, halved along random diagonals. Its vertices are moved by up to 0.3 cells along each
+axis. The target is the equilateral triangle of the mean area (IDEAL_SHAPE_EQUAL_SIZE), and the boundary is fixed. A linear
+triangle has a constant T, so a quadrature of one point is exact. MFEM takes Newton steps with MINRES, as its mesh-optimizer
+does. MFEM and gpu-smooth each use one thread of the CPU.
 """
 
 import json
@@ -72,7 +72,7 @@ def by_mfem(folder, metric, count, tolerance):
     area = 1.0 / count
     target = tmop.TargetConstructor(tmop.TargetConstructor.IDEAL_SHAPE_EQUAL_SIZE)
     target.SetNodes(x)
-    # MFEM takes the mean area for the determinant of W, which is twice the area of a triangle.
+    # MFEM takes the mean area as the determinant of W, which is twice the area of a triangle.
     target.SetVolumeScale(2.0)
     integrator = tmop.TMOP_Integrator(metric, target)
     rules = mfem.IntegrationRules(0, mfem.Quadrature1D.GaussLobatto)

@@ -1,7 +1,7 @@
-//! What convergence costs, in plain sweeps: how many sweeps a run takes to come within a share of its limit,
-//! and how long that is, set-up of the coarse levels included, over the time of one plain sweep.
+//! Measures how many sweeps a run takes to come within a share of its limit. Compares the time of the run, with the set-up
+//! of coarse levels, with the time of one plain sweep.
 //!
-//! `cargo bench --bench convergence -- [VERTICES...]`, 57,000 by default. Ratios, not times, are to be compared.
+//! `cargo bench --bench convergence -- [VERTICES...]`, 57,000 by default. Compare ratios, not times.
 
 #![allow(clippy::print_stdout)]
 
@@ -12,9 +12,9 @@ use std::time::Duration;
 
 use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
 
-/// Runs of which the median is taken.
+/// How many runs a median is taken of.
 const REPEATS: usize = 5;
-/// Plain sweeps timed at once.
+/// How many plain sweeps are timed together.
 const PLAIN: u32 = 20;
 
 fn main() {
@@ -53,7 +53,7 @@ fn main() {
     }
 }
 
-/// Meshes on which corrections without a memory gain little.
+/// Meshes on which corrections gain little unless they are accelerated by secant pairs.
 fn hard_meshes() -> Vec<(&'static str, Mesh)> {
     let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
     vec![

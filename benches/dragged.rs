@@ -1,8 +1,8 @@
-//! How many frames an application takes after a drag until its mesh is near its optimum again, with corrections from coarser levels
-//! and without, and what a correction costs.
+//! Counts the frames after a drag until a mesh in an application is near its optimum again, with corrections from coarser
+//! levels and without. Also measures the time of a correction.
 //!
-//! `cargo bench --bench dragged -- [VERTICES...]`, 57,000 by default. The larger hole of a plate in its optimum is dragged
-//! in 60 frames, as far as triangles allow; a frame has three sweeps, and, if they are corrected, as many corrections.
+//! `cargo bench --bench dragged -- [VERTICES...]`, 57,000 by default. The mesh is a plate at its optimum. Its larger hole is
+//! dragged in 60 frames, as far as triangles allow. A frame has three sweeps and, if they are corrected, three corrections.
 
 #![allow(clippy::print_stdout)]
 
@@ -17,13 +17,13 @@ use gpu_smooth::{
     Sweeps, Topology, VertexBuffer, signed_area,
 };
 
-/// Sweeps of a frame.
+/// Sweeps in a frame.
 const SWEEPS: u32 = 3;
-/// How far the hole is dragged.
+/// How far the hole is dragged, in units of a plate of 3 by 2: one drag for each.
 const FAR: [f64; 2] = [0.2, 0.4];
-/// Frames of a drag.
+/// Frames in a drag.
 const FRAMES: usize = 60;
-/// Frames after the drag, at most.
+/// The most frames after a drag.
 const MOST: usize = 200;
 
 fn main() {
@@ -42,7 +42,7 @@ fn main() {
     }
 }
 
-/// The mesh in its optimum, and f there.
+/// The mesh at its optimum, and f there.
 fn optimum(mesh: &Mesh) -> (Mesh, f64) {
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
@@ -51,7 +51,7 @@ fn optimum(mesh: &Mesh) -> (Mesh, f64) {
     (Mesh { points: run.points, ..mesh.clone() }, f)
 }
 
-/// Drags, and counts frames after it.
+/// Drags the hole by `far`, and counts the frames until f is near its limit.
 fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     let options = &Options { method, ..Options::default() };
     let buffer = |size: usize, usage| {
@@ -71,7 +71,7 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     let mut values = Readback::<ObjectiveValues>::new(gpu, &numbers, 0, 1).unwrap();
 
     let mut loops = Topology::new(mesh).unwrap().boundary_loops();
-    // The largest hole: the area of one is negative.
+    // The largest hole comes first, as the signed area of a hole is negative.
     let area = |vertices: &Vec<u32>| signed_area(&mesh.points, vertices);
     loops.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let hole = loops.swap_remove(0);

@@ -1,11 +1,11 @@
-//! Megabytes a second of reading and writing mesh files, beside those of plainly copying the same bytes.
+//! Measures the speed of reading and writing mesh files in megabytes per second, beside plain copies of the same bytes.
 //!
 //! ```text
 //! cargo bench --bench files -- 1000000
 //! ```
 //!
-//! All coordinates move before they are written. Files are in the system's folder for temporary ones (`TMPDIR`);
-//! a mesh is forced to the disk when it is written, and so is its plain copy.
+//! All coordinates change before they are written. Files are in the system's temporary folder (`TMPDIR`). A written mesh is
+//! forced to the disk, and so is its plain copy.
 
 mod mesh;
 #[path = "../tests/support/mod.rs"]

@@ -1,5 +1,5 @@
-//! How the cost of a sweep grows with the mesh: measures by `gpu-smooth bench`, prints nanoseconds a vertex, and draws
-//! them.
+//! Shows how the cost of a sweep grows with the mesh: measures by `gpu-smooth bench`, prints nanoseconds per vertex, and
+//! draws a figure.
 //!
 //! ```text
 //! cargo bench --bench growth -- docs/performance-growth.svg 10000,100000,1000000,10000000
@@ -19,7 +19,7 @@ const SIZE: (u32, u32) = (720, 400);
 const COLORS: [RGBColor; 4] =
     [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(90, 90, 90), RGBColor(230, 159, 0)];
 
-/// Points of a curve: the number of vertices, and the nanoseconds that a sweep takes for each free one.
+/// Points of a curve: the number of vertices, and the nanoseconds of a sweep per free vertex.
 type Curve = Vec<(f64, f64)>;
 
 fn main() -> Result<(), Box<dyn Error>> {

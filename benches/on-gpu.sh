@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures a real GPU for docs/performance.md: adapter and driver, whole sweeps and kernels from 10,000 to 10 million
-# vertices beside the rate of copying, convergence, and all tests. Writes into a folder, by default gpu-figures.
+# Measures a real GPU for docs/performance.md: the adapter and its driver, whole sweeps and kernels from 10,000 to 10
+# million vertices, the speed of copying, convergence, and all tests. Writes to a folder, by default gpu-figures.
 #
 #   benches/on-gpu.sh [FOLDER] [ADAPTER]
 set -euo pipefail

@@ -1,5 +1,5 @@
-//! How long [`Smoother::run_async`] keeps the thread that polls it: the longest poll, all polls together, and the longest
-//! poll of the device beside them, of a run from start to end.
+//! Measures how long [`Smoother::run_async`] blocks the thread that polls it during a run: the longest poll, the sum of all
+//! polls, and the longest poll of the device between them.
 //!
 //! `cargo bench --bench polls -- [VERTICES...]`, 2,000 and 57,000 by default.
 

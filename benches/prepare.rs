@@ -1,10 +1,10 @@
-//! What it takes to make a mesh ready, and to judge and certify it, phase by phase.
+//! Times each phase of preparing a mesh, and of judging and certifying a result.
 //!
 //! ```text
 //! cargo bench --bench prepare -- 1000000
 //! ```
 //!
-//! `rows` are meshes numbered row by row, `mixed` ones numbered at random.
+//! Meshes of `rows` are numbered row by row, those of `mixed` at random.
 
 mod mesh;
 #[path = "../tests/support/mod.rs"]

@@ -1,12 +1,15 @@
-//! Times reading of mesh files, and how much memory it takes, as multiples of their size.
+//! Measures how fast mesh files are read, in megabytes per second, and the memory this takes, as a multiple of their size.
 //!
 //! ```text
 //! cargo bench --bench reading -- MESH...
 //! ```
 //!
-//! Each file is read by a process of its own, five times: the least time by the clock, and the least that two cores need that have
-//! nothing else to do, which is the processor time of the main thread, or half of that of all threads if this is more. Memory
-//! is the most that the process had at once in the first reading. Linux tells both.
+//! A process of its own reads each file five times. There are two times, the least of five each:
+//!
+//! - by the clock;
+//! - what two idle cores would need: the processor time of the main thread, or half of that of all threads if that is more.
+//!
+//! Memory is the most that the process used in the first reading. Both are known on Linux only.
 
 #![allow(clippy::print_stdout)]
 
@@ -17,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// Says to a process which file it is to read.
+/// The environment variable that tells a child process which file to read.
 const CHILD: &str = "GPU_SMOOTH_READING";
 const RUNS: usize = 5;
 
@@ -55,7 +58,7 @@ fn measure(path: &Path) {
         let [all, main] = [0, 1].map(|of| times()[of] - before[of]);
         processor = processor.min(main.max(all / 2.0));
         sizes = file.paths().filter_map(|path| fs::metadata(path).ok()).map(|m| m.len()).sum();
-        // Later readings may find memory in pieces.
+        // Only the first reading counts: later ones may find memory in pieces.
         most = most.or_else(peak);
     }
     let size = sizes as f64;
@@ -70,7 +73,7 @@ fn measure(path: &Path) {
     );
 }
 
-/// The seconds of the processor that all threads of this process have taken, and this thread. Zero where the system does not tell.
+/// Processor time in seconds: of all threads of this process, and of this thread. Zero where the system does not tell.
 fn times() -> [f64; 2] {
     ["/proc/self/stat", "/proc/thread-self/stat"].map(|path| {
         let stat = fs::read_to_string(path).unwrap_or_default();
@@ -81,7 +84,7 @@ fn times() -> [f64; 2] {
     })
 }
 
-/// The most bytes of memory that this process had at once.
+/// The most memory that this process has used, in bytes.
 fn peak() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

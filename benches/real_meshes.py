@@ -16,7 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Files that are no mesh by themselves: those beside a .node, and what tells of the others.
+# Files that are not meshes by themselves: those that belong to a .node, and descriptions.
 BESIDE = {".ele", ".poly", ".json", ".md", ".txt"}
 
 
@@ -26,13 +26,13 @@ def run(program, *arguments):
 
 
 def contents(path):
-    """The bytes of a mesh's files, by their endings."""
+    """Returns the bytes of a mesh's files, by the endings of their names."""
     return {beside.suffix: beside.read_bytes() for beside in path.parent.glob(path.stem + ".*")
             if path.suffix == ".node" or beside == path}
 
 
 def tried(program, mesh, folder):
-    """What the result is, the name of the format, and whether all holds."""
+    """Returns the result as text, the name of the format, and whether all checks passed."""
     same = folder / "same" / mesh.name
     moved = folder / "moved" / mesh.name
     for path in (same, moved):
@@ -48,7 +48,7 @@ def tried(program, mesh, folder):
         reason = reason.removeprefix(f"{mesh}: ").split(". ")[0]
         untangled = run(program, mesh, moved, "--engine", "cpu", "--untangle")
         result = "smoothed with `--untangle`; without it " if untangled.returncode == 0 else ""
-        # A reason is one line that names the mesh.
+        # The reason must be on a line that names the mesh.
         told = smoothed.returncode in (1, 2) and str(mesh) in smoothed.stderr
         return f"{result}refused: {reason}", name, told
     if unmoved.returncode or contents(same) != contents(mesh):

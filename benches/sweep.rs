@@ -1,10 +1,10 @@
-//! Vertex visits and objective evaluations per second: by metric, engine and size of the mesh.
+//! Measures vertex visits and objective evaluations per second, by metric, engine and size of the mesh.
 //!
 //! ```text
 //! cargo bench --bench sweep -- imr/cpu          # RAYON_NUM_THREADS=1 for one core
 //! ```
 //!
-//! The GPU's rows are missing where there is no adapter.
+//! Without an adapter there are no rows for the GPU.
 
 mod mesh;
 #[path = "../tests/support/mod.rs"]
@@ -81,7 +81,7 @@ impl Case {
     }
 }
 
-/// One over-relaxed sweep with the objective after it, from the sixth sweep on.
+/// Times one over-relaxed sweep and the objective after it, from the sixth sweep on. Counts free vertices.
 #[divan::bench(args = cases(&[false, true]), max_time = 2, sample_size = 1)]
 fn sweep(bencher: Bencher, case: &Case) {
     let Some(mut engine) = case.engine() else { return };
@@ -91,7 +91,7 @@ fn sweep(bencher: Bencher, case: &Case) {
         .bench_local(|| engine.advance(1).unwrap());
 }
 
-/// The objective alone, counted in triangles.
+/// Times the objective alone. Counts triangles.
 #[divan::bench(args = cases(&[false]), max_time = 0.5, sample_size = 1)]
 fn objective(bencher: Bencher, case: &Case) {
     bencher

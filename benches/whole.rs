@@ -1,5 +1,5 @@
-//! The whole program, file to file: time and memory of the process, and what it leaves. Beside mmg2d, if `mmg2d_O3`
-//! is on the path.
+//! Measures the whole program from file to file: its time, its memory, and the quality of the mesh that it writes. Runs
+//! mmg2d for comparison if `mmg2d_O3` is on the path.
 //!
 //! ```text
 //! cargo bench --bench whole -- 62534 1000000          # vertices
@@ -18,7 +18,7 @@ use std::{fs, thread};
 
 use gpu_smooth::{Mesh, MeshFile, Metric, Quality, Topology};
 
-/// Runs of which the median is taken.
+/// How many runs a median is taken of.
 const REPEATS: usize = 7;
 
 fn main() {
@@ -56,18 +56,18 @@ fn main() {
 
 struct Measured {
     seconds: f64,
-    /// The most memory that the process held, in MB; known on Linux only.
+    /// The most memory that the process used, in MB; known on Linux only.
     peak: f64,
 }
 
-/// `None` if there is no such program, or it fails.
+/// Times a command. `None` if there is no such program, or it fails.
 fn measure(command: &mut Command) -> Option<Measured> {
     let mut times = Vec::new();
     let mut peak = 0f64;
     for repeat in 0..=REPEATS {
         let start = Instant::now();
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
-        // One more run, untimed, to watch the memory.
+        // One more run, which is not timed, to watch the memory.
         while repeat == 0 && child.try_wait().unwrap().is_none() {
             peak = peak.max(resident(child.id()).unwrap_or(0.0));
             thread::sleep(Duration::from_millis(1));
@@ -84,7 +84,7 @@ fn measure(command: &mut Command) -> Option<Measured> {
     Some(Measured { seconds: times[REPEATS / 2], peak })
 }
 
-/// The most memory a process has held so far, in MB.
+/// The most memory that a process has used so far, in MB.
 fn resident(process: u32) -> Option<f64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -116,7 +116,7 @@ fn medit(mesh: &Mesh) -> String {
     text + "End\n"
 }
 
-/// What mmg2d writes: sections of a count and its rows.
+/// Reads what mmg2d writes: sections with a count and rows.
 fn read_medit(path: &Path) -> Mesh {
     let text = fs::read_to_string(path).unwrap();
     let section = |name: &str, columns: usize| -> Vec<Vec<f64>> {

@@ -1,10 +1,10 @@
-//! Makes a mesh of the domain an outline encloses, and perturbs or distorts it for a smoother to mend:
+//! Makes a mesh of the domain that an outline encloses, and perturbs or distorts it as an input for a smoother:
 //!
 //! ```text
 //! cargo run --release --example make_mesh -- OUTLINE OUT_STEM [--vertices N] [--perturb S | --distort A] [--seed K]
 //! ```
 //!
-//! Writes OUT_STEM.node and OUT_STEM.ele. `meshes/README.md` has the command of the mesh there.
+//! Writes OUT_STEM.node and OUT_STEM.ele. `meshes/README.md` names the command for the mesh there.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/support/mod.rs"]

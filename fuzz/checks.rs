@@ -1,5 +1,5 @@
-//! What has to hold whatever a file or a mesh is. The fuzzer's targets and `tests/fuzz.rs` share these checks: each panics
-//! where something does not hold.
+//! Checks of what must hold for any file and any mesh. The fuzzer's targets and `tests/fuzz.rs` share them. Each panics if
+//! something does not hold.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -10,7 +10,7 @@ use gpu_smooth::{
     Precision, Scheme, Sharpness, SmoothError, Smoother, untangle, validity,
 };
 
-/// Reads any bytes as a mesh file of any format but Triangle's, and does with it all that needs no second file.
+/// Reads any bytes as a mesh file of any format but Triangle's, and does everything with it that needs no second file.
 pub(crate) fn any_file(bytes: &[u8]) {
     match MeshFile::from_bytes(Path::new("fuzzed"), bytes.to_vec()) {
         Ok(file) => {
@@ -65,7 +65,7 @@ pub(crate) fn any_triangle_files(folder: &Path, bytes: &[u8]) {
     }
 }
 
-/// A message of a line, not longer than one can read.
+/// Checks that a message has one line, names the file, and is short enough to read.
 fn assert_told(message: &str) {
     assert!(message.contains("fuzzed") && message.len() < 600, "{message}");
     assert_eq!(message.lines().count(), 1, "{message}");
@@ -97,7 +97,7 @@ fn use_file(file: &MeshFile) {
                 let triangles = again.mesh().triangles.len();
                 assert_eq!(triangles, mesh.triangles.len(), "written as {name}");
             }
-            // Not every mesh that can be read is one in each format.
+            // What a damaged file holds need not be a valid mesh in each format.
             Err(error) => assert_told(&error.to_string()),
         }
     }
@@ -106,7 +106,7 @@ fn use_file(file: &MeshFile) {
     }
 }
 
-/// Bytes as numbers, zeros where they have ended.
+/// Takes numbers from bytes: zeros after the last one.
 struct Bytes<'b>(std::slice::Iter<'b, u8>);
 
 impl Bytes<'_> {
@@ -119,7 +119,8 @@ impl Bytes<'_> {
     }
 }
 
-/// A small mesh by any bytes, whole or with holes, sound or tangled, small or large or stretched, and what is to be done with it.
+/// Makes options and a small mesh from any bytes, and smooths it. The mesh may have holes, be tangled, tiny, huge or
+/// stretched.
 pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
     let mut bytes = Bytes(bytes.iter());
     let options = options(&mut bytes);
@@ -127,7 +128,7 @@ pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
     smooth(&mesh, &options, backend)
 }
 
-/// What becomes of a mesh.
+/// The result for a mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Became {
     Refused,
@@ -186,7 +187,7 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
                 _ => [[a, b, c + 1], [a, c + 1, c]],
             };
             for (half, mut triangle) in halves.into_iter().enumerate() {
-                // A hole, or another winding.
+                // Leaves out the triangle, or reverses its winding.
                 if what >> (2 + half) & 7 == 7 {
                     continue;
                 }
@@ -197,7 +198,7 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
             }
         }
     }
-    // Now and then vertices that are held, named twice, or of no mesh of the plane.
+    // Sometimes fixed vertices, some of them named twice, and a triangle that does not fit in the plane.
     for _ in 0..bytes.below(6) {
         mesh.fixed.push(bytes.below(mesh.points.len()) as u32);
     }
@@ -238,7 +239,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     Became::Smoothed
 }
 
-/// A mesh with inverted triangles: what untangling makes of it is never worse, and what is called sound is.
+/// Untangles a mesh with inverted triangles: it must not get worse, and what is reported as untangled must be valid.
 fn untangled(mesh: &Mesh, options: &Options) -> Became {
     let mut go_on = |_: &gpu_smooth::Untangling| ControlFlow::Continue(());
     let Ok(untangled) = untangle(mesh, options.stored, &mut go_on) else { return Became::Refused };

@@ -36,7 +36,7 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
     assert!((f64::from(before.quality.worst_imr) / worst - 1.0).abs() < 1e-3, "{worst}");
     assert!(after.quality.worst_imr < 5.0);
 
-    // What is outside of the plate and in its holes stays white.
+    // Pixels outside of the plate and in its holes stay white.
     let is_white = |&&pixel: &&[u8; 4]| pixel == [255; 4];
     let white = before.pixels.iter().filter(is_white).count();
     let pairs = || before.pixels.iter().zip(&after.pixels);
@@ -44,7 +44,7 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
     assert!(white > 100_000, "only {white} pixels show no mesh");
     assert!(switched < 50, "{switched} pixels of the background changed");
 
-    // Within, the colors of good triangles are bright, and those of bad ones dark.
+    // Inside, the colors of good triangles are bright, and those of bad triangles dark.
     let inside: Vec<_> =
         pairs().filter(|(a, b)| !is_white(a) && !is_white(b)).map(|(a, b)| [*a, *b]).collect();
     let mean = |which: usize| {
@@ -67,7 +67,7 @@ fn an_application_outside_drags_pins_recovers_meshes_anew_and_survives_a_lost_de
     assert_eq!(names.len(), 10, "{names:?}");
     for (name, told) in acts {
         let is_torn = name.contains("torn inside out");
-        // The first look at what was torn is a frame without sweeps.
+        // The torn mesh is looked at once before it is swept: one of its frames has no sweeps.
         let swept = told.frames - u32::from(is_torn);
         assert!(told.frames > 0 && told.sweeps >= swept, "{name}: {told:?}");
         assert_eq!(told.inverted > 0, is_torn, "{name}: {told:?}");

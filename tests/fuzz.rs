@@ -1,6 +1,5 @@
-//! A short round of what the fuzzer does (`fuzz/`), on any toolchain and with the same inputs each time. `FUZZ_ROUNDS`, a factor,
-//! makes it longer. Inputs that have failed are here
-//! literally.
+//! A short version of the fuzzing in `fuzz/`, on any toolchain and with the same inputs each time. The environment variable
+//! `FUZZ_ROUNDS` is a factor that makes it longer. Inputs that once failed are literal tests here.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -15,7 +14,7 @@ use checks::Became;
 use gpu_smooth::{Backend, Conversion, Gpu, MeshFile};
 use support::SplitMix64;
 
-/// How many rounds, given how many make a second or so.
+/// The number of rounds: `usual`, which takes about a second, times `FUZZ_ROUNDS`.
 fn rounds(usual: usize) -> usize {
     let factor = env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
     usual * factor.unwrap_or(1)
@@ -26,7 +25,7 @@ fn any_bytes(random: &mut SplitMix64, most: usize) -> Vec<u8> {
     (0..length).map(|_| random.below(256) as u8).collect()
 }
 
-/// Random bytes cut, replaced, inserted and doubled.
+/// The content with random bytes cut, replaced, inserted and doubled.
 fn damaged(content: &[u8], random: &mut SplitMix64) -> Vec<u8> {
     let bytes = b"0123456789 \n\r\t#$<>/=-+.eEnaif\"\0\x01\x7F\xFF";
     let mut damaged = content.to_vec();
@@ -73,7 +72,7 @@ fn files_of_any_bytes() {
     }
 }
 
-/// The message quoted the tag, line ends and all.
+/// The error message once quoted the whole tag, with its line ends.
 #[test]
 fn a_closing_tag_of_several_lines_is_told_on_one() {
     checks::any_file(b"<?xml version=\"1.0\"?>\n</P 2.0 1.78 0.0\n12 3.0 1.73 0.0\n>\n");
@@ -119,7 +118,7 @@ fn meshes_of_any_shape() {
     let mut random = SplitMix64::new(13);
     let became = |bytes: &[u8]| checks::any_mesh(bytes, &Backend::Cpu);
     let all: Vec<Became> = (0..rounds(400)).map(|_| became(&any_bytes(&mut random, 260))).collect();
-    // Each of them is more than a twentieth.
+    // Each kind of result is more than a twentieth of all.
     for kind in [Became::Refused, Became::Smoothed, Became::Untangled, Became::StillTangled] {
         let count = all.iter().filter(|became| **became == kind).count();
         assert!(20 * count > all.len(), "{count} of {}", all.len());
@@ -135,7 +134,7 @@ fn meshes_of_any_shape_on_a_gpu() {
     }
 }
 
-/// Writes what the fuzzer begins with, if the environment variable FUZZ_CORPUS names a folder.
+/// Writes the inputs that the fuzzer starts from, if the environment variable FUZZ_CORPUS names a folder.
 #[test]
 fn the_corpus_can_be_written() {
     let Some(folder) = env::var_os("FUZZ_CORPUS") else { return };

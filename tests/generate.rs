@@ -1,4 +1,4 @@
-//! The meshes that the other tests stand on, and the checks they use.
+//! Tests of the meshes that other tests use, and of the checks on them (`tests/support`).
 
 mod support;
 
@@ -30,7 +30,7 @@ fn assert_held_still(before: &Mesh, after: &Mesh) {
     }
 }
 
-/// FNV-1a of all that a mesh is made of.
+/// The FNV-1a hash of a mesh: of its coordinates, triangles and fixed vertices.
 fn hash(mesh: &Mesh) -> u64 {
     let floats = mesh.points.iter().flatten().map(|x| x.to_bits());
     let indices = mesh.triangles.iter().flatten().chain(&mesh.fixed).map(|&v| u64::from(v));
@@ -80,7 +80,7 @@ fn graded_elements_keep_their_shape_as_they_shrink() {
         assert_eq!(euler(&mesh), 0);
         let innermost = mesh.points.last().unwrap();
         assert!(innermost[0].hypot(innermost[1]) <= 1e-7);
-        // Also where the coordinates have few bits left for the smallest elements.
+        // Also where few bits of the coordinates are left to resolve the smallest elements.
         let rough = support::perturb_random(&mesh, 1.0, 5);
         assert!(support::is_ccw(&support::transformed(&rough, 1.0, [0.3, 0.7])));
     }
@@ -148,7 +148,7 @@ fn lines_and_lone_vertices_are_fixed() {
     assert!(support::is_valid(&mesh));
     assert_eq!(euler(&mesh), 0, "one hole");
     let fixed: Vec<_> = mesh.fixed.iter().map(|&v| mesh.points[v as usize]).collect();
-    // The end on the boundary is the boundary's.
+    // A line's end on the boundary counts as a boundary vertex.
     assert!(
         !fixed.contains(&[0.0, 0.0]) && fixed.contains(&[0.3, 0.5]) && fixed.contains(&[0.4, 0.2])
     );
@@ -185,7 +185,7 @@ fn distorting_is_smooth_and_never_inverts() {
         assert_held_still(&mesh, &after);
         assert!(support::worst_imr(&after) > worst, "{amplitude}");
         worst = support::worst_imr(&after);
-        // Smooth: neighbors stay together, and few elements are bad.
+        // A smooth distortion: neighbors stay together, and few elements are bad.
         assert!(support::f_imr(&after) < 5.0 || amplitude == 1.0);
     }
 }
@@ -232,17 +232,17 @@ fn checks_can_fail() {
 
 #[test]
 fn outlines_have_arcs_curves_and_corners() {
-    // A straight bottom, a half circle at the right, a curve with a corner back to the left.
+    // A straight bottom, a half circle on the right, and a curve with a corner back to the left.
     let text = "loop\n0 0\n1 0\narc 2 1 1 -90 90 8\ncurve 4\n1 2.2\ncurve 4 # a corner\n.5 1.8\n";
     let outline = Outline::parse(text).unwrap();
     let [ring] = &outline.loops[..] else { panic!("one loop") };
-    // Pieces of the bottom, to the arc, the arc, from its end; two curves of 4 chords.
+    // The edges: bottom, bottom to arc, the arc's 8, arc to curve, and two curves of 4 chords each.
     assert_eq!(ring.len(), 1 + 1 + 8 + 1 + 4 + 4);
     assert!((ring[2][1] - 0.0).abs() < 1e-15 && (ring[10][1] - 2.0).abs() < 1e-15);
     assert!(ring.contains(&[1.0, 2.2]) && ring.contains(&[0.5, 1.8]));
     assert!(support::is_valid(&support::triangulate(&outline, 800).unwrap()));
 
-    // Smooth all round, a curve through points of the unit circle hardly leaves it.
+    // A closed smooth curve through points of the unit circle hardly leaves the circle.
     let curve = "loop\ncurve 8\n1 0\n.7071 .7071\n0 1\n-.7071 .7071\n-1 0\n-.7071 -.7071\n0 -1\n.7071 -.7071";
     let outline = Outline::parse(curve).unwrap();
     assert_eq!(outline.loops[0].len(), 64);

@@ -1,4 +1,4 @@
-//! The house rules that a compiler does not check.
+//! Rules of this project that a compiler does not check.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -40,7 +40,7 @@ fn modules_in(source: &Path) -> BTreeMap<String, String> {
     modules
 }
 
-/// The paths that a file imports from this crate, groups in braces taken apart. Tests inside a file may look anywhere.
+/// The paths that a file imports from this crate, one for each name in a group in braces. Tests inside a file are left out.
 fn imports(text: &str) -> Vec<String> {
     let text = text.split("#[cfg(test)]").next().unwrap();
     let code: String = text
@@ -65,7 +65,7 @@ fn imports(text: &str) -> Vec<String> {
     found
 }
 
-/// The file that defines what a path names, through the names that `mod.rs` files pass on.
+/// The file that defines what a path names. Follows names that `mod.rs` files re-export.
 fn defined_in(path: &str, modules: &BTreeMap<String, String>) -> Option<String> {
     let parts: Vec<&str> = path.split("::").collect();
     for length in (1..=parts.len()).rev() {
@@ -97,12 +97,12 @@ fn defined_in(path: &str, modules: &BTreeMap<String, String>) -> Option<String> 
 
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
-/// What each file of the library uses of the others.
+/// The files of the library that each file of the library uses.
 fn uses() -> Uses {
     uses_of(&modules())
 }
 
-/// What each file uses of the others.
+/// The files among `modules` that each of them uses.
 fn uses_of(modules: &BTreeMap<String, String>) -> Uses {
     let mut uses = Uses::new();
     for (module, text) in modules {
@@ -115,7 +115,7 @@ fn uses_of(modules: &BTreeMap<String, String>) -> Uses {
     uses
 }
 
-/// A circle among these, if there is one.
+/// Finds a cycle of files that use each other.
 fn circle(uses: &Uses) -> Option<Vec<String>> {
     fn visit(at: &str, uses: &Uses, path: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
         if let Some(start) = path.iter().position(|on_path| on_path == at) {
@@ -136,7 +136,7 @@ fn circle(uses: &Uses) -> Option<Vec<String>> {
     uses.keys().any(|module| visit(module, uses, &mut path, &mut done)).then_some(path)
 }
 
-/// The same by folder, `depth` folders deep; a file of the root is a folder of its own.
+/// Merges the files of a folder, up to `depth` folders deep. A file of the root counts as a folder.
 fn by_folder(uses: &Uses, depth: usize) -> Uses {
     let folder = |module: &str| {
         let parts: Vec<&str> = module.split("::").collect();
@@ -197,7 +197,7 @@ fn a_circle_is_found() {
     assert_eq!(found, ["a::B", "c", "d::E", "g::h"]);
 }
 
-/// Rooms that stand on no other, and what no room but these may name.
+/// Checks which folders use no other folder, and which folders others may not use.
 #[test]
 fn data_flows_one_way() {
     let folders = by_folder(&uses(), 1);
@@ -221,7 +221,7 @@ fn only_the_gpu_modules_name_wgpu() {
     for file in files {
         let inside = file.strip_prefix(&source).unwrap();
         let text = fs::read_to_string(&file).unwrap();
-        // The command's benchmark copies memory by a kernel of its own.
+        // The command's benchmark copies memory by a kernel that is not part of the library.
         let may = ["gpu", "lib.rs", "bin/gpu-smooth/bench"];
         if !may.iter().any(|place| inside.starts_with(place)) {
             assert!(!text.contains("wgpu::"), "{} names wgpu", inside.display());
@@ -229,7 +229,7 @@ fn only_the_gpu_modules_name_wgpu() {
     }
 }
 
-/// The standard library has no clock in browsers: it panics there, where it compiles.
+/// The clock of the standard library compiles for browsers, but panics there.
 #[test]
 fn only_the_command_asks_the_clock_of_the_standard_library() {
     let clocks = |text: &str| {

@@ -1,4 +1,4 @@
-//! Data of vertices at new places, against a search through all triangles and against functions that are linear.
+//! Interpolated data of vertices, compared with a search through all triangles and with linear functions.
 
 #[path = "support/mod.rs"]
 mod support;
@@ -10,7 +10,7 @@ fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The value at a place by the first of all triangles that holds it, up to rounding.
+/// The value at a place, linear in the first triangle that contains it up to rounding; `None` outside of the mesh.
 fn by_search(mesh: &Mesh, values: &[f64], place: [f64; 2]) -> Option<f64> {
     mesh.triangles.iter().find_map(|corners| {
         let [a, b, c] = corners.map(|v| mesh.points[v as usize]);
@@ -21,7 +21,7 @@ fn by_search(mesh: &Mesh, values: &[f64], place: [f64; 2]) -> Option<f64> {
     })
 }
 
-/// A lattice without the triangles in a slot, so that a straight way may lead out of it.
+/// A lattice with a slot: a straight line between two places inside may leave the mesh.
 fn slotted(nx: usize, ny: usize) -> Mesh {
     let mut mesh = lattice(nx, ny);
     let points = &mesh.points;
@@ -95,7 +95,7 @@ fn nearest(mesh: &Mesh, topology: &Topology<'_>, place: [f64; 2]) -> [f64; 2] {
     edges.iter().map(on_edge).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
 }
 
-/// A place beyond the boundary has the value of the nearest point of the mesh.
+/// A place outside of the mesh gets the value of the nearest point of the mesh.
 #[test]
 fn outside_the_nearest_place_counts() {
     let mesh = lattice(8, 8);

@@ -1,4 +1,4 @@
-//! The example `live`, by its own parts: without a window, and in one where there is a display for it.
+//! Tests of the parts of the example `live` without a window, and of the whole example in a window where there is a display.
 #![allow(clippy::print_stderr)]
 
 #[allow(dead_code)]
@@ -22,7 +22,7 @@ fn plate() -> Mesh {
     MeshFile::read(&root().join("meshes/plate.node")).unwrap().mesh().clone()
 }
 
-/// The application at the mouse of a test.
+/// The application, driven by a test in place of a user.
 struct Hand {
     app: App,
     target: wgpu::TextureView,
@@ -51,7 +51,7 @@ impl Hand {
         }
     }
 
-    /// Frames until something holds, as many as that takes: the budget of a frame is less on a busy machine.
+    /// Does frames until a condition holds. Their number depends on the machine: a frame has time for fewer sweeps on a busy one.
     fn frames_until(&mut self, holds: impl Fn(&Self) -> bool) {
         for _ in 0..400 {
             self.frames(1);
@@ -149,7 +149,7 @@ fn what_a_free_hand_turns_inside_out_recovers() {
     let mut hand = Hand::new();
     hand.frames(30);
     hand.app.key('f').unwrap();
-    // Paused, so that nothing is turned back yet: a vertex far off, and a hole across another.
+    // While paused nothing is turned back: drag a vertex far away, and one hole across another.
     hand.app.key(' ').unwrap();
     for (from, to) in [([1.8, 1.3], [2.6, 1.7]), ([2.5, 0.6], [1.7, 0.9])] {
         hand.press(from);
@@ -227,7 +227,7 @@ fn the_tour_runs_without_a_window() {
 }
 
 /// Needs the binary of the example, which `cargo test` builds beside this one, and `xvfb-run`, which
-/// `tests/run` installs. Other systems have windows without it, and nobody to close them.
+/// `tests/run` installs. On Linux only, as other systems would open a real window.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_tour_runs_in_a_window() {

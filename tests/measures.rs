@@ -1,4 +1,4 @@
-//! Quality measures against formulas of other origin, known triangles, and plain loops.
+//! Quality measures compared with independent formulas, known triangles, and plain loops.
 
 #[path = "support/mod.rs"]
 mod support;
@@ -14,7 +14,8 @@ fn value(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
     Measured::new(&mesh.points, &topology).unwrap().value(measure, 0)
 }
 
-/// The value of a triangle that is wound as given, whatever its sign: at `points` in a topology of other positions.
+/// The value of one triangle whose winding counts as given. The topology is that of another, counterclockwise triangle: a
+/// topology of an inverted triangle alone would turn it over.
 fn value_as_wound(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
     let upright = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let mesh = Mesh { points: upright, triangles: vec![[0, 1, 2]], fixed: vec![] };
@@ -28,8 +29,8 @@ fn assert_close(found: f64, expected: f64, what: &str) {
     assert!(close, "{what}: {found} instead of {expected}");
 }
 
-/// From the lengths of the edges: angles by the law of cosines, the area by Heron's formula, radii from both; the
-/// condition from the singular values of the map from an equilateral triangle.
+/// Computes measures from the lengths of the edges: angles by the law of cosines, the area by Heron's formula, radii from
+/// both, and the condition from the singular values of the map from an equilateral triangle.
 fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
     let distance = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
     let (a, b, c) = (distance(q, r), distance(r, p), distance(p, q));
@@ -70,11 +71,11 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::Metric(Metric::Imr | Metric::Ar) => {
             (a * a + b * b + c * c) / (4.0 * 3f64.sqrt() * area)
         }
-        // A mesh of this triangle alone, whose mean area is its own: |T|² of det T = 1 is twice the inverse mean ratio.
+        // The mesh is this triangle alone, so its area is the mean area. With det T = 1, |T|² is twice the inverse mean ratio.
         Measure::Metric(Metric::Area) => 0.0,
         Measure::Metric(Metric::Rms) => condition.sqrt(),
         Measure::Metric(Metric::ShapeSize) => (4.0 * condition - 4.0).max(0.0).sqrt(),
-        // The shape alone is not ideal, as the size is the mean.
+        // Only the shape differs from the ideal, as the area is the mean area.
         Measure::Metric(Metric::Tmop80) => (0.5 * (condition - 1.0)).max(0.0).sqrt(),
         Measure::Metric(Metric::Tmop94 | Metric::SoftSize) => (condition - 1.0).max(0.0).sqrt(),
     }
@@ -87,7 +88,7 @@ fn measures_agree_with_formulas_of_other_origin() {
     for _ in 0..2000 {
         let points = [(); 3].map(|()| [(); 2].map(|()| rng.unit()));
         let smallest = oracle(Measure::MinAngle, points);
-        // The formulas above lose digits on triangles that are nearly flat.
+        // The formulas of `oracle` lose digits on triangles that are nearly flat.
         if smallest < 0.5 {
             continue;
         }
@@ -113,7 +114,7 @@ fn known_triangles_have_known_values() {
     let equilateral = [[0.0, 0.0], [1.0, 0.0], [0.5, root(3.0) / 2.0]];
     for &measure in Measure::ALL {
         let ideal = measure.definition().ideal;
-        // Metrics of size are roots of sums of squares that are zero but for rounding.
+        // At the ideal, metrics of size are roots of sums of squares that vanish but for rounding.
         let is_of_size = |metric: gpu_smooth::Metric| {
             !metric.properties().scale_invariant && metric.properties().barrier
         };
@@ -165,7 +166,7 @@ fn measures_do_not_depend_on_size_place_and_rotation() {
         let expected = value(measure, base);
         let turned = base.map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]);
         assert_close(value(measure, turned), expected, measure.name());
-        // The order of the corners.
+        // The value does not depend on which corner is first.
         assert_close(value(measure, [base[1], base[2], base[0]]), expected, measure.name());
         assert_close(value(measure, [base[0], base[2], base[1]]), expected, measure.name());
         for scale in [1e-90, 1e90] {
@@ -175,7 +176,7 @@ fn measures_do_not_depend_on_size_place_and_rotation() {
         let far = base.map(|[x, y]| [x + 2f64.powi(40), y - 2f64.powi(40)]);
         assert_close(value(measure, far), expected, measure.name());
     }
-    // Beyond what a topology takes, and where squares overflow or vanish.
+    // Also at scales that `Topology` refuses, and at which squares overflow or vanish.
     let scale_invariant = |m: &&Measure| !matches!(m, Measure::Metric(_));
     for &measure in
         Measure::ALL.iter().filter(scale_invariant).filter(|m| **m != Measure::SizeRatio)
@@ -219,7 +220,7 @@ fn inverted_and_flat_triangles_are_as_in_verdict() {
             );
         }
     }
-    // A flip below rounding, which a plain determinant may not see.
+    // An inversion smaller than the rounding of a plain determinant.
     let flipped = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
     assert!(value_as_wound(ScaledJacobian, flipped) < 0.0);
     assert_eq!(value_as_wound(Condition, flipped), infinity);
@@ -228,7 +229,7 @@ fn inverted_and_flat_triangles_are_as_in_verdict() {
     assert!(value_as_wound(Condition, kept) > 1e15 && value_as_wound(Condition, kept).is_finite());
 }
 
-/// A mesh of random shapes with an inverted and a flat triangle far apart, at positions other than those of its topology.
+/// A mesh, and positions with random shapes, an inverted triangle and a flat one far from it. Its topology is made before.
 fn tangled() -> (Mesh, Vec<[f64; 2]>) {
     let mesh = support::perturb_random(&support::lattice(90, 70), 0.9, 3);
     let mut points = mesh.points.clone();
@@ -245,7 +246,7 @@ fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// Against a sorted list of the values and plain sums.
+/// Compares statistics with a sorted list of the values and plain sums.
 #[track_caller]
 fn assert_statistics(found: &Statistics, values: &[(usize, f64)]) {
     let measure = found.measure;
@@ -256,7 +257,7 @@ fn assert_statistics(found: &Statistics, values: &[(usize, f64)]) {
         (values.len(), in_order[0], in_order[values.len() - 1])
     );
     for (share, quantile) in QUANTILES.into_iter().zip(found.quantiles) {
-        // The first of them in order that enough do not exceed, itself included.
+        // The least value that a `share` of all values do not exceed.
         let expected = (0..in_order.len()).find(|&i| (i + 1) as f64 >= share * n).unwrap();
         let expected = in_order[expected];
         assert_eq!(quantile, f64::from(expected as f32), "{measure} at {share}");
@@ -363,7 +364,7 @@ fn histograms_worst_triangles_and_counts_are_those_of_the_values() {
     assert!(measured.value(Measure::Shape, mesh.triangles.len()).is_nan());
 }
 
-/// The table of docs/quality.md has a row for each measure, as its definition says, and no other.
+/// The table of docs/quality.md has one row for each measure, with the text of its definition, and no other row.
 #[test]
 fn the_document_has_the_definitions() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/quality.md");
@@ -389,7 +390,7 @@ fn the_document_has_the_definitions() {
 fn duplicate_and_unused_vertices_are_found() {
     let mut mesh = support::perturb_random(&support::lattice(40, 30), 0.9, 3);
     let count = mesh.points.len() as u32;
-    // Zeros of either sign, a vertex twice, and two vertices of no triangle, of which one has a place of its own.
+    // Zeros of either sign, a vertex given twice, and two vertices that no triangle uses, one of them at a place of its own.
     mesh.points[0] = [0.0, 0.0];
     mesh.points.extend([[-0.0, 0.0], mesh.points[700], mesh.points[700], [0.5, 99.0]]);
     mesh.points[20] = mesh.points[19];

@@ -1,4 +1,4 @@
-//! Park and Shontz's experiments end to end, on few meshes: what the report says is what the data files say.
+//! Runs Park and Shontz's experiments on few meshes: the report must state what the data files contain.
 
 #[allow(dead_code)]
 #[path = "../examples/park_shontz_2011/main.rs"]
@@ -121,7 +121,7 @@ fn the_papers_report_says_what_its_data_say() {
     }
     assert_eq!(compared, 8);
 
-    // The first verdict, of two meshes: the median is their mean.
+    // The first verdict is on two meshes, so the median is their mean.
     let verdicts = table(&markdown, "Median over the meshes");
     let saved = ["fish", "mechanic"].map(|domain| {
         let [edge, with_imr] =
@@ -132,7 +132,7 @@ fn the_papers_report_says_what_its_data_say() {
     assert!(first[0].starts_with("EDGE+IMR saves"), "{first:?}");
     assert!(shows(first[3].split(" (").next().unwrap(), (saved[0] + saved[1]) / 2.0), "{first:?}");
 
-    // One file that needs no other, with the same numbers.
+    // The HTML is one file that loads no other, and has the same numbers.
     let html = fs::read_to_string(folder.join("report.html")).unwrap();
     assert_eq!(html.matches("<svg").count(), 6);
     assert!(!html.contains("src=") && !html.contains("href="));
@@ -153,7 +153,7 @@ fn a_stopped_study_goes_on_where_it_was() {
     gather(&study, &[Place::Cpu], None, folder).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
 
-    // Stopped amid the last run's record.
+    // As if the study had been stopped while it wrote the last run's record.
     fs::write(&path, &whole[..whole.len() - 20]).unwrap();
     gather(&study, &[Place::Cpu], None, folder).unwrap();
     let again = fs::read_to_string(&path).unwrap();

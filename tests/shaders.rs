@@ -1,4 +1,4 @@
-//! Every kernel, whatever the adapter: its WGSL is core WebGPU, within the limits browsers promise.
+//! Checks the WGSL of every kernel without an adapter: it is core WebGPU, within the limits that browsers promise.
 
 use gpu_smooth::gpu::Kernel;
 use gpu_smooth::{Derivatives, Metric};
@@ -94,10 +94,10 @@ fn workgroups_are_as_wide_as_their_work_and_within_the_limit() {
         let width = match kernel {
             Kernel::Finish(_) | Kernel::SumAlongCorrection | Kernel::SumSecants => 256,
             Kernel::FindShare => 256,
-            // They look at a few counts.
+            // These kernels look at a few counts: one invocation.
             Kernel::Reopen | Kernel::Resume | Kernel::Regularize => 1,
             Kernel::BeginSearch | Kernel::JudgeTrial => 1,
-            // One for each metric, one for the inverted and one for the worst.
+            // One invocation for each metric, one for inverted triangles and one for the worst triangle.
             Kernel::Publish => Metric::ALL.len() as u32 + 2,
             _ => 64,
         };
@@ -148,7 +148,7 @@ fn events(module: &Module, block: &Block, in_branch: bool, found: &mut Vec<Event
                 events(module, continuing, in_branch, found);
             }
             Statement::Call { function, .. } => {
-                // A function that returns does not leave the kernel.
+                // A `return` inside a called function does not end the kernel.
                 let mut inner = Vec::new();
                 events(module, &module.functions[*function].body, in_branch, &mut inner);
                 found.extend(inner.into_iter().filter(|&event| event != Event::Exit));
@@ -158,8 +158,8 @@ fn events(module: &Module, block: &Block, in_branch: bool, found: &mut Vec<Event
     }
 }
 
-/// Number of barriers, or what is wrong: browsers refuse a barrier that not all invocations meet, naga
-/// does not. Stricter than they are, as it does not look at what branches depend on.
+/// The number of barriers, or why a browser would refuse the kernel: a barrier must be met by all invocations, which naga
+/// does not check. This check is stricter than browsers, as it does not look at what branches depend on.
 fn barriers(module: &Module) -> Result<usize, &'static str> {
     let mut found = Vec::new();
     events(module, &module.entry_points[0].function.body, false, &mut found);

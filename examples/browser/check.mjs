@@ -1,6 +1,6 @@
-// Opens the page in Chromium without a window, drags the hole, throws vertices about, and checks what it shows:
-// `node examples/browser/check.mjs [FOLDER [VERTICES [RUNS]]]`, after `examples/browser/build`. Pictures of the page go to FOLDER. No package of
-// npm is needed. CHROMIUM names the browser; without a graphics card it computes by SwiftShader.
+// Opens the page in Chromium without a window, drags the hole, throws vertices about, and checks what the page shows:
+// `node examples/browser/check.mjs [FOLDER [VERTICES [RUNS]]]`, after `examples/browser/build`. Writes pictures of the page to
+// FOLDER. Needs no package of npm. CHROMIUM names the browser, which uses SwiftShader if there is no graphics card.
 import { spawn } from "node:child_process";
 import { createServer } from "node:http";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -21,7 +21,7 @@ const server = createServer((request, response) => {
 });
 await new Promise(ready => server.listen(0, "127.0.0.1", ready));
 
-// Chromium is driven through a pipe, by messages of JSON that end with a zero.
+// Controls Chromium through a pipe, by JSON messages that end with a zero byte.
 const profile = mkdtempSync(join(tmpdir(), "chromium-"));
 const flags = ["--headless", "--no-sandbox", "--enable-unsafe-webgpu", "--remote-debugging-pipe",
   "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
@@ -72,7 +72,7 @@ function check(what, holds) {
   console.log(holds ? "ok:" : "WRONG:", what);
   if (!holds) process.exitCode = 1;
 }
-// Until f stays as it is for ten frames.
+// Waits until f does not change for ten frames.
 async function still() {
   let last, now;
   do {

@@ -1,11 +1,11 @@
-//! Smooths a mesh inside an application that draws it, on the vertex buffer it is drawn from:
+//! Smooths a mesh inside an application, on the vertex buffer that the application draws from:
 //!
 //! ```text
 //! cargo run --release --example embed -- [MESH] [OUT_DIR]
 //! ```
 //!
-//! Writes before.png and after.png. The sweeps and the drawing of the second are one command buffer, and
-//! no vertex passes through the host in between. `picture.rs` is plain wgpu: what an application has anyway.
+//! Writes before.png and after.png. For the second, the sweeps and the drawing are in one command buffer, and no vertex
+//! passes through the host in between. `picture.rs` is plain wgpu, which an application has anyway.
 #![allow(clippy::print_stdout)]
 
 mod picture;
@@ -22,8 +22,8 @@ use wgpu::util::DeviceExt;
 
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// What the application keeps of each vertex: x, y, z, and how black the edges are drawn there. The smoother
-/// reads and writes x and y.
+/// What the application stores of each vertex: x, y, z, and how black edges are drawn there. The smoother reads and writes x
+/// and y only.
 pub(crate) type Vertex = [f32; 4];
 
 fn main() -> Result<()> {
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// A picture of the mesh, and how good the mesh in it is.
+/// A picture of the mesh, and the quality of the mesh in it.
 pub(crate) struct Frame {
     pub(crate) pixels: Vec<[u8; 4]>,
     pub(crate) quality: ObjectiveValues,
@@ -56,12 +56,12 @@ impl Frame {
     }
 }
 
-/// Draws the mesh as it is, and again in a frame that smooths it first.
+/// Draws the mesh as it is, and in another frame after smoothing it.
 pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let (device, queue) = open_device(mesh)?;
 
-    // The application's own resources: a vertex buffer, and a picture drawn from it. The smoother needs the usage
-    // STORAGE of the buffer.
+    // The application's own resources: a vertex buffer, and a picture that is drawn from it. The smoother needs the buffer's
+    // usage STORAGE.
     let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("vertices"),
         contents: bytemuck::cast_slice(&vertices_of(mesh)),
@@ -75,8 +75,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         mapped_at_creation: false,
     });
 
-    // The smoother's resources, made once and bound to the vertex buffer and the one for objectives. Device and queue are
-    // handles: a clone is the same device.
+    // The smoother's resources, made once, and bound to the vertex buffer and the buffer for objectives. A clone of the device or
+    // the queue is a handle of the same one.
     let gpu = Gpu::new(device.clone(), queue.clone())?;
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
     let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
@@ -87,8 +87,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let mut frame = |sweeps| -> Result<Frame> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if sweeps > 0 {
-            // The import reads what the application has moved since the last export. Here it has moved nothing, so that
-            // the import could be left out.
+            // The import reads the vertices that the application has moved since the last export. It could be left out here, as none
+            // has moved.
             bound.encode_import(&mut encoder);
             smoother.encode_sweeps(&mut encoder, sweeps);
             bound.encode_export(&mut encoder);
@@ -97,7 +97,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         picture.draw(&mut encoder, &vertices);
         queue.submit([encoder.finish()]);
 
-        // This is only for the file and the printed numbers: an application with a window needs neither.
+        // The pixels are read only for the file and the printed numbers. An application with a window needs neither.
         let pixels = picture.read(&device, &queue)?;
         let quality: Vec<ObjectiveValues> = picture::read(&device, &queue, &objectives)?;
         Ok(Frame { pixels, quality: quality[0] })
@@ -105,7 +105,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     Ok([frame(0)?, frame(sweeps)?])
 }
 
-/// A device good enough for the smoother as well as for the application.
+/// Opens a device that has the limits of the smoother and of the application.
 fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -121,6 +121,6 @@ fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
 }
 
 fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
-    // Pale edges: where triangles are small, they would be all one sees.
+    // Edges are pale, or small triangles would be drawn all black.
     mesh.points.iter().map(|&[x, y]| [x as f32, y as f32, 0.0, 0.45]).collect()
 }

@@ -1,4 +1,4 @@
-// Draws a mesh: `faces` pulls its corners from the vertex buffer, `edges` is fed from it.
+// Draws a mesh: `faces` reads its corners from a storage buffer, `edges` gets them as vertices.
 
 struct View {
     scale: vec2<f32>,
@@ -18,7 +18,7 @@ fn on_screen(p: vec2<f32>) -> vec4<f32> {
     return vec4(p * view.scale + view.offset, 0.0, 1.0);
 }
 
-// The color map magma from its pale end, for equilateral triangles, to its dark one, for flat triangles.
+// The color map magma, from its pale end for equilateral triangles to its dark end for flat ones.
 fn color_of(quality: f32) -> vec4<f32> {
     let magma = array(
         vec3(0.0, 0.0, 4.0),
@@ -40,7 +40,7 @@ fn faces(@builtin(vertex_index) index: u32) -> Varyings {
     let a = vertices[triangles[first + 1u]].xy - p;
     let b = vertices[triangles[first + 2u]].xy - p;
     let c = b - a;
-    // The mean ratio, 1 over IMR: 1 if the triangle is equilateral, 0 if it is flat.
+    // The mean ratio, which is 1 / IMR: 1 if the triangle is equilateral, 0 if it is flat.
     let area = 0.5 * abs(a.x * b.y - a.y * b.x);
     let quality = 4.0 * sqrt(3.0) * area / (dot(a, a) + dot(b, b) + dot(c, c));
     return Varyings(on_screen(vertices[triangles[index]].xy), color_of(quality));

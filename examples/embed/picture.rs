@@ -1,4 +1,4 @@
-//! What an application has anyway: pipelines that draw its mesh, here into a picture instead of a window.
+//! Plain wgpu, which an application has anyway: pipelines that draw its mesh, here into a picture instead of a window.
 
 use gpu_smooth::{Mesh, wgpu};
 use wgpu::BufferUsages as Usage;
@@ -42,7 +42,7 @@ impl Picture {
             ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             count: None,
         };
-        // The vertex buffer is bound to be read as well: a face's color depends on all its corners.
+        // Shaders also read the vertex buffer, as the color of a face depends on all its corners.
         let read_only = wgpu::BufferBindingType::Storage { read_only: true };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("picture"),
@@ -86,7 +86,7 @@ impl Picture {
         }
     }
 
-    /// Encodes the drawing of the mesh as the vertex buffer has it by then.
+    /// Encodes the drawing of the mesh, with the vertices that the buffer has when it is executed.
     pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, vertices: &wgpu::Buffer) {
         let [samples, image] =
             [&self.samples, &self.image].map(|t| t.create_view(&Default::default()));
@@ -112,7 +112,7 @@ impl Picture {
         pass.draw_indexed(0..2 * self.edge_count, 0, 0..1);
     }
 
-    /// The pixels of the last drawing, row by row.
+    /// Reads the pixels of the last drawing, row by row.
     pub(crate) fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<[u8; 4]>> {
         let pixels = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("pixels"),
@@ -123,7 +123,7 @@ impl Picture {
         let mut encoder = device.create_command_encoder(&Default::default());
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            // A multiple of 256, as wgpu asks.
+            // wgpu requires a multiple of 256.
             bytes_per_row: Some(4 * WIDTH),
             rows_per_image: None,
         };
@@ -137,7 +137,7 @@ impl Picture {
     }
 }
 
-/// Each edge once.
+/// The edges of the mesh, each once.
 fn edges_of(mesh: &Mesh) -> Vec<[u32; 2]> {
     let of_triangle = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let ascending = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
@@ -147,7 +147,7 @@ fn edges_of(mesh: &Mesh) -> Vec<[u32; 2]> {
     edges
 }
 
-/// What the whole mesh fills, with a margin: `clip = xy * scale + offset`, as `[scale, offset]`.
+/// The map to clip space that shows the whole mesh with a margin: `clip = xy * scale + offset`, as `[scale, offset]`.
 fn view_of(mesh: &Mesh) -> [[f32; 2]; 2] {
     let [x, y] = [0, 1].map(|axis| {
         let values = || mesh.points.iter().map(|point| point[axis]);

@@ -1,5 +1,5 @@
-//! The application: what pointer and keys do, and what a frame does. It draws into any texture, of a
-//! window or not.
+//! The application: what the pointer and the keys do, and what a frame does. It draws into any texture, with a window or
+//! without.
 
 use gpu_smooth::wgpu;
 use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme};
@@ -14,9 +14,9 @@ use super::render::Renderer;
 use super::smoothing::Smoothing;
 use super::view::View;
 
-/// How near the pointer has to be to a vertex to take hold of it, in pixels.
+/// How near a vertex must be to the pointer to be grabbed, in pixels.
 const RADIUS: f64 = 40.0;
-/// The times that sweeps may take in a frame, in microseconds.
+/// The choices for the time that sweeps may take in a frame, in microseconds.
 const BUDGETS: [u64; 6] = [250, 500, 1000, 2000, 4000, 8000];
 
 /// Opens a device that can smooth the mesh, and draw to the surface if there is one.
@@ -36,9 +36,9 @@ pub(crate) fn open(
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
     let available = adapter.limits();
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        // A clock, where there is one, for the budget of time.
+        // Timestamps, if the device has them, for the budget of time.
         required_features: adapter.features() & Gpu::optional_features(),
-        // What the smoother needs, and textures as large as a window may become.
+        // The limits that the smoother needs, and textures as large as a window may become.
         required_limits: Gpu::required_limits(
             wgpu::Limits::downlevel_defaults().using_resolution(available.clone()),
             size,
@@ -49,7 +49,7 @@ pub(crate) fn open(
     Ok((adapter, device, queue))
 }
 
-/// Everything but the window.
+/// The application without its window.
 pub(crate) struct App {
     pub(crate) smoothing: Smoothing,
     renderer: Renderer,
@@ -61,18 +61,18 @@ pub(crate) struct App {
     metric: Metric,
     alternates: bool,
     paused: bool,
-    /// Whether what is held goes where the pointer is, whatever becomes of the triangles.
+    /// Whether a drag goes on where triangles invert.
     free_hand: bool,
-    /// One of [`BUDGETS`].
+    /// An index into [`BUDGETS`].
     budget: usize,
-    /// The sweeps of the last frame.
+    /// The number of sweeps in the last frame.
     sweeps: u32,
     meter: Meter,
 }
 
 impl App {
-    /// Smooths the mesh on this device and draws it in this format. To be told its size by
-    /// [`resize`](Self::resize).
+    /// Makes an application that smooths the mesh on this device, and draws it in this format. Call [`resize`](Self::resize)
+    /// before the first frame.
     pub(crate) fn new(
         device: wgpu::Device,
         queue: wgpu::Queue,
@@ -102,7 +102,7 @@ impl App {
         })
     }
 
-    /// Draws in this size, in pixels, from now on; with `enlargement` pixels for one of the panel.
+    /// Sets the size of the window in pixels. A pixel of the panel takes `enlargement` pixels.
     pub(crate) fn resize(&mut self, size: [u32; 2], enlargement: u32) {
         self.size = size;
         let panel_height = enlargement * self.panel.size()[1];
@@ -114,7 +114,7 @@ impl App {
         self.view
     }
 
-    /// Takes hold of what is nearest to the pointer, given in pixels.
+    /// Grabs what is nearest to the pointer, whose place is in pixels.
     pub(crate) fn press(&mut self, pointer: [f64; 2]) -> Result<()> {
         self.smoothing.receive()?;
         let Smoothing { topology, points, .. } = &self.smoothing;
@@ -188,7 +188,7 @@ impl App {
         Ok(())
     }
 
-    /// Writes what the last frame showed, its own numbers in the panel.
+    /// Writes a picture of the last frame, with its own numbers in the panel.
     pub(crate) fn capture(&mut self, path: &Path) -> Result<()> {
         self.smoothing.wait()?;
         self.update_panel();
@@ -232,7 +232,7 @@ impl App {
     }
 }
 
-/// Counts sweeps and frames a second, updated twice a second.
+/// Counts sweeps and frames per second, and updates both twice a second.
 struct Meter {
     since: Instant,
     counts: [u32; 2],

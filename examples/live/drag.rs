@@ -1,14 +1,14 @@
-//! What the user can take hold of, and where it is to go.
+//! What the user can grab, and where it goes.
 
 use gpu_smooth::{Topology, signed_area};
 
-/// A frame moves by at most this part of the edges around, so that the sweeps keep up.
+/// The farthest that a frame moves what is held, in units of the edges around it, so that the sweeps can follow.
 const REACH: f64 = 0.3;
 
 /// The holes of a mesh.
 pub(crate) struct Holes {
     loops: Vec<Vec<u32>>,
-    /// For each vertex whether it is on the boundary, and if so the hole it belongs to, if to any.
+    /// For each vertex: `None` if it is inside, `Some(None)` on the outer boundary, else the index of its hole.
     of: Vec<Option<Option<usize>>>,
 }
 
@@ -17,7 +17,7 @@ impl Holes {
         let mut of = vec![None; points.len()];
         let mut loops = Vec::new();
         for vertices in topology.boundary_loops() {
-            // The outside goes around counter-clockwise, a hole clockwise.
+            // The outer boundary is counterclockwise, a hole clockwise.
             let hole = (signed_area(points, &vertices) < 0.0).then_some(loops.len());
             vertices.iter().for_each(|&v| of[v as usize] = Some(hole));
             if hole.is_some() {
@@ -28,12 +28,12 @@ impl Holes {
     }
 }
 
-/// Something held by the pointer: an interior vertex, or all of a hole's boundary.
+/// What the pointer holds: one interior vertex, or all vertices of a hole's boundary.
 pub(crate) struct Drag {
     vertices: Vec<u32>,
-    /// Where they were when they were taken hold of.
+    /// The places of the vertices when they were grabbed.
     start: Vec<[f64; 2]>,
-    /// The vertex under the pointer, where it was, and where it is to go: it stays until the pointer moves.
+    /// The vertex under the pointer. `from` is its place when it was grabbed; `goal`, at first the same, is where it should go.
     grip: u32,
     from: [f64; 2],
     goal: [f64; 2],
@@ -42,7 +42,7 @@ pub(crate) struct Drag {
 }
 
 impl Drag {
-    /// Takes hold of the nearest vertex within `radius`, or of the hole that it bounds.
+    /// Grabs the nearest vertex within `radius`, or the hole whose boundary it is on.
     pub(crate) fn grab(
         topology: &Topology<'_>,
         holes: &Holes,
@@ -60,7 +60,7 @@ impl Drag {
         let vertices = match holes.of[grip as usize] {
             None => vec![grip],
             Some(Some(hole)) => holes.loops[hole].clone(),
-            // The outer boundary stays.
+            // The outer boundary cannot be grabbed.
             Some(None) => return None,
         };
         let start = vertices.iter().map(|&v| points[v as usize]).collect();
@@ -77,13 +77,13 @@ impl Drag {
         self.goal = at;
     }
 
-    /// Where the vertices are to go in the next frame: to the goal at once, or only a little nearer to it than they are, so that
-    /// the sweeps keep up.
+    /// The places of the vertices in the next frame: at the goal `at_once`, or only a little nearer to it, so that the sweeps can
+    /// follow.
     pub(crate) fn goals(&self, points: &[[f64; 2]], at_once: bool) -> Vec<[f64; 2]> {
         let now = points[self.grip as usize];
         let way = distance(now, self.goal);
         let part = if at_once || way == 0.0 { 1.0 } else { (REACH * self.edge / way).min(1.0) };
-        // All go as far as the vertex under the pointer, from where they were: what is held keeps its shape.
+        // All move by the same vector as the vertex under the pointer, so that what is held keeps its shape.
         let delta = [0, 1].map(|i| now[i] + part * (self.goal[i] - now[i]) - self.from[i]);
         self.start.iter().map(|p| [p[0] + delta[0], p[1] + delta[1]]).collect()
     }

@@ -4,10 +4,11 @@
 //! cargo run --release --example live -- [MESH] [--script FILE] [--out DIR] [--headless] [--size WxH]
 //! ```
 //!
-//! Every frame is one command buffer: sweeps of the smoother, as many as there is time for, then the drawing, both on the vertex
-//! buffer of this application; see `smoothing.rs`. What is dragged stops before a triangle inverts, on the device; with
-//! a free hand (F) it goes on, and what is turned inside out is turned back in the next frames. With a script (see `script.rs` for its format) no user is needed, and
-//! with `--headless` no window either.
+//! Every frame is one command buffer: as many sweeps as there is time for, then the drawing, both on the application's own
+//! vertex buffer (see `smoothing.rs`). On the device, a drag stops before a triangle inverts. With a free hand (key F) it
+//! goes on, and the next frames turn the inverted triangles back.
+//!
+//! With a script (see `script.rs` for its format) no user is needed, and with `--headless` no window either.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 pub(crate) mod app;

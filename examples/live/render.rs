@@ -8,7 +8,7 @@ use super::view::View;
 
 const BACKGROUND: wgpu::Color = wgpu::Color { r: 0.89, g: 0.89, b: 0.87, a: 1.0 };
 
-/// The pipelines, and the buffers that they read beside the vertices.
+/// The pipelines, and the buffers that they read besides the vertices.
 pub(crate) struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -91,7 +91,7 @@ impl Renderer {
         }
     }
 
-    /// Shows the mesh like this from now on, and `enlargement` pixels for each of the panel's.
+    /// Sets the view of the mesh, and how many pixels a pixel of the panel takes.
     pub(crate) fn show(&self, view: View, enlargement: u32) {
         let [scale, offset, pixel] = view.uniform();
         let stops = overlay::STOPS.map(|[r, g, b]| [r, g, b, 255].map(|x| f32::from(x) / 255.0));
@@ -174,7 +174,7 @@ struct Uniform {
     stops: [[f32; 4]; 7],
 }
 
-/// Each edge once.
+/// The edges of the mesh, each once.
 fn edges(topology: &Topology<'_>) -> Vec<[u32; 2]> {
     let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[v, w]| [v.min(w), v.max(w)]);
     let mut edges: Vec<_> = topology.triangles().iter().flat_map(of).collect();

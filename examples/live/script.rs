@@ -28,13 +28,13 @@ enum Command {
     Check,
 }
 
-/// A script, and how far it is.
+/// A script, and how far it has been executed.
 pub(crate) struct Script {
     commands: Vec<Command>,
     next: usize,
-    /// Frames spent on the next command.
+    /// The number of frames spent on the next command.
     spent: u32,
-    /// The pointer, in the mesh's plane, before that command.
+    /// The place of the pointer before that command, in the mesh's plane.
     pointer: [f64; 2],
     out: PathBuf,
     start: Instant,
@@ -42,7 +42,7 @@ pub(crate) struct Script {
 }
 
 impl Script {
-    /// Screenshots go into `out`.
+    /// Reads a script. Its screenshots go to the folder `out`.
     pub(crate) fn parse(text: &str, out: PathBuf) -> std::result::Result<Self, String> {
         let mut commands = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
@@ -58,7 +58,7 @@ impl Script {
         Ok(Self { commands, next: 0, spent: 0, pointer, out, start, frames: 0 })
     }
 
-    /// Does what is to be done before the next frame. Returns whether there is to be one.
+    /// Executes what comes before the next frame. Returns whether there is to be a next frame.
     pub(crate) fn advance(&mut self, app: &mut App) -> Result<bool> {
         if self.frames == 0 {
             self.start = Instant::now();

@@ -1,4 +1,4 @@
-//! The mesh on the device: all that this application has to do with gpu-smooth.
+//! The mesh on the device: everything in this application that uses gpu-smooth.
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage, util::DeviceExt};
 use gpu_smooth::{
@@ -11,26 +11,26 @@ use super::Result;
 
 /// Bytes of a vertex: x and y, both f32.
 const STRIDE: u64 = 8;
-/// Where the share of a move stands in the buffer of numbers, after the objectives.
+/// The offset of the share of a move in the buffer of numbers, in bytes. Objectives come before it.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
-/// A triangle that the user touches may get this bad (inverse mean ratio), or stay as bad as it is.
+/// The largest inverse mean ratio that a drag gives a triangle; one that is worse already may stay as bad.
 const WORST: f64 = 8.0;
-/// Sweeps of untangling in each frame. Where nothing is inverted they do nothing.
+/// The number of untangling sweeps in each frame. They do nothing while nothing is inverted.
 const UNTANGLING: u32 = 5;
-/// The most sweeps in a frame, and their number on a device without a clock.
+/// The most sweeps in a frame; `WITHOUT_CLOCK` is their number on a device without timestamps.
 const MOST: u32 = 16;
 const WITHOUT_CLOCK: u32 = 4;
 
-/// A mesh that is smoothed where it is drawn from. The host sees what has arrived of the frames before, and never waits.
+/// A mesh that is smoothed in the buffer it is drawn from. The host sees earlier frames as they arrive, and never waits.
 pub(crate) struct Smoothing {
     pub(crate) gpu: Gpu,
     pub(crate) mesh: Mesh,
     pub(crate) topology: Topology<'static>,
     /// The vertices that are drawn.
     pub(crate) vertices: wgpu::Buffer,
-    /// The positions of the latest frame that has arrived.
+    /// The positions of the last frame that has arrived.
     pub(crate) points: Vec<[f64; 2]>,
-    /// How good the mesh was then.
+    /// The objectives of the last frame that has arrived.
     pub(crate) objectives: ObjectiveValues,
     device_mesh: DeviceMesh,
     bound: BoundVertices,
@@ -40,7 +40,7 @@ pub(crate) struct Smoothing {
     scheme: Scheme,
     budget: Budget,
     has_clock: bool,
-    /// What the user holds, if it is to stop before a triangle inverts.
+    /// The move of what the user holds, if it is to stop before a triangle inverts.
     held: Option<BoundMove>,
     targets: wgpu::Buffer,
     numbers: wgpu::Buffer,
@@ -56,13 +56,13 @@ impl Smoothing {
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
         let sweeps = Sweeps::until_converged(&device_mesh, &options(&scheme))?;
         let untangling = UntanglingSweeps::new(&device_mesh)?;
-        // Every scheme that a key may choose, so that no frame waits for a compiler.
+        // Compiles the kernels of every scheme that a key may choose, so that no frame waits for a compiler.
         Metric::ALL.iter().try_for_each(|&metric| gpu.prepare(&options(&metric.into())))?;
         let device = gpu.device();
         let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("vertices"),
             contents: bytemuck::cast_slice(&floats(&mesh.points)),
-            // STORAGE for the smoother, VERTEX and STORAGE for drawing.
+            // The smoother needs STORAGE, drawing needs VERTEX and STORAGE.
             usage: Usage::VERTEX | Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
         });
         let buffer = |label, size, usage| {
@@ -104,7 +104,7 @@ impl Smoothing {
         &self.scheme
     }
 
-    /// Goes on with another scheme, from the vertices as they are.
+    /// Continues with another scheme, from the present vertices.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
         self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme))?;
         self.objective = self.sweeps.bind_objective(&self.numbers, 0)?;
@@ -112,14 +112,14 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Gives the sweeps this much time in each frame. A device without a clock does the same number in all.
+    /// Sets the time for sweeps in each frame. A device without timestamps does the same number of sweeps in each frame.
     pub(crate) fn set_budget(&mut self, micros: u64) -> Result<()> {
         let budget = Budget::micros(micros).at_most(MOST);
         self.budget = if self.has_clock { budget.timed_by(&self.gpu)? } else { budget };
         Ok(())
     }
 
-    /// Pins what the user takes hold of, and lets go of the rest. With `clamp` it is moved on the device, as far as the triangles
+    /// Pins the vertices that the user has grabbed, and no others. With `clamp` the device moves them, as far as the triangles
     /// allow.
     pub(crate) fn hold(&mut self, held: &[u32], clamp: bool) -> Result<()> {
         self.device_mesh.set_pinned(held)?;
@@ -129,21 +129,21 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Says where what is held is to go in the next frame.
+    /// Sets where the held vertices go in the next frame.
     pub(crate) fn aim(&mut self, held: &[u32], goals: &[[f64; 2]]) {
         let (queue, goals) = (self.gpu.queue(), floats(goals));
         if self.held.is_some() {
             queue.write_buffer(&self.targets, 0, bytemuck::cast_slice(&goals));
             return;
         }
-        // Right into the vertex buffer: all others have the floats of the last export there, and the import leaves them alone.
+        // Writes into the vertex buffer. All other vertices still have the floats of the last export, so the import ignores them.
         for (&v, goal) in held.iter().zip(&goals) {
             queue.write_buffer(&self.vertices, u64::from(v) * STRIDE, bytemuck::bytes_of(goal));
         }
         self.moved = true;
     }
 
-    /// Moves all vertices back to where the mesh has them.
+    /// Moves all vertices back to their places in the mesh file.
     pub(crate) fn reset(&mut self) {
         let floats = floats(&self.mesh.points);
         self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&floats));
@@ -151,8 +151,8 @@ impl Smoothing {
         self.sweeps.restart();
     }
 
-    /// Encodes what a frame does before it draws: moves what the user holds, turns inverted triangles back, sweeps as long as there is
-    /// time, and leaves the vertices where they are drawn from. Returns the number of sweeps.
+    /// Encodes what a frame does before it draws: moves what the user holds, turns inverted triangles back, sweeps while there is
+    /// time, and exports the vertices to be drawn. Returns the number of sweeps.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, paused: bool) -> u32 {
         if std::mem::take(&mut self.moved) {
             self.bound.encode_import(encoder);
@@ -179,7 +179,7 @@ impl Smoothing {
         sweeps
     }
 
-    /// Takes what has arrived of the frames before.
+    /// Takes the results of earlier frames that have arrived.
     pub(crate) fn receive(&mut self) -> Result<()> {
         self.gpu.device().poll(wgpu::PollType::Poll)?;
         if let Some(points) = self.seen_points.latest()? {
@@ -192,7 +192,7 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Waits for the last frame, for those who have no window to wait for.
+    /// Waits for the last frame, where there is no window whose frames to wait for.
     pub(crate) fn wait(&mut self) -> Result<()> {
         self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
         self.receive()

@@ -1,13 +1,13 @@
-//! From the mesh's plane to the window's pixels and back.
+//! Maps the mesh's plane to the pixels of the window, and back.
 
-/// Pixels around the mesh.
+/// The margin around the mesh, in pixels.
 const MARGIN: f64 = 24.0;
 
-/// Where the mesh is shown: as large as fits below the panel, its aspect ratio kept.
+/// Where the mesh is shown: as large as fits below the panel, with equal scales in x and y.
 #[derive(Clone, Copy)]
 pub(crate) struct View {
     size: [f64; 2],
-    /// The point that is shown at `middle`, which is in pixels from the top left.
+    /// The point of the plane that is shown at `middle`, which is in pixels from the top left.
     center: [f64; 2],
     middle: [f64; 2],
     pixels_per_unit: f64,
@@ -20,7 +20,7 @@ impl View {
             [low, points.iter().map(|p| p[x]).fold(f64::NEG_INFINITY, f64::max)]
         });
         let size = size.map(f64::from);
-        // A window as flat as the panel shows the mesh behind it.
+        // If the window is not much higher than the panel, the mesh is shown behind the panel.
         let above = Some(f64::from(panel_height)).filter(|&h| h < size[1] / 2.0).unwrap_or(0.0);
         let room = [size[0], size[1] - above].map(|side| (side - 2.0 * MARGIN).max(1.0));
         Self {
@@ -41,7 +41,7 @@ impl View {
         [self.center[0] + x, self.center[1] - y]
     }
 
-    /// Scale and offset that lead from the plane to clip space, then the size of a pixel there.
+    /// Scale and offset from the plane to clip space, and the size of a pixel in clip space.
     pub(crate) fn uniform(self) -> [[f32; 2]; 3] {
         let pixel = self.size.map(|side| 2.0 / side);
         let scale = pixel.map(|p| p * self.pixels_per_unit);

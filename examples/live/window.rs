@@ -13,7 +13,7 @@ use winit::window::{Window, WindowId};
 use super::app::{App, open};
 use super::{Request, Result};
 
-/// When a frame could not be had, another is asked for after this time.
+/// If a frame could not be drawn, the next one is requested after this time.
 const RETRY: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(request: Request) -> Result<()> {
@@ -24,15 +24,15 @@ pub(crate) fn run(request: Request) -> Result<()> {
     shell.problem.map_or(Ok(()), Err)
 }
 
-/// What winit talks to.
+/// The handler of winit's events.
 struct Shell {
-    /// The application before there is a window for it.
+    /// What to show, until there is a window for it.
     request: Option<Request>,
     stage: Option<Stage>,
     problem: Option<Box<dyn std::error::Error>>,
 }
 
-/// The window with all that is in it.
+/// The window, its surface, and the application in it.
 struct Stage {
     instance: wgpu::Instance,
     window: Arc<Window>,
@@ -87,7 +87,7 @@ impl Stage {
     /// Fits surface and application to the window.
     fn resize(&mut self) {
         let PhysicalSize { width, height } = self.window.inner_size();
-        // A minimized window has no pixels, and there are no surfaces without any.
+        // A minimized window has no pixels, and a surface needs some.
         if width == 0 || height == 0 {
             return;
         }
@@ -98,11 +98,11 @@ impl Stage {
         self.window.request_redraw();
     }
 
-    /// Draws a frame, if the window can show one. Returns whether there are more to come.
+    /// Draws a frame, if the window can show one. Returns whether the application goes on.
     fn draw(&mut self, event_loop: &ActiveEventLoop) -> Result<bool> {
         let size = self.window.inner_size();
         if self.occluded || size.width == 0 || size.height == 0 {
-            // An event comes when that changes.
+            // An event comes when the window can be seen again.
             return Ok(true);
         }
         let (texture, reconfigure) = match self.surface.get_current_texture() {
@@ -138,7 +138,7 @@ impl Stage {
         Ok(true)
     }
 
-    /// Returns whether to go on.
+    /// Handles an event. Returns whether the application goes on.
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) -> Result<bool> {
         match event {
             WindowEvent::CloseRequested => return Ok(false),
@@ -148,7 +148,7 @@ impl Stage {
                 self.occluded = occluded;
                 self.window.request_redraw();
             }
-            // A script is not to be disturbed.
+            // The user cannot disturb a script.
             _ if self.script.is_some() => {}
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = position.into();
@@ -190,7 +190,7 @@ impl ApplicationHandler for Shell {
         let result = stage.handle(event_loop, event);
         if !matches!(result, Ok(true)) {
             self.problem = result.err();
-            // The surface goes before the event loop that it came from.
+            // The surface must be dropped before the event loop that made it.
             self.stage = None;
             event_loop.exit();
         }

@@ -1,10 +1,10 @@
-//! A plate whose hole turns, a little with each step of a simulation; a few sweeps a step keep the mesh good:
+//! A plate whose hole turns a little in each step of a simulation. A few sweeps in each step keep the mesh good:
 //!
 //! ```text
 //! cargo run --release --example moving_boundary -- [VERTICES] [SWEEPS]
 //! ```
 //!
-//! Beside it, the same motion with no sweeps, as if the mesh were left to itself.
+//! For comparison, the same motion is done without sweeps.
 #![allow(clippy::print_stdout)]
 
 #[path = "../../tests/support/mod.rs"]
@@ -56,15 +56,15 @@ fn main() -> Result<()> {
 pub(crate) struct Step {
     /// How far the hole has turned, in degrees.
     pub(crate) angle: f64,
-    /// From the first call of the step until the device was done.
+    /// The time from the first call of the step until the device was done.
     pub(crate) took: Duration,
-    /// The quality of the mesh that is swept in each step.
+    /// The quality of the mesh that has sweeps in each step.
     pub(crate) kept: Quality,
-    /// The quality of the mesh with the same motion and no sweeps.
+    /// The quality of the mesh that moves without sweeps.
     pub(crate) left: Quality,
 }
 
-/// Turns the hole of a plate by so many degrees a step.
+/// Turns the hole of a plate by this many degrees in each step.
 pub(crate) fn simulate(
     vertices: usize,
     sweeps: u32,
@@ -101,14 +101,14 @@ pub(crate) fn simulate(
             queue.write_buffer(&buffer, stride * u64::from(v), bytemuck::cast_slice(&xy));
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        // All other vertices are still where the export left them, and keep their full precision.
+        // All other vertices still have the floats of the last export, so the import leaves them their full precision.
         bound.encode_import(&mut encoder);
-        // No `restart`: the hole turns by less than an edge, and over-relaxed sweeps carry the motion farther into the
-        // mesh than plain ones.
+        // No `restart`: the hole turns by less than an edge. Over-relaxed sweeps carry the motion farther into the mesh than
+        // plain ones would.
         smoother.encode_sweeps(&mut encoder, sweeps);
         bound.encode_export(&mut encoder);
         queue.submit([encoder.finish()]);
-        // Here the simulation would compute on the vertex buffer. This example only waits, to take the time.
+        // Here the simulation would compute with the vertex buffer. This example only waits, to measure the time.
         device.poll(wgpu::PollType::wait_indefinitely())?;
         let took = start.elapsed();
 
@@ -130,7 +130,7 @@ fn plate(vertices: usize) -> Result<Mesh> {
     Ok(support::triangulate(&support::Outline::parse(&outline)?, vertices)?)
 }
 
-/// The vertices on the edge of the hole: of the boundary's loops, the one that goes around clockwise.
+/// The vertices of the hole: the clockwise loop of the boundary.
 fn hole(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<u32> {
     let mut loops = topology.boundary_loops().into_iter();
     loops.find(|vertices| signed_area(points, vertices) < 0.0).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! The paper's claims, what was measured, and the verdicts, all by the rules written here.
+//! The paper's claims, the measures for each, and the verdicts. Their rules are all here.
 
 use super::analysis::{Data, Reach, View, base, median, paper_name, published_range, range};
 use super::document::Table;
@@ -8,17 +8,17 @@ use super::store::{BINS, DistributionRecord};
 use super::study::{Place, Setting, Size};
 use super::tables::{NONE, percent, setting_name, share};
 
-/// How far the median may lie from the published range and still reproduce it.
+/// How far the median may be outside of the published range and still reproduce it, as a share of the time.
 const TOLERANCE: f64 = 0.05;
 
-/// A claim, and its measures by view.
+/// A claim, and what was measured for it in each view.
 pub(crate) struct Claim {
     pub(crate) statement: String,
     pub(crate) published: String,
     pub(crate) measures: Vec<(View, Measure)>,
 }
 
-/// What was measured in a view, and whether it bears the claim out.
+/// What was measured in a view, and whether it supports the claim.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measure {
     pub(crate) text: String,
@@ -26,8 +26,8 @@ pub(crate) struct Measure {
 }
 
 impl Claim {
-    /// Whether the claim is reproduced, is not, or is under some conditions only. `size` is that of the tables: the
-    /// verdict says where meshes of another size stand in.
+    /// Says whether the claim is reproduced always, never, or under which conditions. `size` is the size of the meshes in the
+    /// tables: views of another size are marked.
     pub(crate) fn verdict(&self, size: Size) -> String {
         let at_paper = |setting| {
             let mut of =
@@ -60,7 +60,7 @@ impl Claim {
     }
 }
 
-/// "as published (cpu 95.0 %, 99.0 %)" and so on.
+/// The views as text, such as "as published (cpu 95.0 %, 99.0 %)".
 fn conditions(views: &[View], size: Size) -> String {
     let mut parts: Vec<(String, Vec<String>)> = Vec::new();
     for view in views {
@@ -81,7 +81,7 @@ fn conditions(views: &[View], size: Size) -> String {
     parts.join("; ")
 }
 
-/// Every view that has runs.
+/// All views that have runs.
 fn views(data: &Data) -> Vec<View> {
     let mut views = Vec::new();
     for place in data.places() {
@@ -178,7 +178,8 @@ pub(crate) fn claims(data: &Data) -> Vec<Claim> {
     claims
 }
 
-/// The time `scheme` saves against `against`.
+/// Measures the time that `scheme` saves against `against`. The claim holds if the median is in the range, within
+/// [`TOLERANCE`].
 fn saving(data: &Data, view: View, scheme: &str, against: &str, [low, high]: [f64; 2]) -> Measure {
     let all = data.saved(view, scheme, against);
     let values: Vec<_> = all.iter().flatten().copied().collect();
@@ -216,7 +217,7 @@ fn spread_of(bounds: Option<[f64; 2]>) -> String {
     bounds.map_or(NONE.into(), |[low, high]| format!("{} to {}", percent(low), percent(high)))
 }
 
-/// The median, and the range in parentheses.
+/// The median as text, with the range in parentheses.
 fn spread_median(values: &[f64]) -> String {
     let Some(middle) = median(values.to_vec()) else { return NONE.into() };
     let [low, high] = range(values);
@@ -229,7 +230,7 @@ fn times(values: &[f64]) -> String {
     format!("{} × ({low} to {high})", super::tables::three(middle))
 }
 
-/// The verdicts, with the columns a reader asks for first.
+/// The table of verdicts, with the most important columns.
 pub(crate) fn table(data: &Data, claims: &[Claim]) -> Table {
     let place = data.places().first().copied().unwrap_or(Place::Cpu);
     let mut rows: Vec<_> = claims
@@ -268,7 +269,7 @@ pub(crate) fn table(data: &Data, claims: &[Claim]) -> Table {
     }
 }
 
-/// All measures of all claims.
+/// The table of all measures of all claims.
 pub(crate) fn all(claims: &[Claim]) -> Table {
     let rows = claims.iter().flat_map(|claim| {
         claim.measures.iter().map(|(view, measure)| {
@@ -293,7 +294,7 @@ pub(crate) fn all(claims: &[Claim]) -> Table {
     }
 }
 
-/// What Figures 4 and 5 are said to show.
+/// The table rows about what Figures 4 and 5 show.
 fn distribution_rows(data: &Data) -> Vec<Vec<String>> {
     let find = |domain: &str, quality: &str, scheme: &str| {
         data.distributions

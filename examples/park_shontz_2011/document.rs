@@ -1,14 +1,14 @@
-//! A report as blocks, written as Markdown and as HTML.
+//! A report made of blocks, written as Markdown and as HTML.
 
 use std::fmt::Write;
 
-/// A part of the report. Text may hold `code`, **strong** and *emphasis*.
+/// A block of the report. Its text may contain `code`, **strong** and *emphasis*.
 pub(crate) enum Block {
     Heading(u8, String),
     Text(String),
     List(Vec<String>),
     Table(Table),
-    /// A file in figures/, its SVG and its caption.
+    /// A figure: its file in figures/, its SVG and its caption.
     Figure {
         file: String,
         svg: String,
@@ -16,12 +16,12 @@ pub(crate) enum Block {
     },
 }
 
-/// Rows under a head; the first column is text, the others are numbers.
+/// Rows under a head. The first column is text, the others are numbers.
 pub(crate) struct Table {
     pub(crate) caption: String,
     pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
-    /// Whether all columns are text.
+    /// Whether all columns are text, not only the first.
     pub(crate) prose: bool,
 }
 
@@ -120,7 +120,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// `code`, **strong** and *emphasis*.
+/// Text as HTML, with `code`, **strong** and *emphasis*.
 fn inline(text: &str) -> String {
     let mut out = escaped(text);
     for (mark, tag) in [("`", "code"), ("**", "strong"), ("*", "em")] {

@@ -1,4 +1,4 @@
-//! The six domains, drawn for this project, and the meshes of them.
+//! The six domains, which were drawn for this project, and their meshes.
 
 use gpu_smooth::Mesh;
 
@@ -9,15 +9,15 @@ use super::support::{Outline, distort_smooth, perturb_random, triangulate};
 pub(crate) struct Domain {
     pub(crate) name: &'static str,
     outline: &'static str,
-    /// Vertices of the paper's mesh.
+    /// The number of vertices in the paper's mesh.
     pub(crate) vertices: usize,
-    /// Elements of the paper's mesh.
+    /// The number of elements in the paper's mesh.
     pub(crate) elements: usize,
 }
 
 macro_rules! domains {
     ($($name:literal $vertices:literal $elements:literal)*) => {
-        /// In the paper's order.
+        /// All domains, in the paper's order.
         pub(crate) const DOMAINS: &[Domain] = &[$(Domain {
             name: $name,
             outline: include_str!(concat!("../../meshes/", $name, ".outline")),
@@ -36,10 +36,10 @@ domains! {
     "twoholes" 56088 111537
 }
 
-/// Vertices of a coarse mesh: those in `meshes/`.
+/// The number of vertices of a coarse mesh, as of those in `meshes/`.
 const COARSE: usize = 1500;
 
-/// How far the smooth distortion goes; at 1 the first triangle would be flat.
+/// The amplitude of the smooth distortion. At 1 the first triangle would be flat.
 const AMPLITUDE: f64 = 0.95;
 
 impl Domain {
@@ -47,7 +47,7 @@ impl Domain {
         DOMAINS.iter().find(|d| d.name == name).ok_or_else(|| format!("no domain '{name}'"))
     }
 
-    /// The mesh as triangulated, then as it starts: the same bytes each time.
+    /// Triangulates the domain. The result always has the same bytes.
     pub(crate) fn mesh(&self, size: Size) -> Result<Mesh, String> {
         let vertices = match size {
             Size::Coarse => COARSE,
@@ -57,7 +57,7 @@ impl Domain {
     }
 }
 
-/// The interior moved from where the triangulation had it, nothing inverted.
+/// Moves the interior from where the triangulation had it, without inverting a triangle.
 pub(crate) fn started(mesh: &Mesh, start: Start) -> Mesh {
     match start {
         Start::Random => perturb_random(mesh, 1.0, 1),

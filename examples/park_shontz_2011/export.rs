@@ -1,4 +1,4 @@
-//! The data in forms that other programs read: CSV by kind, and all of it as one JSON file.
+//! Exports the data for other programs: a CSV file for each kind, and one JSON file with everything.
 
 use std::fmt::Write;
 use std::fs;
@@ -8,7 +8,7 @@ use super::analysis::{Data, Reach};
 use super::store::{BINS, Record};
 use super::{Result, store};
 
-/// Shares of the way that the tables give: the paper's and two stricter.
+/// The shares of the way in the tables: the paper's, and two stricter ones.
 pub(crate) const FRACTIONS: [f64; 3] = [0.95, 0.99, 0.999];
 
 pub(crate) fn write(data: &Data, folder: &Path) -> Result<()> {

@@ -1,12 +1,12 @@
-//! Park and Shontz's experiments, run again: their six kinds of meshes, their tables and figures beside the
-//! published numbers, and a verdict on each claim.
+//! Runs Park and Shontz's experiments again: on six kinds of meshes, with their tables and figures beside the published
+//! numbers, and a verdict on each claim.
 //!
 //! ```text
 //! cargo run --release --example park-shontz-2011 -- [FOLDER] [--quick] [--engine both|cpu|gpu] [--adapter NAME]
 //! ```
 //!
-//! Writes report.html, report.md, figures/ and data/ into FOLDER. A study that was stopped goes on where it was
-//! when the same command is given again. `--quick` uses coarse meshes. docs/paper.md has the method and findings.
+//! Writes report.html, report.md, figures/ and data/ into FOLDER. After a stop, the same command continues the study where it
+//! was. `--quick` uses coarse meshes. docs/paper.md has the method and the findings.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod analysis;
@@ -119,7 +119,7 @@ impl Request {
     }
 }
 
-/// Does the runs of a study that are not yet in the folder.
+/// Does those runs of a study whose records are not yet in the folder.
 pub(crate) fn gather(
     study: &Study,
     places: &[Place],
@@ -169,7 +169,7 @@ pub(crate) fn gather(
     Ok(())
 }
 
-/// Writes the report of what is in the folder.
+/// Writes the report from the records in the folder.
 pub(crate) fn report(folder: &Path) -> Result<()> {
     let data = Data::new(store::read(folder)?)?;
     export::write(&data, &folder.join("data"))?;
@@ -177,7 +177,7 @@ pub(crate) fn report(folder: &Path) -> Result<()> {
     report::write(&data, &figures, folder)
 }
 
-/// The processor's name, where the system tells.
+/// The name of the processor, if the system tells it.
 fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info.lines().find(|line| line.starts_with("model name"));

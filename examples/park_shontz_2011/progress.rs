@@ -1,4 +1,4 @@
-//! How far the study is, and how long it will still take.
+//! Reports how far the study is, and estimates the time left.
 
 use std::collections::HashMap;
 use std::io::{IsTerminal, Write};
@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 use super::store::{RunRecord, Store};
 use super::study::{Batch, Case, Place, Setting, Size, Start};
 
-/// What runs that cost alike have in common.
+/// Properties that determine the cost of a run.
 type Kind = (Setting, Size, Start, Place, String);
 
-/// Counts runs and their times.
+/// Counts runs, and adds up their times.
 pub(crate) struct Progress {
-    /// Runs to do by kind, and a guess of what one costs, in no unit.
+    /// For each kind, the number of runs left, and a guess of the cost of one, in arbitrary units.
     left: HashMap<Kind, (usize, f64)>,
-    /// Runs done and their seconds, by kind.
+    /// For each kind, the number of runs done, and their seconds.
     done: HashMap<Kind, (usize, f64)>,
     total: usize,
     told: Option<Instant>,
@@ -24,7 +24,7 @@ fn kind(case: &Case) -> Kind {
     (case.setting, case.size, case.start, case.place, case.scheme.clone())
 }
 
-/// About how much longer a run takes than others, before any of its kind was seen.
+/// Guesses the relative cost of a run, for kinds of which none was done yet.
 fn guess(batch: &Batch) -> f64 {
     let size = match batch.size {
         Size::Coarse => 1.0,
@@ -62,7 +62,7 @@ impl Progress {
         *seconds += run.wall_seconds;
     }
 
-    /// Notes a run and says where the study is, now and then.
+    /// Counts a run that is done, and prints the state of the study now and then.
     pub(crate) fn done(&mut self, run: &RunRecord) {
         self.count(run);
         let terminal = std::io::stderr().is_terminal();
@@ -96,7 +96,7 @@ impl Progress {
         }
     }
 
-    /// The time of the runs to do, by the mean of runs of their kind, or for a kind not yet seen by its guess.
+    /// Estimates the seconds left: by the mean time of runs of the same kind, or for a new kind by its guess.
     fn seconds_left(&self) -> f64 {
         let mut seen = (0.0, 0.0);
         for (kind, (runs, seconds)) in &self.done {
@@ -114,7 +114,7 @@ impl Progress {
     }
 }
 
-/// Minutes and seconds.
+/// A time as minutes and seconds.
 pub(crate) fn clock(seconds: f64) -> String {
     let seconds = seconds.round() as u64;
     match seconds {

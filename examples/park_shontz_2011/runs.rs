@@ -1,4 +1,4 @@
-//! Doing the runs: an engine is driven sweep by sweep, so that each has its time.
+//! Does the runs, sweep by sweep, so that the time of each is known.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -12,10 +12,10 @@ use super::store::{BINS, DesiredRecord, DistributionRecord, MeshRecord, RunRecor
 use super::study::{Batch, Case, Place, Setting, Size, Start, Study};
 use super::{Result, support};
 
-/// The share of the way at which the distributions of Figures 4 and 5 are taken: the paper's.
+/// The share of the way at which the distributions of Figures 4 and 5 are taken, as in the paper.
 const CONVERGED: f64 = 0.95;
 
-/// A mesh at its start, ready for the engines.
+/// A mesh before a run, prepared for the engines.
 pub(crate) struct Prepared {
     mesh: Mesh,
     problem: Problem,
@@ -29,7 +29,7 @@ impl Prepared {
     }
 }
 
-/// Makes runs; keeps the last mesh, as the next run is mostly on the same.
+/// Does runs. Keeps the last mesh, as the next run mostly uses the same.
 pub(crate) struct Runner {
     gpu: Option<Gpu>,
     /// The size of the meshes in the tables.
@@ -46,7 +46,7 @@ impl Runner {
         Self { gpu, size, reference_sweeps, last: None, warm: HashSet::new() }
     }
 
-    /// The facts of a mesh as it was triangulated.
+    /// The record of a mesh as it was triangulated.
     pub(crate) fn mesh(&self, domain: &Domain, size: Size) -> Result<MeshRecord> {
         let mesh = domain.mesh(size)?;
         Ok(MeshRecord {
@@ -59,8 +59,8 @@ impl Runner {
         })
     }
 
-    /// The optimum of a metric: the better of what over-relaxed sweeps make of the mesh as triangulated
-    /// and of the mesh perturbed at random.
+    /// The optimum of a metric. Over-relaxed sweeps start from the mesh as triangulated, and from the mesh perturbed at random;
+    /// this is the better result.
     pub(crate) fn desired(
         &self,
         domain: &Domain,
@@ -90,7 +90,7 @@ impl Runner {
         Ok(DesiredRecord { domain, size, metric, f: best, origin: tried.join("; ") })
     }
 
-    /// Does a run. Takes its time from the sweeps and their evaluations of f alone.
+    /// Does a run. Its time is that of the sweeps and their evaluations of f only.
     pub(crate) fn run(&mut self, batch: &Batch, case: &Case, desired: f64) -> Result<RunRecord> {
         let wall = Instant::now();
         let scheme: Scheme = case.scheme.parse()?;
@@ -167,7 +167,7 @@ impl Runner {
         })
     }
 
-    /// Drivers compile kernels when they are first used, which is no part of any run.
+    /// Does a few sweeps, as drivers compile kernels when they are first used. That time is not part of a run.
     fn warm_up(&mut self, batch: &Batch, case: &Case, scheme: &Scheme) -> Result<()> {
         if case.place == Place::Gpu && self.warm.insert((case.scheme.clone(), case.setting)) {
             let mesh = Domain::named(&case.domain)?.mesh(Size::Coarse)?;
@@ -178,7 +178,7 @@ impl Runner {
         Ok(())
     }
 
-    /// What the other metrics say of a run's states, for the figures: the run again, not timed.
+    /// Adds f by the other metrics to each state of a run, for the figures. Does the run again, without timing it.
     fn judge_by_others(
         &self,
         problem: &Problem,
@@ -200,7 +200,7 @@ fn own_omega() -> [f64; Metric::ALL.len()] {
     std::array::from_fn(|i| Metric::ALL[i].properties().omega)
 }
 
-/// One plain Newton step a visit with analytic derivatives.
+/// A plan of one Newton step a visit, with analytic derivatives and without over-relaxation.
 fn plain(scheme: Scheme) -> Plan {
     Plan {
         scheme,
@@ -239,7 +239,7 @@ fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     plan
 }
 
-/// The distributions of the mean ratio and of the edge ratio over a mesh.
+/// The distributions of the mean ratio and of the edge ratio in a mesh.
 fn distribution(
     case: &Case,
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! The data: one record a line, appended as soon as it is had, so that a stopped study goes on where it was.
+//! Stores the data: one record per line, appended as soon as it is known, so that a stopped study can be continued.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -8,18 +8,18 @@ use serde::{Deserialize, Serialize};
 
 use super::study::{Case, Size, Start, Study};
 
-/// What the study was run with.
+/// What the study was run with, and on which machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Header {
     pub(crate) study: Study,
     pub(crate) version: String,
     pub(crate) cores: usize,
     pub(crate) processor: String,
-    /// Adapter and driver, if there is a GPU.
+    /// The name of the adapter and its driver, if there is a GPU.
     pub(crate) adapter: Option<String>,
 }
 
-/// A mesh, as it was triangulated.
+/// The facts of a mesh, as it was triangulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MeshRecord {
     pub(crate) domain: String,
@@ -40,17 +40,17 @@ pub(crate) struct DesiredRecord {
     pub(crate) origin: String,
 }
 
-/// The state after a sweep; the first one of a run is before any sweep.
+/// The state after a sweep. The first one of a run is the state before any sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sample {
     /// Time since the first sweep began.
     pub(crate) seconds: f64,
     /// The objective by the base metric.
     pub(crate) f: f64,
-    /// The objective by EDGE, where a figure needs it.
+    /// The objective by EDGE, if a figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) edge: Option<f64>,
-    /// The objective by AREA, where a figure needs it.
+    /// The objective by AREA, if a figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
 }
@@ -62,29 +62,29 @@ pub(crate) struct RunRecord {
     pub(crate) case: Case,
     pub(crate) desired: f64,
     pub(crate) stop: String,
-    /// Time of the run with its preparation, for the estimate of the time left.
+    /// Seconds of the whole run with its preparation, for the estimate of the time left.
     pub(crate) wall_seconds: f64,
     pub(crate) history: Vec<Sample>,
-    /// The distributions where the run had converged, for Figures 4 and 5.
+    /// The distributions when the run had converged, for Figures 4 and 5.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) distributions: Vec<DistributionRecord>,
 }
 
-/// How many elements have which quality, of 1 at best.
+/// How many elements of a mesh have which quality. The best quality is 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DistributionRecord {
     pub(crate) domain: String,
     pub(crate) start: Start,
-    /// The scheme; empty before smoothing.
+    /// The scheme; empty for the mesh before smoothing.
     pub(crate) scheme: String,
-    /// The quality counted: shortest over longest edge, or mean ratio.
+    /// The quality that is counted: shortest over longest edge, or mean ratio.
     pub(crate) quality: String,
     pub(crate) mean: f64,
-    /// The elements in each of [`BINS`] equal parts of 0 to 1.
+    /// The number of elements in each of [`BINS`] equal intervals from 0 to 1.
     pub(crate) counts: Vec<usize>,
 }
 
-/// Bins of a distribution.
+/// The number of bins in a distribution.
 pub(crate) const BINS: usize = 100;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ fn path(folder: &Path) -> PathBuf {
     folder.join("data/records.jsonl")
 }
 
-/// Reads what is there; a last line that a stop has cut off does not count.
+/// Reads the records of a folder. Ignores a last line that is not complete.
 pub(crate) fn read(folder: &Path) -> Result<Vec<Record>, String> {
     let path = path(folder);
     let Ok(text) = fs::read_to_string(&path) else { return Ok(Vec::new()) };
@@ -120,7 +120,7 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<Record>, String> {
 }
 
 impl Store {
-    /// Opens a folder, to go on with what is in it if it is the same study.
+    /// Opens a folder to add records. It must be new, or hold records of the same study.
     pub(crate) fn open(folder: &Path, header: &Header) -> Result<Self, String> {
         let records = read(folder)?;
         match records.first() {
@@ -136,7 +136,7 @@ impl Store {
         }
         let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
         fs::create_dir_all(folder.join("data")).map_err(failed)?;
-        // The file is written anew, without the line that was cut off.
+        // Writes the file again, without the incomplete line.
         let mut text = String::new();
         for record in &records {
             text += &line(record)?;

@@ -1,4 +1,4 @@
-//! What is run: the batches of a full, a quick and a tiny study.
+//! The runs to do: batches for a full, a quick and a tiny study.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ macro_rules! words {
 }
 
 words! {
-    /// How large the meshes are.
+    /// The size of the meshes.
     Size {
         /// 1,500 vertices.
         Coarse = "coarse"
@@ -30,11 +30,11 @@ words! {
 }
 
 words! {
-    /// What was done to the interior before.
+    /// How the interior was moved before the runs.
     Start {
         /// Each vertex moved at random, strongly.
         Random = "random"
-        /// Moved by long waves.
+        /// All vertices moved by long waves.
         Smooth = "smooth"
     }
 }
@@ -46,20 +46,20 @@ words! {
         Published = "published"
         /// Analytic derivatives, one Newton step a visit, no over-relaxation.
         Plain = "plain"
-        /// This program's defaults: analytic, one step a visit; over-relaxed where one metric runs alone.
+        /// This program's defaults: analytic derivatives, one step a visit. Over-relaxed if one metric runs alone.
         Analytic = "analytic"
     }
 }
 
 words! {
-    /// Where sweeps are done.
+    /// The engine that does the sweeps.
     Place {
         Cpu = "cpu"
         Gpu = "gpu"
     }
 }
 
-/// The paper's schemes and the two that it compares them with, by their base metric.
+/// The paper's schemes and the metrics that it compares them with, ordered by base metric.
 pub(crate) const SCHEMES: [&str; 13] = [
     "edge",
     "edge+imr",
@@ -76,7 +76,7 @@ pub(crate) const SCHEMES: [&str; 13] = [
     "ar",
 ];
 
-/// Runs with the same settings on several meshes, by every scheme.
+/// Runs of every scheme on several meshes, with the same settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Batch {
     pub(crate) setting: Setting,
@@ -84,14 +84,14 @@ pub(crate) struct Batch {
     pub(crate) start: Start,
     pub(crate) domains: Vec<String>,
     pub(crate) schemes: Vec<String>,
-    /// Runs end at this share of the way to the desired f.
+    /// A run ends at this share of the way to the desired f.
     pub(crate) fraction: f64,
-    /// The most Newton steps a visit.
+    /// The most Newton steps in a visit.
     pub(crate) inner: u32,
     pub(crate) max_sweeps: u32,
-    /// How often each run is made on the CPU.
+    /// How many times each run is done on the CPU.
     pub(crate) cpu_repeats: u32,
-    /// How often each run is made on the GPU.
+    /// How many times each run is done on the GPU.
     pub(crate) gpu_repeats: u32,
 }
 
@@ -99,9 +99,9 @@ pub(crate) struct Batch {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Study {
     pub(crate) mode: String,
-    /// The size that stands for the paper's meshes in the tables.
+    /// The size of the meshes that the tables show.
     pub(crate) size: Size,
-    /// Sweeps that the search for a desired f may take from each start.
+    /// The number of sweeps from each start, in the search for a desired f.
     pub(crate) reference_sweeps: u32,
     pub(crate) batches: Vec<Batch>,
 }
@@ -119,8 +119,8 @@ pub(crate) struct Case {
 }
 
 impl Study {
-    /// Everything, at the paper's sizes: about a quarter of an hour on two cores. The dear setting goes
-    /// past the paper's 95 % on coarse meshes only.
+    /// Every scheme and setting at the paper's sizes. The published setting is slow, so it goes past the paper's 95 % on coarse
+    /// meshes only.
     pub(crate) fn full() -> Self {
         let full = |batch| Batch { size: Size::Full, ..batch };
         Self {
@@ -141,7 +141,7 @@ impl Study {
         }
     }
 
-    /// Every scheme and setting on coarse meshes: under two minutes.
+    /// Every scheme and setting on coarse meshes, in under two minutes.
     pub(crate) fn quick() -> Self {
         Self {
             mode: "quick".into(),
@@ -156,7 +156,7 @@ impl Study {
         }
     }
 
-    /// One run of each kind on few meshes, for a test.
+    /// Few runs of each kind on two meshes, for a test.
     #[allow(dead_code)]
     pub(crate) fn tiny() -> Self {
         let domains = ["fish", "mechanic"].map(String::from).to_vec();
@@ -172,8 +172,7 @@ impl Study {
         }
     }
 
-    /// Every run, repetitions outermost: what disturbs the machine for a while does not fall on one
-    /// scheme alone.
+    /// Lists every run, with repetitions in the outermost loop: a disturbance of the machine then affects all schemes alike.
     pub(crate) fn cases(&self, places: &[Place]) -> Vec<(&Batch, Case)> {
         let mut cases = Vec::new();
         for batch in &self.batches {
@@ -193,7 +192,7 @@ impl Study {
         cases
     }
 
-    /// The batch of a setting from the random start at the size of the tables, if there is one.
+    /// The batch with this setting, size and start, if there is one.
     pub(crate) fn batch(&self, setting: Setting, size: Size, start: Start) -> Option<&Batch> {
         self.batches.iter().find(|b| (b.setting, b.size, b.start) == (setting, size, start))
     }

@@ -1,4 +1,4 @@
-//! The paper's tables, ours beside theirs. Every number comes from the records or from `published`.
+//! The paper's tables, with our numbers beside theirs. Every number comes from the records or from `published`.
 
 use super::analysis::{Data, Reach, View, base, paper_name};
 use super::document::Table;
@@ -6,10 +6,10 @@ use super::domains::DOMAINS;
 use super::published;
 use super::study::{Setting, Size};
 
-/// What stands where there is no number.
+/// Stands in cells without a number.
 pub(crate) const NONE: &str = "–";
 
-/// Three significant figures, as the repeated runs hardly hold more.
+/// The number with three significant figures: repeated runs hardly agree to more.
 pub(crate) fn three(x: f64) -> String {
     let digits = (2 - x.abs().max(1e-9).log10().floor() as i32).clamp(0, 8);
     format!("{x:.*}", digits as usize)
@@ -19,7 +19,7 @@ pub(crate) fn percent(x: f64) -> String {
     format!("{:.1} %", 100.0 * x)
 }
 
-/// A share of the way: 95 %, 99.9 %.
+/// A share of the way as text, such as 95 % or 99.9 %.
 pub(crate) fn share(fraction: f64) -> String {
     percent(fraction).replace(".0 ", " ")
 }
@@ -41,7 +41,7 @@ fn published_row<T: Copy>(table: &[(&str, [T; 6])], domain: &str, scheme: &str) 
     published::row(table, scheme).map(|row| row[i])
 }
 
-/// Table 2: sizes.
+/// Table 2: the sizes of the meshes.
 pub(crate) fn sizes(data: &Data, size: Size) -> Table {
     let rows = data.meshes.iter().filter(|mesh| mesh.size == size).filter_map(|mesh| {
         let paper = DOMAINS.iter().find(|d| d.name == mesh.domain)?;
@@ -51,7 +51,7 @@ pub(crate) fn sizes(data: &Data, size: Size) -> Table {
             mesh.vertices.to_string(),
             paper.elements.to_string(),
             mesh.elements.to_string(),
-            // The boundary has 2 V - 2 + 2 H - E vertices with H holes; the paper does not say how many holes.
+            // With H holes, the boundary has 2 V - 2 + 2 H - E vertices. The paper does not give H.
             (2 * paper.vertices - 2 - paper.elements).to_string(),
             mesh.boundary.to_string(),
             format!("{:.2}°", mesh.min_angle),
@@ -77,7 +77,7 @@ pub(crate) fn sizes(data: &Data, size: Size) -> Table {
     }
 }
 
-/// Tables 3 and 4: time to convergence, and what is saved against the base metric alone.
+/// Table 3 or 4: the time to convergence, and the share of it that is saved against the base metric alone.
 pub(crate) fn seconds(data: &Data, view: View, caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["mesh".to_owned()];
     for scheme in schemes {
@@ -108,7 +108,7 @@ pub(crate) fn seconds(data: &Data, view: View, caption: &str, schemes: &[&str]) 
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// Table 5: sweeps and time per sweep.
+/// Table 5: the number of sweeps, and the time per sweep.
 pub(crate) fn sweeps(data: &Data, view: View, caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["mesh".to_owned()];
     for scheme in schemes {
@@ -135,7 +135,7 @@ pub(crate) fn sweeps(data: &Data, view: View, caption: &str, schemes: &[&str]) -
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// Sweeps and seconds of every scheme at several shares of the way, medians over the meshes.
+/// Sweeps and seconds of every scheme at several shares of the way, as medians over the meshes.
 pub(crate) fn stricter(data: &Data, views: &[View], caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["scheme".to_owned()];
     for view in views {
@@ -168,7 +168,7 @@ pub(crate) fn stricter(data: &Data, views: &[View], caption: &str, schemes: &[&s
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// A setting as the report calls it.
+/// The name of a setting in the report.
 pub(crate) fn setting_name(setting: Setting) -> &'static str {
     match setting {
         Setting::Published => "as published",

@@ -1,6 +1,6 @@
-//! Whether memory, file descriptors and threads stay as they are in a process that lives long: `soak RUNS FRAMES` does so many
-//! runs on the GPU engine, on one device and each fourth on a device of its own, and then so many frames of an application that
-//! encodes sweeps itself. Tells how much of each is in use ten times on the way, and fails if it grows.
+//! Checks that a long-lived process does not use more and more memory, file descriptors or threads. `soak RUNS FRAMES` does
+//! RUNS runs on the GPU engine, every fourth on a device of its own, and then FRAMES frames of an application that encodes
+//! sweeps itself. It prints ten times what is in use, and fails if that grows.
 #![allow(clippy::print_stdout)]
 
 #[path = "../../tests/support/mod.rs"]
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use gpu_smooth::{Backend, DeviceMesh, Gpu, Options, Smoother, Sweeps, VertexBuffer, wgpu};
 
-/// What the process has in use: resident memory in kB, file descriptors, threads. Zeros where the system does not tell.
+/// What the process uses: resident memory in kB, file descriptors, threads. Zeros where the system does not tell.
 fn in_use() -> [u64; 3] {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let of = |name: &str| {
@@ -23,7 +23,7 @@ fn in_use() -> [u64; 3] {
     [of("VmRSS:"), files, of("Threads:")]
 }
 
-/// Does something `count` times. An error if more is in use at the end than after the first tenth.
+/// Does something `count` times. Fails if more is in use at the end than after the first tenth.
 fn soak(
     what: &str,
     count: usize,
@@ -43,7 +43,7 @@ fn soak(
         }
     }
     let (Some([memory, files, threads]), now) = (first, in_use()) else { return Ok(()) };
-    // Memory is given back in steps, and a tenth and two megabytes are one.
+    // Memory is freed in steps: a tenth and two megabytes more do not count as growth.
     if now[0] > memory + memory / 10 + 2048 || now[1] > files || now[2] > threads {
         return Err(format!("{what}: more is in use than after the first tenth").into());
     }
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         sweeps.encode_sweeps(&mut encoder, 1);
         bound.encode_export(&mut encoder);
         gpu.queue().submit([encoder.finish()]);
-        // As an application that waits for its frames.
+        // Waits as an application does that has a few frames under way.
         if done % 3 == 2 {
             gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
         }

@@ -1,4 +1,4 @@
-//! See `fuzz/checks.rs`.
+//! Reads any bytes as a mesh file; `fuzz/checks.rs` says what must hold.
 #![no_main]
 
 #[path = "../checks.rs"]

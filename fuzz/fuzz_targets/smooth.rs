@@ -1,4 +1,4 @@
-//! See `fuzz/checks.rs`.
+//! Smooths a mesh made from any bytes; `fuzz/checks.rs` says what must hold.
 #![no_main]
 
 #[path = "../checks.rs"]

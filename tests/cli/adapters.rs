@@ -1,4 +1,4 @@
-//! Which adapter a run takes, and what happens without one.
+//! Which adapter a run takes, and what it does without one.
 
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
 use std::process::Command;
@@ -77,7 +77,7 @@ fn without_an_adapter_the_gpu_engine_tells_what_to_install() {
     assert_holds(&list, &install[..1]);
 }
 
-/// `tests/run` installs a driver of OpenGL.
+/// Without a Vulkan driver, a run takes OpenGL. `tests/run` installs a driver of OpenGL.
 #[cfg(target_os = "linux")]
 #[test]
 fn where_there_is_no_vulkan_a_driver_of_opengl_is_taken() {
@@ -94,7 +94,7 @@ fn where_there_is_no_vulkan_a_driver_of_opengl_is_taken() {
     assert_smoothed(&folder.mesh("in"), &on_opengl);
     folder.line("in out --engine cpu --max-sweeps 12").clean();
     for (a, b) in on_opengl.points.iter().zip(&folder.mesh("out").points) {
-        // Edges are about 1.
+        // Edges are about 1 long, so this is a distance in edges.
         assert!(support::check::squared_distance(*a, *b) < 1e-4 * 1e-4, "{a:?}, {b:?}");
     }
 }
@@ -114,12 +114,12 @@ fn a_small_mesh_is_smoothed_on_the_cpu_and_the_summary_says_why() {
         assert_eq!(folder.text("out.node"), folder.text("cpu.node"));
     }
     assert_eq!(folder.line("in out -q").clean().out, "");
-    // What is wrong with the file comes alone.
+    // An error in the file is the only message.
     folder.line("none out").refused(&["none: "]);
 }
 
-/// A mesh so large, and a scheme that takes so many sweeps, that one core looks for a GPU. The goal is met at the start, so
-/// that the run itself is short.
+/// A mesh large enough, and a scheme with enough sweeps, that a run on one core looks for a GPU. The goal is met at the
+/// start, so that the run itself is short.
 fn large() -> (Folder, [&'static str; 6]) {
     let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
@@ -133,7 +133,7 @@ fn a_software_adapter_is_not_taken_unless_asked_for() {
     let is_software = adapters.lines().next().unwrap().contains("(CPU: software, ");
     let run = finish(folder.command().args(args).env("RAYON_NUM_THREADS", "1"));
     let out = run.clean().out;
-    // The test machine may have a real GPU.
+    // The name of the adapter that the test machine takes, which may be a real GPU.
     let name = adapters.split(" (").next().unwrap();
     let told = match is_software {
         true => format!("edge on cpu (all cores): only a software adapter ({name}"),

@@ -1,4 +1,4 @@
-//! Command lines that make no sense: exit code 2, and no file touched.
+//! Wrong command lines: exit code 2, and no file touched.
 
 use super::{Folder, assert_holds, small};
 
@@ -156,8 +156,8 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
-/// Command lines of any words: an exit code that means something, nothing that panics, and no file left that should not be. How many
-/// times as often is in the environment variable FUZZ_ROUNDS.
+/// Runs the program with random words: it must end with a documented exit code, must not panic, and must leave no file
+/// that it should not. The environment variable FUZZ_ROUNDS is a factor for the number of runs.
 #[test]
 fn command_lines_of_any_words_neither_panic_nor_damage_files() {
     const WORDS: [&str; 62] = [
@@ -231,7 +231,7 @@ fn command_lines_of_any_words_neither_panic_nor_damage_files() {
     let mut codes = std::collections::BTreeSet::new();
     for _ in 0..60 * factor.unwrap_or(1) {
         let mut words = Vec::new();
-        // Half of them begin as a command line does.
+        // Half of the command lines begin with valid words.
         if random.below(2) == 0 {
             words.extend(["in", "out", "--engine", "cpu", "--max-sweeps", "3"]);
         }
@@ -251,7 +251,7 @@ fn command_lines_of_any_words_neither_panic_nor_damage_files() {
             if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
                 .unwrap();
         }
-        // Smoothed in place, if it was named as OUT.
+        // The input may change only if it is also named as OUT.
         if words.iter().filter(|word| word.starts_with("in")).count() < 2 {
             assert!(kept == ["in.node", "in.ele"].map(|name| folder.text(name)), "{words:?}");
         }

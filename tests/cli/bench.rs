@@ -1,4 +1,4 @@
-//! `gpu-smooth bench` measures what it says; how fast that is, no test judges.
+//! `gpu-smooth bench` measures what it says. No test judges how fast it is.
 
 use serde_json::Value;
 
@@ -22,7 +22,7 @@ fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
         assert_eq!(number("free"), (side - 2.0) * (side - 2.0));
         let updates = number("free") / number("seconds_per_sweep");
         assert!((number("vertex_updates_per_second") / updates - 1.0).abs() < 1e-9);
-        // Of an inner vertex at least: itself read and written, six neighbors, and two triangles.
+        // Bytes of a vertex update: at least its own position read and written, six neighbors, and two triangles.
         assert!(number("bytes_per_second") > updates * (32.0 + 24.0 + 24.0));
         assert!(number("share_of_copy_rate") > 0.0);
     }
@@ -51,7 +51,7 @@ fn a_mesh_of_ones_own_is_measured_and_told_as_text() {
     assert!(!run.out.contains("cpu, "), "{}", run.out);
 }
 
-/// Lines of a table of Markdown, field by field.
+/// The rows of a Markdown table, split into fields.
 fn table(text: &str) -> Vec<Vec<String>> {
     let rows = text.lines().filter(|line| line.starts_with('|'));
     let fields =
@@ -69,7 +69,7 @@ fn markdown_tells_the_machine_and_compares_with_a_baseline() {
         known[0]["version"].as_str().unwrap(),
         &["gpu-smooth ", env!("CARGO_PKG_VERSION")],
     );
-    // As if it had taken a thousand seconds.
+    // A baseline as if a sweep had taken a thousand seconds.
     known[0]["seconds_per_sweep"] = 1000.0.into();
     std::fs::write(folder.path("saved.json"), Value::from(known).to_string()).unwrap();
 
@@ -88,7 +88,7 @@ fn markdown_tells_the_machine_and_compares_with_a_baseline() {
     assert_holds(&text, &["  baseline    change ", " 1000000.000  -100.0 % "]);
     let told = folder.line(&format!("{line} --baseline saved.json --json")).clean().out;
     assert_eq!(self::rows(&told)[0]["baseline_seconds_per_sweep"], 1000.0);
-    // Of another size, nothing is known.
+    // The baseline has nothing for a mesh of another size.
     let other = "bench --vertices 400 --engine cpu --seconds 0 --markdown --baseline saved.json";
     assert_eq!(table(&folder.line(other).clean().out)[2][2..4], ["-", "-"]);
 

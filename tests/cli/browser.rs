@@ -1,5 +1,5 @@
-//! The page of a run in a real browser: that its script runs, draws, and follows links. Not part of the suite, as a browser
-//! takes longer to install than all tests take:
+//! The page of a run in a real browser: its script runs, draws, and follows links. This is not part of the suite, as a
+//! browser takes longer to install than all tests take:
 //!
 //! ```sh
 //! GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::process::{Command, Output};
 
-/// The pixels of a window that shows the page.
+/// A screenshot of a browser window with the page.
 struct Picture {
     width: usize,
     pixels: Vec<[u8; 3]>,
@@ -21,7 +21,7 @@ impl Picture {
         self.pixels.iter().filter(|pixel| is_meant(**pixel)).count()
     }
 
-    /// How many pixels are not as in another picture.
+    /// The number of pixels that differ from those of another picture.
     fn difference(&self, other: &Self) -> usize {
         self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count()
     }
@@ -64,14 +64,14 @@ fn a_browser_draws_the_mesh_and_follows_links() {
     let plate = plate_path().to_str().unwrap();
     folder.line(&format!("{plate} out --engine cpu --html page.html")).clean();
 
-    // What the script makes once all of it has run.
+    // The document after the script has run to its end.
     let dom = String::from_utf8(browser(&folder, &["--dump-dom"], "").stdout).unwrap();
     for measure in ["shape", "min-angle", "max-angle", "size-ratio"] {
         assert_holds(&dom, &[&format!(">{measure}</option>")]);
     }
     assert_holds(&dom, &["linear-gradient(to right, rgb(68,1,84)"]);
 
-    // The yellow end of the scale, which only good triangles have.
+    // Yellow is the end of the scale that only good triangles have.
     let is_good = |[r, g, b]: [u8; 3]| r > 200 && g > 200 && b < 80;
     for size in [[1200, 1100], [420, 1400]] {
         let whole = picture(&folder, "", LIGHT, size);
@@ -81,7 +81,7 @@ fn a_browser_draws_the_mesh_and_follows_links() {
         let dark = picture(&folder, "", DARK, size);
         assert!(dark.pixels[0].iter().all(|&x| x < 50), "{:?}", dark.pixels[0]);
         assert!(dark.count(is_good) > dark.pixels.len() / 20, "{size:?}");
-        // One of the worst triangles, enlarged.
+        // The page at one of the worst triangles, enlarged.
         let spot = picture(&folder, "#spot-8", LIGHT, size);
         assert!(spot.difference(&whole) > whole.pixels.len() / 10, "{size:?}");
         assert!(spot.count(is_good) > 1000, "{size:?}");

@@ -1,15 +1,15 @@
-//! `gpu-smooth compare`: what it proves from two files, and what it finds.
+//! `gpu-smooth compare`: what it proves from two files, and which differences it finds.
 
 use super::{Folder, assert_holds, disturbed, small, support};
 use std::fs;
 
-/// The row of a vertex of a `.node`, in words.
+/// The words of a vertex's row in a `.node`.
 fn words(text: &str, vertex: usize) -> Vec<&str> {
     let is_vertex = |row: &&str| !row.starts_with('#') && !row.trim().is_empty();
     text.lines().filter(is_vertex).nth(vertex + 1).unwrap().split_whitespace().collect()
 }
 
-/// The text with the row of a vertex replaced by one with the same blanks and another x.
+/// The text with the x of one vertex replaced; the blanks of its row stay.
 fn with_x(text: &str, vertex: usize, x: &str) -> String {
     let old = words(text, vertex)[1];
     let row = text.lines().find(|row| row.split_whitespace().eq(words(text, vertex))).unwrap();
@@ -57,7 +57,7 @@ fn vertices_that_must_stay_and_inverted_triangles_are_found() {
     let folder = small();
     let [node, ele] = ["in.node", "in.ele"].map(|name| folder.text(name));
     fs::write(folder.path("b.ele"), ele).unwrap();
-    // A corner of the lattice, by as little as a double can.
+    // A corner of the lattice moves by the smallest amount that a double can hold.
     let x: f64 = words(&node, 0)[1].parse().unwrap();
     let next = f64::from_bits(x.to_bits() + 1);
     fs::write(folder.path("b.node"), with_x(&node, 0, &format!("{next:?}"))).unwrap();
@@ -67,7 +67,7 @@ fn vertices_that_must_stay_and_inverted_triangles_are_found() {
         "b.node:",
         &format!(": vertex {label}"),
     ]);
-    // A vertex inside, far out of its patch.
+    // A vertex inside moves far out of its patch.
     let inner = 4 * 11 + 5;
     fs::write(folder.path("b.node"), with_x(&node, inner, "1000.5")).unwrap();
     let run = folder.line("compare in.node b.node");

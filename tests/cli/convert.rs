@@ -39,7 +39,7 @@ fn a_mesh_is_converted_by_the_ending_or_by_name() {
     folder.line("convert in.2dm out.msh.gz").clean();
     let packed = folder.line("groups out.msh.gz").clean().out;
     assert_eq!(packed.replace("out.msh.gz", "out.msh"), folder.line("groups out.msh").clean().out);
-    // A smoothed mesh, and back to what it was.
+    // Smooths the converted mesh, and converts it back to the first format.
     folder.line("out.msh better.msh --engine cpu --quiet --free-interfaces").clean();
     folder.line("convert better.msh better.2dm").clean();
     assert_holds(

@@ -1,4 +1,4 @@
-//! Where a mesh and its report may be written, and under which names meshes go.
+//! Where a mesh and its report may be written, and which names of files are possible.
 
 use super::files::{Layout, gmsh_text, middle_row, triangle_files, triangle_folder};
 use super::{Folder, assert_holds, disturbed, number, small, support};
@@ -82,7 +82,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     }
 }
 
-/// A mesh, its `.poly` included, under names that do not end as those of meshes do, and links to them.
+/// A mesh with a `.poly`, under names without the usual endings, and links to its files.
 #[cfg(unix)]
 fn linked() -> Folder {
     use std::os::unix::fs::symlink;
@@ -115,7 +115,7 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
         "in out --report here/to-in.ele.json",
         "in out --report to-in.poly.json",
         "in out --report poly.json",
-        // What is written, there or not.
+        // A file that the run writes, whether it exists or not.
         "mesh out --report ./out",
         "mesh later --report to-later.json",
         "mesh here/later --report to-to-later.json",
@@ -135,7 +135,7 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
 fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     let folder = small();
     fs::write(folder.path("r.json"), "old").unwrap();
-    // Writing into the old file instead of replacing it would show here.
+    // The hard link keeps the old content if a file is replaced, and changes if it is written into.
     fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
     folder.line("in out --engine cpu --report r.json").clean();
     assert_eq!(folder.text("kept"), "old");
@@ -143,7 +143,7 @@ fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     assert_eq!(folder.content().len(), 6);
 }
 
-/// Names of files are bytes: what is no text, a line end, or what a terminal obeys.
+/// Names of files are bytes. They may be invalid text, and contain line ends or control characters of a terminal.
 #[cfg(target_os = "linux")]
 #[test]
 fn names_of_any_bytes_are_read_and_written_and_told_on_one_line() {

@@ -1,4 +1,4 @@
-//! Drivers that fail: a driver is put before Mesa's, which makes one function fail from a certain call on (`faulty_driver.c`).
+//! Drivers that fail: a driver in front of Mesa's makes one function fail from a certain call on (`faulty_driver.c`).
 
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
 use std::fs;
@@ -7,11 +7,11 @@ use std::process::Command;
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-/// Results of Vulkan.
+/// Results of Vulkan: the value of a `VkResult`.
 const LOST: &str = "-4";
 const NO_MEMORY: &str = "-2";
 
-/// The path of Mesa's software driver, as it is registered on this machine.
+/// The path of Mesa's software driver, as this machine has registered it.
 fn real_driver() -> String {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let files = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
@@ -22,7 +22,7 @@ fn real_driver() -> String {
     registered["ICD"]["library_path"].as_str().unwrap().to_owned()
 }
 
-/// A folder with the driver that fails.
+/// A folder with the driver that fails, compiled once.
 fn faulty_driver() -> &'static TempDir {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -45,7 +45,7 @@ fn faulty_driver() -> &'static TempDir {
     })
 }
 
-/// Has the command find the driver that fails alone.
+/// Sets the environment such that the command finds only the failing driver.
 fn with_fault<'c>(
     command: &'c mut Command,
     function: &str,
@@ -59,7 +59,7 @@ fn with_fault<'c>(
     command.env("FAULT_RESULT", result)
 }
 
-/// Nothing of a fault may be told as a defect of the program.
+/// Checks that a fault is not reported as a bug of the program.
 fn assert_told(run: &Run, label: &str) {
     for word in ["panicked", "unwrap", "RUST_BACKTRACE"] {
         assert!(!run.err.contains(word), "{label}:\n{}", run.err);
@@ -74,7 +74,7 @@ fn a_device_that_is_lost_in_the_middle_does_not_end_the_run() {
     folder.line(&RUN.replace("gpu", "cpu")).clean();
     let f = |folder: &Folder| folder.json("r.json")["after"]["f"]["imr"].as_f64().unwrap();
     let on_cpu = f(&folder);
-    // A submission fails; the driver's reset is noticed while the device is waited for.
+    // A submission fails, and the program notices the reset while it waits for the device.
     for (function, from) in
         [("vkQueueSubmit", 12), ("vkWaitSemaphores", 7), ("vkGetSemaphoreCounterValue", 15)]
     {
@@ -114,8 +114,8 @@ const FAULTS: [(&str, &str); 17] = [
     ("vkEnumeratePhysicalDevices", "-3"),
 ];
 
-/// A call of each function fails, and all later ones: the mesh is smoothed, or nothing is written and the message has a remedy. A
-/// few calls of each, or all of them if the environment variable ALL_FAULTS is set.
+/// One call of a function fails, and all later ones: the mesh must be smoothed, or nothing written and a remedy named. A few
+/// calls of each function are tried, or each call if the environment variable ALL_FAULTS is set.
 #[test]
 fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
     let line = "in out -q --engine gpu --max-sweeps 6";
@@ -161,7 +161,7 @@ fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
 
 #[test]
 fn a_driver_that_crashes_on_start_does_not_end_a_run_that_was_free_to_choose() {
-    // So large, and of so many sweeps, that one core looks for a GPU.
+    // The mesh is so large, and the scheme takes so many sweeps, that a run on one core looks for a GPU.
     let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
     for function in ["vkCreateInstance", "vkCreateDevice", "vkQueueSubmit"] {
@@ -197,7 +197,7 @@ fn a_driver_that_crashes_on_start_is_told_where_a_gpu_is_asked_for() {
     assert!(folder.content() == before);
 }
 
-/// Nothing can be done in a process that has ended, but what was saved is there, and the next call says how to go on.
+/// A process that a driver has ended cannot report it. Its checkpoint stays, and the next call says how to go on.
 #[test]
 fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     let folder = small();
@@ -213,7 +213,7 @@ fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     assert!(folder.json("r.json")["continued_from"].as_u64().unwrap() > 0);
     assert_eq!(folder.json("r.json")["sweeps"], 40);
     assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
-    // Left to choose, the run does not start the driver again that crashes.
+    // With a choice of engines, the run does not start the driver that crashes in its own process.
     folder.line(
         "in out --tolerance 0 --max-sweeps 40 --time-limit 1e-9 --checkpoint c --engine gpu -q",
     );

@@ -1,10 +1,10 @@
-/* A Vulkan driver that passes every call on to a real one (the library REAL_DRIVER), but for one function, FAULT_FUNCTION: from
-   its call number FAULT_FROM on it returns FAULT_RESULT (a VkResult below 0), ends the process ("crash") or never
-   returns ("hang"). Each call of it is also counted in the file FAULT_COUNT, a byte for each, if there is one, but for those of a
-   process that only tries drivers (GPU_SMOOTH_IS_TRIAL).
+/* A Vulkan driver for tests. It passes every call on to a real one, the library REAL_DRIVER, except for one function,
+   FAULT_FUNCTION. From its call number FAULT_FROM on, that function does what FAULT_RESULT says: it returns this VkResult (below
+   0), ends the process ("crash"), or never returns ("hang"). If FAULT_COUNT names a file, each call of the function adds a byte to
+   it. Calls of a process that only tries drivers (GPU_SMOOTH_IS_TRIAL) are not counted there.
 
-   It is for functions of up to six arguments, each an integer or a pointer, that return a VkResult. Names and types are those of
-   the interface between Vulkan's loader and its drivers, so no header is needed. */
+   The function may have up to six arguments, each an integer or a pointer, and must return a VkResult. Names and types are those
+   of the interface between Vulkan's loader and its drivers, so no header is needed. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-//! What is kept of a file in each format.
+//! What is kept of the input file in each format.
 
 use super::{Folder, assert_smoothed, disturbed, support};
 use gpu_smooth::Mesh;
@@ -15,7 +15,7 @@ pub(crate) enum Layout {
 }
 
 impl Layout {
-    /// By row, the words that are x and y.
+    /// For each row, the indices of the words that are x and y.
     fn coordinates(self, text: &str) -> Vec<[usize; 2]> {
         const NONE: [usize; 2] = [usize::MAX; 2];
         let (mut in_nodes, mut header_seen) = (false, false);
@@ -35,7 +35,7 @@ impl Layout {
                     }
                 }
                 Layout::Gmsh22 if in_nodes && words == 4 => [1, 2],
-                // Tags stand alone, headers are four.
+                // Rows of tags have one word, and headers of blocks four.
                 Layout::Gmsh41 if in_nodes && words == 3 => [0, 1],
                 _ => NONE,
             }
@@ -44,7 +44,7 @@ impl Layout {
     }
 }
 
-/// Words and what stands between them, in turn.
+/// Words and the blanks between them, in turn.
 fn pieces(row: &str) -> Vec<&str> {
     let mut pieces = Vec::new();
     let mut rest = row;
@@ -58,7 +58,7 @@ fn pieces(row: &str) -> Vec<&str> {
     pieces
 }
 
-/// Byte by byte the same, but for words that are coordinates; returns how many rows have changed.
+/// Checks that two texts are the same but for coordinates. Returns the number of rows that differ.
 #[track_caller]
 fn rows_moved(before: &str, after: &str, layout: Layout) -> usize {
     let columns = layout.coordinates(before);
@@ -78,8 +78,8 @@ fn rows_moved(before: &str, after: &str, layout: Layout) -> usize {
     rows.iter().filter(|(old, new)| old != new).count()
 }
 
-/// Smooths `input` of the folder on the CPU, and checks all its files. The notes are what standard
-/// error must hold, one a line.
+/// Smooths `input` of the folder on the CPU, and checks all its files. `notes` are what each line on standard error must
+/// contain.
 #[track_caller]
 fn assert_only_coordinates_change(
     folder: &Folder,
@@ -99,8 +99,8 @@ fn assert_only_coordinates_change(
     assert!(moved > may_move / 2 && moved <= may_move, "{moved} of {may_move} rows have changed");
 }
 
-/// A `.node` and `.ele` as various programs write them: numbers from `first`, numbers of several
-/// styles, attributes, tabs, comments.
+/// A `.node` and `.ele` as various programs write them: numbered from `first`, with numbers in several styles, attributes,
+/// tabs and comments.
 pub(crate) fn triangle_files(mesh: &Mesh, first: usize) -> [String; 2] {
     let held = support::check::held(mesh);
     let mut node = format!("# by hand, \u{fc}ber\n\n  {} 2 2 1  # header\n", mesh.points.len());
@@ -119,7 +119,7 @@ pub(crate) fn triangle_files(mesh: &Mesh, first: usize) -> [String; 2] {
         let [a, b, c] = t.map(|v| v as usize + first);
         writeln!(ele, " {}  {a} {b} {c} {}", first + i, ["7.5", "7.50", "+75e-1"][i % 3]).unwrap();
     }
-    // The last row of both without a line end.
+    // The last row of both files has no line end.
     node.push_str("# end");
     ele.truncate(ele.trim_end().len());
     [node, ele]
@@ -129,7 +129,7 @@ pub(crate) fn triangle_folder([node, ele]: &[String; 2]) -> Folder {
     Folder::new(&[("in.node", node), ("in.ele", ele)])
 }
 
-/// What is told of data of vertices that stay as they are.
+/// The note about data of vertices that are not interpolated.
 const ATTRIBUTES: &str = "attribute1, attribute2 stay as they are and no longer fit where vertices have moved (--interpolate all takes \
                           them to the new places)";
 
@@ -161,8 +161,7 @@ fn triangle_files_keep_all_but_coordinates() {
     }
 }
 
-/// The gmsh text of the mesh with the lines as cells before the triangles, and with sections that
-/// the program has no use for.
+/// The mesh as gmsh text, with the lines as elements before the triangles, and with sections that the program does not use.
 pub(crate) fn gmsh_text(mesh: &Mesh, lines: &[[u32; 2]], layout: Layout) -> String {
     let (n, k) = (mesh.triangles.len(), lines.len());
     let rows = |start: &str| -> String {
@@ -250,7 +249,7 @@ pub(crate) fn middle_row() -> Vec<[u32; 2]> {
     (first..first + 10).map(|v| [v, v + 1]).collect()
 }
 
-/// Whether the middle row stayed, and the rows beside it did not.
+/// Checks that the vertices of the middle row stayed, and those of the rows beside it moved.
 #[track_caller]
 pub(crate) fn assert_middle_row_held(before: &Mesh, after: &Mesh) {
     let row: BTreeSet<_> = middle_row().into_iter().flatten().collect();
@@ -295,7 +294,7 @@ fn vertices_on_poly_segments_stay_and_the_poly_is_written_along() {
 
 #[test]
 fn vertices_of_quadrilaterals_stay() {
-    // Each pair of triangles that makes a rhomb in the middle of the mesh is one quadrilateral.
+    // Two triangles in the middle of the mesh that form a rhombus become one quadrilateral.
     let mut mesh = disturbed();
     let kept: Vec<_> = mesh.triangles.drain(..).collect();
     let mut quads = Vec::new();

@@ -1,4 +1,4 @@
-//! Runs on files of other programs, as text and in single precision.
+//! Runs on files of other programs, with points as text and in single precision.
 
 use super::support::{self, Binary, check};
 use super::{Folder, assert_smoothed, disturbed, number};
@@ -6,7 +6,7 @@ use gpu_smooth::{Format, Mesh, MeshFile, Precision};
 use std::fmt::Write;
 use std::fs;
 
-/// The small mesh far from the origin, where single precision has few digits left for it.
+/// The small mesh far from the origin, where single precision resolves it with few digits.
 fn far() -> Mesh {
     let mut mesh = disturbed();
     mesh.points.iter_mut().for_each(|[x, y]| (*x, *y) = (*x + 300.0, *y - 150.0));
@@ -25,7 +25,7 @@ fn su2(mesh: &Mesh) -> Vec<u8> {
     (text + "NMARK= 0\n").into_bytes()
 }
 
-/// VTK's legacy format with points of single precision, as text with more digits than those.
+/// VTK's legacy format with points of single precision, written as text with more digits than that.
 fn vtk_text(mesh: &Mesh) -> Vec<u8> {
     let n = mesh.triangles.len();
     let mut text =
@@ -37,7 +37,7 @@ fn vtk_text(mesh: &Mesh) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// The same in binary.
+/// VTK's legacy format with points of single precision, in binary.
 fn vtk_binary(mesh: &Mesh) -> Vec<u8> {
     let n = mesh.triangles.len();
     let mut file = Binary::empty(true);
@@ -53,7 +53,7 @@ fn vtk_binary(mesh: &Mesh) -> Vec<u8> {
     file.bytes
 }
 
-/// Medit's binary format, of which version 1 has single precision.
+/// Medit's binary format of version 1, which has single precision.
 fn meshb(mesh: &Mesh) -> Vec<u8> {
     let mut file = Binary::empty(false);
     let (n, m) = (mesh.points.len() as i32, mesh.triangles.len() as i32);
@@ -91,7 +91,7 @@ fn what_a_file_holds_after_a_run_is_what_its_report_tells() {
             let file = MeshFile::read(&folder.path(&out)).unwrap();
             assert_eq!((file.format(), file.precision()), (format, precision));
             let (before, after) = (folder.mesh(name), file.mesh());
-            // By exact predicates, on the numbers of the file.
+            // By exact predicates, on the rounded coordinates of the file.
             assert_smoothed(&before, after);
             assert!(check::is_ccw(after));
 

@@ -1,8 +1,8 @@
-//! `gpu-smooth groups`: what can be named in a file, as a table and as JSON.
+//! `gpu-smooth groups`: the groups of a file, as a table and as JSON.
 
 use super::Folder;
 
-/// A square of four triangles in two materials, with names.
+/// A square of four triangles in two named materials.
 const SMS: &str = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .5 .5 0\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\n\
                    E3T 3 3 4 5 2\nE3T 4 4 1 5 2\nNS 1 2 -3\nMAT 2 \"mud\"\n";
 

@@ -1,4 +1,4 @@
-//! The page of a run: what it holds, and that it needs nothing else. How it looks is for eyes: see CONTRIBUTING.md.
+//! The page of a run: what it contains, and that it loads no other file. CONTRIBUTING.md says how to look at it.
 
 use super::{Folder, assert_holds, plate_path, small};
 use base64::Engine;
@@ -7,7 +7,7 @@ use gpu_smooth::{Measure, Measured, Mesh, Topology};
 use serde_json::Value;
 use std::fs;
 
-/// The page and the data that its script draws.
+/// The text of the page, and the data that its script draws.
 fn page(folder: &Folder, args: &str) -> (String, Value) {
     let run = folder.line(&format!("{args} --html page.html --engine cpu"));
     assert_eq!(run.code, Some(0), "{}", run.err);
@@ -31,14 +31,14 @@ fn points(value: &Value) -> Vec<[f64; 2]> {
     bytes(value).chunks(16).map(|two| [number(&two[..8]), number(&two[8..])]).collect()
 }
 
-/// The corners of all triangles that are drawn.
+/// The corners of all triangles that are drawn, before the run for state 0 and after it for state 1.
 fn corners(data: &Value, state: usize) -> Vec<[[f64; 2]; 3]> {
     let points = points(&data["states"][state]["points"]);
     let triangles = indices(&data["triangles"]);
     triangles.chunks(3).map(|t| [points[t[0]], points[t[1]], points[t[2]]]).collect()
 }
 
-/// The corners of all triangles of a mesh, turned counter-clockwise.
+/// The corners of all triangles of a mesh, in counterclockwise order.
 fn of_mesh(mesh: &Mesh, topology: &Topology<'_>) -> Vec<[[f64; 2]; 3]> {
     topology.triangles().iter().map(|t| t.map(|v| mesh.points[v as usize])).collect()
 }
@@ -62,7 +62,7 @@ fn the_mesh_of_a_page_is_that_of_the_files() {
             let (ideal, bad) = (measure["ideal"].as_f64().unwrap(), measure["bad"].as_f64());
             for (code, value) in codes.iter().zip(measured.values(name)) {
                 let goodness = f64::from(code - 1) / 65533.0;
-                // As the script turns codes into values.
+                // Decodes the value as the script of the page does.
                 let told = match bad {
                     Some(bad) => bad + goodness * (ideal - bad),
                     None => ideal + 10f64.powf(1.0 - goodness) - 1.0,
@@ -75,7 +75,7 @@ fn the_mesh_of_a_page_is_that_of_the_files() {
             }
         }
     }
-    // Each edge of the outline once.
+    // The outline has each edge of the boundary once: 36 edges of two indices.
     assert_eq!(indices(&data["boundary"]).len(), 2 * 36);
     assert!(data["states"][0]["picture"].is_null());
 }
@@ -107,7 +107,7 @@ fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
     for measure in Measure::ALL {
         assert_holds(&page, &[&format!(">{measure}")]);
     }
-    // Each link has the triangle that it shows.
+    // Each link leads to the triangle that its picture shows.
     let links = page.matches("<a href=\"#spot-").count();
     let spots = data["spots"].as_array().unwrap();
     assert!(links == spots.len() && links >= 16, "{links}");
@@ -128,7 +128,7 @@ fn histograms_and_curves_are_of_the_run() {
     let folder = Folder::new(&[]);
     let plate = plate_path().to_str().unwrap();
     let (page, _) = page(&folder, &format!("{plate} out --report r.json --scheme edge+imr"));
-    // In each histogram, the bars of a state have all triangles.
+    // In both histograms, the bars before and after count all triangles.
     let titles: Vec<&str> =
         page.split("<title>").skip(1).map(|t| t.split('<').next().unwrap()).collect();
     for state in ["before", "after"] {
@@ -143,7 +143,7 @@ fn histograms_and_curves_are_of_the_run() {
     assert_eq!(points.split_whitespace().count(), sweeps);
     let heights: Vec<f64> =
         points.split_whitespace().map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
-    // Down is up in SVG: f falls from the top of the plot to its bottom.
+    // y grows downward in SVG: f falls from the top of the plot to its bottom.
     assert!(heights[0] < 30.0 && heights.iter().any(|y| *y > 210.0), "{heights:?}");
 }
 

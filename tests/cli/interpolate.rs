@@ -1,11 +1,11 @@
-//! `--interpolate`: data of vertices come along where these move.
+//! `--interpolate`: data of vertices are interpolated where vertices move.
 
 use super::{Folder, assert_holds, disturbed, small};
 use gpu_smooth::{Mesh, MeshFile};
 use std::fmt::Write;
 use std::fs;
 
-/// A depth that is linear over the plane.
+/// A depth that is linear in x and y.
 fn depth([x, y]: [f64; 2]) -> f64 {
     2.5 * x - 4.0 * y + 3.0
 }
@@ -21,7 +21,7 @@ fn gr3(mesh: &Mesh) -> String {
     text + "0 = Number of open boundaries\n"
 }
 
-/// How far depths of a file are from those of their places.
+/// The largest difference between depths in a file and the linear depth at the same place.
 fn error(folder: &Folder, name: &str) -> f64 {
     let file = MeshFile::read(&folder.path(name)).unwrap();
     let fields = file.point_fields(Some(&["depth".into()])).unwrap();
@@ -54,7 +54,7 @@ fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     let out = folder.line("compare in.gr3 out.gr3 --interpolate depth").clean().out;
     assert_holds(&out, &["depth differs only at vertices that have moved"]);
     folder.line("compare in.gr3 out.gr3").refused(&["more than coordinates is different"]);
-    // Through pipes, compressed, and not at all.
+    // Compressed output, and a run without sweeps, which changes nothing.
     fs::write(folder.path("empty"), "").unwrap();
     folder.run(["in.gr3", "again.gr3.gz", "--engine=cpu", "--interpolate=all", "--quiet"]).clean();
     assert!(error(&folder, "again.gr3.gz") < 1e-12);
@@ -68,7 +68,7 @@ fn data_that_are_not_as_they_should_be_are_told_by_compare() {
     let folder = Folder::new(&[("in.gr3", &text)]);
     folder.line("in.gr3 out.gr3 --engine cpu --quiet --interpolate all").clean();
     let out = folder.text("out.gr3");
-    // The depth of the first vertex, a corner; and one inside that is beyond all others.
+    // Spoils the depth of the first vertex, a corner that stays, and then one inside that is beyond all values.
     let corner = out.lines().nth(2).unwrap();
     let other = corner.rsplit_once(' ').unwrap().0.to_owned() + " 2.75";
     fs::write(folder.path("corner.gr3"), out.replace(corner, &other)).unwrap();

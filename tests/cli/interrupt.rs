@@ -1,4 +1,4 @@
-//! What signals do to a run, at every stage of it.
+//! What signals do to a run, in every stage of it.
 #![cfg(unix)]
 
 use super::{Folder, assert_holds, assert_smoothed, plate_path, small, support};
@@ -9,14 +9,14 @@ use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
-/// Longer than anything here takes: what is still running then is killed, and the test fails.
+/// The longest time that a command may take. After it the command is killed, and the test fails.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A command that a test sends signals to.
+/// A running command that a test can send signals to.
 pub(crate) struct Started {
     child: Child,
     err: BufReader<ChildStderr>,
-    /// Dropped when the child has ended.
+    /// Dropped when the process has ended.
     _running: Sender<()>,
 }
 
@@ -36,7 +36,7 @@ impl Started {
         Self { child, err, _running: running }
     }
 
-    /// A run on the plate that lasts, after its first sweeps.
+    /// Starts a long run on the plate, and waits until it has begun its sweeps.
     fn sweeping(folder: &Folder, args: &[&str]) -> Self {
         let plate = plate_path().to_str().unwrap();
         let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
@@ -46,14 +46,14 @@ impl Started {
         started
     }
 
-    /// The next line on standard error.
+    /// Returns the next line on standard error.
     fn line(&mut self) -> String {
         let mut line = String::new();
         self.err.read_line(&mut line).unwrap();
         line
     }
 
-    /// The next line on standard error that starts so; lines on what comes before it are passed over.
+    /// Returns the next line on standard error that begins with `start`, and skips lines of progress before it.
     pub(crate) fn first_of(&mut self, start: &str) -> String {
         loop {
             let line = self.line();
@@ -63,7 +63,7 @@ impl Started {
         }
     }
 
-    /// The next line on standard error that tells no progress.
+    /// Returns the next line on standard error that does not report progress.
     fn remark(&mut self) -> String {
         loop {
             let line = self.line();
@@ -82,7 +82,7 @@ impl Started {
         self.child.try_wait().unwrap().is_some()
     }
 
-    /// Sends a signal unless the command has ended meanwhile.
+    /// Sends a signal, unless the command has ended by then.
     pub(crate) fn signal_if_running(&mut self, name: &str) {
         if !self.has_ended() {
             self.signal(name);
@@ -90,7 +90,7 @@ impl Started {
         }
     }
 
-    /// Exit code, standard output, and the rest of standard error.
+    /// Waits for the end. Returns exit code, standard output, and the rest of standard error.
     pub(crate) fn end(mut self) -> (Option<i32>, String, String) {
         let (mut out, mut err) = (String::new(), String::new());
         self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
@@ -142,7 +142,7 @@ fn an_interrupted_run_leaves_the_best_mesh_so_far() {
 
 #[test]
 fn a_goal_not_reached_is_told_when_interrupted() {
-    // A mesh so large, and sweeps so slow, that the run does not stall before the signal.
+    // The mesh is so large, and the sweeps are so slow, that the run does not stop by itself before the signal.
     let mesh = support::perturb_random(&support::lattice(90, 90), 1.0, 1);
     let mut text = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
     text.extend(mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n")));
@@ -164,7 +164,7 @@ fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
     let folder = Folder::new(&[]);
     make_pipe(&folder, "in.msh");
     let run = Started::new(&folder, &["in.msh", "out.msh", "--report", "r.json"]);
-    // Opens once the command reads.
+    // Opening the pipe waits until the command reads from it.
     let pipe = fs::OpenOptions::new().write(true).open(folder.path("in.msh")).unwrap();
     run.signal("-INT");
     let (code, out, err) = run.end();
@@ -179,7 +179,7 @@ fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
 fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() {
     let folder = Folder::new(&[]);
     let plate = plate_path().to_str().unwrap();
-    // By edge, which takes thousands of sweeps to find.
+    // The optimum by `edge` takes thousands of sweeps to find.
     let goal = ["--scheme", "edge", "--desired", "auto"];
     let args = [&[plate, "out", "-v", "--engine", "cpu"][..], &goal].concat();
     let mut run = Started::new(&folder, &args);
@@ -191,7 +191,7 @@ fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() 
     assert!(names(&folder).is_empty());
 }
 
-/// The second part of OUT is a pipe that nobody reads, so that writing lasts.
+/// The `.ele` of OUT is a pipe that nobody reads, so the run hangs while it writes.
 #[test]
 fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     let folder = small();
@@ -218,14 +218,14 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     assert_eq!(folder.text("out.node"), "old\n");
 }
 
-/// Of many meshes, those that are done stay, and one under way leaves nothing.
+/// In a call with many meshes, an interrupt keeps those that are done, and leaves nothing of one under way.
 #[test]
 fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {
     let folder = small();
     make_pipe(&folder, "waits.msh");
     let args = ["waits.msh", "in.node", "--out-dir", "out", "--engine", "cpu", "--json"];
     let run = Started::new(&folder, &args);
-    // The pipe has no size, so that it is read last.
+    // A pipe has no size, so it is read last.
     let pipe = fs::OpenOptions::new().write(true).open(folder.path("waits.msh")).unwrap();
     let start = Instant::now();
     while !folder.path("out/in.ele").exists() {
@@ -234,7 +234,7 @@ fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {
     }
     run.signal("-INT");
     std::thread::sleep(Duration::from_millis(200));
-    // Reading goes on to the end of the file.
+    // Closes the pipe: the run notices the interrupt at the end of the file.
     drop(pipe);
     let (code, out, err) = run.end();
     assert_eq!(code, Some(130), "{err}");

@@ -1,4 +1,4 @@
-//! Runs that take long: checkpoints, and the time limit.
+//! Long runs: checkpoints, and the time limit.
 #![cfg(unix)]
 
 use super::interrupt::{Started, names};
@@ -7,10 +7,10 @@ use gpu_smooth::{Checkpoint, MeshFile};
 use std::fs;
 use std::time::{Duration, Instant};
 
-/// A run of many sweeps, by a metric that takes them all, so that there is time to stop it.
+/// A run by a metric that takes all of its many sweeps, so that there is time to stop it.
 const LONG: &str = "in.node out --engine cpu --scheme edge+imr --tolerance 0 --max-sweeps 300";
 
-/// What the run leaves that nothing stops.
+/// The result of the run if nothing stops it: its folder and the mesh.
 fn uninterrupted() -> (Folder, String) {
     let folder = small();
     folder.line(LONG).clean();
@@ -26,7 +26,7 @@ fn a_run_that_was_killed_goes_on_to_the_same_bits() {
     let checkpoint = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0.001"];
     let mut args: Vec<&str> = LONG.split(' ').collect();
     args.extend(checkpoint);
-    // Often killed, and each time taken up again.
+    // Killed several times, and continued each time.
     for round in 0..4 {
         let mut run = Started::new(&folder, &args);
         let start = Instant::now();
@@ -43,7 +43,7 @@ fn a_run_that_was_killed_goes_on_to_the_same_bits() {
         if !folder.path("run.ckpt").exists() {
             break;
         }
-        // Where the kill left a temporary file, it is no more than that.
+        // Temporary files may be left, but the checkpoint is complete.
         Checkpoint::from_bytes(&fs::read(folder.path("run.ckpt")).unwrap()).unwrap();
         args.retain(|arg| !arg.contains("continue") && !checkpoint.contains(arg));
         args.extend(["--continue", "run.ckpt", "--checkpoint-every", "0.001"]);
@@ -87,7 +87,7 @@ fn an_interrupted_run_goes_on() {
     run.first_of("gpu-smooth: sweep ");
     run.signal("-INT");
     let (code, _, err) = run.end();
-    // The sweeps may have been over before the signal came.
+    // The run may have ended before the signal came.
     if err.contains("to go on with the run from here, add --continue run.ckpt") {
         assert_eq!(code, Some(130));
         folder.line(&format!("{LONG} --continue run.ckpt")).clean();
@@ -108,7 +108,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         folder.line(line).refused(parts);
         assert!(folder.content() == kept, "{line}: something was written");
     };
-    // It would be lost.
+    // The checkpoint of another run would be overwritten and lost.
     refused(&limited, &["run.ckpt: the checkpoint of another run is there", "--continue run.ckpt"]);
     refused(
         &format!("{LONG} --continue run.ckpt --omega 1.2"),
@@ -136,14 +136,14 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     assert_eq!(folder.text("notes.txt"), "mine");
 }
 
-/// A disk without room for the checkpoint does not end the run.
+/// A disk without room for the checkpoint does not end the run; it says so.
 #[test]
 fn a_checkpoint_that_cannot_be_saved_is_told() {
     let folder = small();
     fs::create_dir(folder.path("sub")).unwrap();
     let line = format!("{LONG} -v --checkpoint sub/run.ckpt --checkpoint-every 0.001");
     let mut command = folder.command();
-    // Files of more than a few kilobytes cannot be written.
+    // The shell limits files to a few kilobytes.
     let shell = format!("ulimit -f 4; exec {} {line}", env!("CARGO_BIN_EXE_gpu-smooth"));
     drop(command);
     command = std::process::Command::new("sh");

@@ -1,4 +1,4 @@
-//! The `gpu-smooth` command as a user meets it: run as a process, judged by what it prints and leaves.
+//! The `gpu-smooth` command as a user meets it: run as a process, and judged by its output and the files it leaves.
 #![cfg(feature = "cli")]
 
 #[path = "../support/mod.rs"]
@@ -51,7 +51,7 @@ use std::process::{Command, Stdio};
 use support::check;
 use tempfile::TempDir;
 
-/// What a finished process left.
+/// The exit code and output of a finished process.
 struct Run {
     code: Option<i32>,
     out: String,
@@ -59,7 +59,7 @@ struct Run {
 }
 
 impl Run {
-    /// After it did all that was asked and had nothing to remark but, on a slow machine, how far it was.
+    /// Checks that the run succeeded and printed nothing on standard error, except for progress on a slow machine.
     #[track_caller]
     fn clean(self) -> Self {
         let remarks: Vec<&str> = self.err.lines().filter(|line| !is_progress(line)).collect();
@@ -67,7 +67,7 @@ impl Run {
         self
     }
 
-    /// After it failed with one line, and under it perhaps an indented list, that hold each of the parts.
+    /// Checks that the run failed with one line, perhaps with an indented list under it, that contains each of the parts.
     #[track_caller]
     fn refused(self, parts: &[&str]) -> Self {
         let Self { code, out, err } = &self;
@@ -79,7 +79,7 @@ impl Run {
     }
 }
 
-/// Whether a line on standard error tells how far a run is.
+/// Whether a line on standard error reports progress.
 fn is_progress(line: &str) -> bool {
     let starts =
         ["reading", "preparing", "smoothing", "writing", "sweep ", "finding the optimum: "];
@@ -96,7 +96,7 @@ fn assert_holds(text: &str, parts: &[&str]) {
 
 fn command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gpu-smooth"));
-    // Without it, some drivers complain on standard error.
+    // If the variable is not set, some drivers complain on standard error.
     command.env("XDG_RUNTIME_DIR", std::env::temp_dir()).stdin(Stdio::null());
     command
 }
@@ -107,7 +107,7 @@ fn finish(command: &mut Command) -> Run {
     Run { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
 }
 
-/// A directory of its own for a test, in which the command runs.
+/// A temporary folder of a test, in which the command runs.
 struct Folder(TempDir);
 
 impl Folder {
@@ -145,12 +145,12 @@ impl Folder {
         finish(self.command().args(args))
     }
 
-    /// Runs a line without quotes or spaces in names.
+    /// Runs the command with these arguments, separated by spaces.
     fn line(&self, args: &str) -> Run {
         self.run(args.split_whitespace())
     }
 
-    /// Every file and its bytes.
+    /// Every file in the folder with its bytes.
     fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files: Vec<_> = fs::read_dir(&self.0)
             .unwrap()
@@ -165,19 +165,19 @@ impl Folder {
 /// A small mesh with most of its vertices in bad places.
 fn disturbed() -> Mesh {
     let mut mesh = support::lattice(10, 8);
-    // Wider than high, so that no place of the vertices makes all triangles equilateral.
+    // Flattened, so that not all triangles can become equilateral.
     mesh.points.iter_mut().for_each(|point| point[1] *= 0.625);
     support::perturb_random(&mesh, 1.0, 5)
 }
 
-/// A folder with the small mesh, as `in.node` and `in.ele`.
+/// A folder with the small mesh of [`disturbed`], as `in.node` and `in.ele`.
 fn small() -> Folder {
     let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
     Folder::new(&[("in.node", &node), ("in.ele", &ele)])
 }
 
-/// Whether `after` is `before` smoothed: the triangles and what is held as they were, to the bit, no
-/// triangle turned or flat, no fold, and something moved.
+/// Checks that `after` is `before` smoothed: the same triangles, held vertices unchanged to the bit, no triangle inverted or
+/// flat, no fold, and some vertex moved.
 #[track_caller]
 fn assert_smoothed(before: &Mesh, after: &Mesh) {
     assert_eq!((&before.triangles, &before.fixed), (&after.triangles, &after.fixed));

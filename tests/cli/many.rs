@@ -4,7 +4,7 @@ use super::{Folder, Run, assert_holds, disturbed, number, support};
 use serde_json::Value;
 use std::fs;
 
-/// A folder with meshes of Triangle and gmsh, and a file that is none.
+/// A folder with meshes of Triangle and gmsh, and a file that is not a mesh.
 fn several() -> Folder {
     let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
     let gmsh = support::write_msh22(&disturbed());
@@ -118,7 +118,7 @@ fn a_call_is_taken_up_again() {
     fs::write(folder.path("out/c.msh"), "what newer files hold is not looked at").unwrap();
     assert_holds(&folder.line(line).clean().out, &["\n1 smoothed, 2 skipped of 3 meshes"]);
     assert_eq!(names(&folder, "out"), ["a.1.ele", "a.1.node", "b.msh", "c.msh"]);
-    // A mesh that was written again is smoothed again.
+    // A mesh that was written again later is smoothed again.
     fs::write(folder.path("c.msh"), bytes("b.msh")).unwrap();
     assert_holds(&folder.line(line).clean().out, &["\n1 smoothed, 2 skipped of 3 meshes"]);
     assert!(bytes("out/c.msh") == bytes("out/b.msh"));
@@ -167,7 +167,7 @@ fn options_of_one_mesh_are_refused() {
     }
 }
 
-/// All bad triangles of a mesh that cannot be smoothed are in the report.
+/// For a mesh that cannot be smoothed, the report lists all its bad triangles.
 #[test]
 fn a_tangled_mesh_fails_or_is_untangled() {
     let folder = several();

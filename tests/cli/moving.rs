@@ -1,4 +1,4 @@
-//! What may move is the user's choice: groups, lists, arrays, boxes, regions, and what is near bad triangles.
+//! Options that choose what may move: groups, lists, arrays, boxes, regions, and the neighborhood of bad triangles.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
 use gpu_smooth::Mesh;
@@ -8,14 +8,14 @@ use std::fs;
 
 type Set = BTreeSet<usize>;
 
-/// The triangles of the left half of the small mesh, by where they are.
+/// Whether a triangle is in the left half of the small mesh.
 fn is_left(mesh: &Mesh, triangle: usize) -> bool {
-    // Two triangles a square, ten squares a row.
+    // Each square is two triangles, and each row has ten squares.
     assert_eq!(mesh.triangles.len(), 160);
     triangle / 2 % 10 < 5
 }
 
-/// The small mesh with materials `land` to the left and `mud` to the right.
+/// The small mesh as a .2dm file, with materials `land` on the left and `mud` on the right.
 fn sms(mesh: &Mesh) -> String {
     let mut text = "MESH2D\n".to_owned();
     for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -34,7 +34,7 @@ fn folder() -> (Folder, Mesh) {
     (Folder::new(&[("in.2dm", &sms(&mesh))]), mesh)
 }
 
-/// The vertices of the triangles for which this holds.
+/// The vertices of the triangles for which `holds` is true.
 fn vertices_of(mesh: &Mesh, holds: impl Fn(usize) -> bool) -> Set {
     let triangles = (0..mesh.triangles.len()).filter(|&t| holds(t));
     triangles.flat_map(|t| mesh.triangles[t]).map(|v| v as usize).collect()
@@ -45,14 +45,14 @@ fn interior(mesh: &Mesh) -> Set {
     (0..mesh.points.len()).filter(|&v| !on_boundary[v]).collect()
 }
 
-/// Where bits of a vertex have changed.
+/// The vertices whose coordinates differ in any bit.
 fn moved(before: &Mesh, after: &Mesh) -> Set {
     let bits = |mesh: &Mesh, v: usize| mesh.points[v].map(f64::to_bits);
     (0..before.points.len()).filter(|&v| bits(before, v) != bits(after, v)).collect()
 }
 
-/// A run with these options moves exactly these vertices, says so, and `compare` with the same options agrees; with none
-/// it finds nothing wrong either. Without the options more would move, which `compare` with them finds.
+/// Checks that a run with these options moves exactly `movers`, prints `note`, and that `compare` with the same options
+/// accepts the result. Also checks that a run without the options moves more, which `compare` with them must find.
 #[track_caller]
 fn assert_moves(folder: &Folder, input: &str, options: &str, movers: &Set, note: &str) {
     let output = input.replace("in", "out");
@@ -60,7 +60,7 @@ fn assert_moves(folder: &Folder, input: &str, options: &str, movers: &Set, note:
     let run = folder.line(&line);
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert!(run.err.lines().any(|line| line == format!("gpu-smooth: {note}")), "{}", run.err);
-    // What is fixed is judged below: the vertices between regions may be free.
+    // The fixed vertices of the file are ignored here, as those between regions may be free; `movers` is checked below.
     let [before, after] = [input, &output].map(|name| Mesh { fixed: vec![], ..folder.mesh(name) });
     assert_smoothed(&before, &after);
     assert_eq!(moved(&before, &after), *movers, "{options}");
@@ -118,7 +118,7 @@ fn only_the_inside_of_regions_moves_that_are_named() {
     assert_moves(&folder, "in.2dm", "--only land", &land, note);
     let free = note.replace("of 56", "of 63");
     assert_moves(&folder, "in.2dm", "--only land --free-interfaces", &land, &free);
-    // Of both, the vertices between them too, if those may move at all.
+    // With both materials, the vertices between them move too, if they may move at all.
     let both = "--only land (material surface land), 9 (material surface mud): 63 of 63 free vertices may move";
     for options in ["--only land,9 --free-interfaces", "--only land --only 9 --free-interfaces"] {
         let run = folder.line(&format!("in.2dm out.2dm --engine cpu {options}"));
@@ -127,7 +127,7 @@ fn only_the_inside_of_regions_moves_that_are_named() {
     }
 }
 
-/// Each format with regions, by the tags that `groups` prints.
+/// Groups of every format can be fixed, by the tags that `gpu-smooth groups` prints.
 #[test]
 fn groups_of_every_format_stay() {
     let mesh = disturbed();
@@ -158,7 +158,7 @@ fn groups_of_every_format_stay() {
 #[test]
 fn listed_vertices_stay() {
     let (folder, mesh) = folder();
-    // Numbers of the file start at one. The second is on the boundary.
+    // Numbers of the file count from one. The second of the three is on the boundary.
     fs::write(folder.path("list.txt"), "37 # in the middle\n\n1\t49\n").unwrap();
     let movers = &interior(&mesh) - &Set::from([36, 48]);
     let note = "--fix-vertices list.txt: 3 vertices stay fixed; 2 of them would be free";
@@ -188,7 +188,7 @@ fn vertices_in_a_box_stay() {
         let options = format!("--free-interfaces --fix-box {corners}");
         assert_moves(&folder, "in.2dm", &options, &movers, &note);
     }
-    // A box of nothing is no error, but is told.
+    // A box that contains no vertex is not an error, but is reported.
     let run = folder.line("in.2dm out.2dm --engine cpu --max-sweeps 1 --fix-box 50,50,60,60");
     assert_holds(&run.err, &["--fix-box 50,50,60,60: it names no vertex"]);
 }
@@ -218,7 +218,7 @@ fn vertices_stay_that_an_array_marks() {
         .refused(&["in.vtk: no point data is called 'fixe'. There are fixed"]);
 }
 
-/// The inverse mean ratio by the lengths of the sides.
+/// The inverse mean ratio, from the lengths of the edges.
 fn imr(mesh: &Mesh, triangle: usize) -> f64 {
     let p = mesh.triangles[triangle].map(|v| mesh.points[v as usize]);
     let square = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
@@ -234,7 +234,7 @@ fn only_what_is_near_bad_triangles_moves() {
     let inside = interior(&mesh);
     let mut ratios: Vec<f64> = (0..160).map(|t| imr(&mesh, t)).collect();
     ratios.sort_by(f64::total_cmp);
-    // Two triangles are above.
+    // The limit is such that two triangles are above it.
     let limit = format!("{:.3}", 0.5 * (ratios[157] + ratios[158]));
     let q: f64 = limit.parse().unwrap();
     let mut near = vertices_of(&mesh, |t| imr(&mesh, t) > q);
@@ -255,7 +255,7 @@ fn only_what_is_near_bad_triangles_moves() {
         if rings == 2 {
             let options = format!("--free-interfaces --only-bad {limit}");
             assert_moves(&folder, "in.2dm", &options, &movers, &note);
-            // Both have to let a vertex move, and what is fixed stays.
+            // A vertex moves only if both options let it, and fixed vertices stay.
             let land = &movers - &vertices_of(&mesh, |t| !is_left(&mesh, t));
             let options = format!("{options} --only land --fix-box 0,0,1.5,9");
             let held = |v: &usize| mesh.points[*v][0] <= 1.5;
@@ -292,7 +292,7 @@ fn a_mesh_without_bad_triangles_is_written_as_it_was() {
 fn what_is_held_stays_while_a_mesh_is_untangled() {
     let mut mesh = disturbed();
     let mud = vertices_of(&mesh, |t| !is_left(&mesh, t));
-    // Far out of its patch, in the left half.
+    // A vertex in the left half moves far out of its patch.
     mesh.points[4 * 11 + 2][1] += 1.6;
     let folder = Folder::new(&[("in.2dm", &sms(&mesh))]);
     folder.line("in.2dm out.2dm --engine cpu --fix mud -q").refused(&["inverted"]);

@@ -3,7 +3,7 @@
 use super::{Folder, assert_holds, assert_smoothed, finish, number, plate_path, small};
 use serde_json::Value;
 
-/// A run on the CPU: its report and what it printed.
+/// Runs on the CPU. Returns the report and what was printed.
 #[track_caller]
 fn run(folder: &Folder, options: &str) -> (Value, String) {
     let line = format!("in out --engine cpu --report r.json {options}");
@@ -12,7 +12,7 @@ fn run(folder: &Folder, options: &str) -> (Value, String) {
     (folder.json("r.json"), out)
 }
 
-/// The report of a run on the plate.
+/// Runs on the plate. Returns the report.
 #[track_caller]
 fn on_plate(options: &[&str]) -> Value {
     let folder = Folder::new(&[]);

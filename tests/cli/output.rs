@@ -1,11 +1,11 @@
-//! What is printed, and what is not.
+//! What is printed, and what is left out.
 
 use super::{Folder, assert_holds, finish, number, plate_path, small, support};
 use gpu_smooth::{MeshFile, Metric};
 use std::fs;
 use std::process::Stdio;
 
-/// A square whose center lies to the right of it: triangle 2 is inverted.
+/// A square with its center vertex moved out to the right: triangle 2 is inverted.
 pub(crate) const INVERTED: [&str; 2] = [
     "5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 1.5 0.5\n",
     "4 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n",
@@ -65,7 +65,7 @@ fn quality_needs_no_free_vertex() {
     assert!(!text.contains("movable"), "{text}");
 }
 
-/// The small mesh with a `.poly`, of which there is something to remark.
+/// The small mesh with a `.poly` that makes the run print a note.
 fn small_with_poly() -> Folder {
     let folder = small();
     fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 50 51\n0\n").unwrap();
@@ -110,7 +110,7 @@ fn a_worst_element_that_got_worse_is_told_with_what_helps() {
     let plate = plate_path().to_str().unwrap();
     let out = folder.run([plate, "good", "--engine", "cpu"]).clean().out;
     assert!(!out.contains(" rose "), "{out}");
-    // A graded mesh, whose shapes give way to even sizes.
+    // A graded mesh: even sizes cost it some of its shapes.
     let file = MeshFile::read(&folder.path("good.node")).unwrap();
     let graded = |&[x, y]: &[f64; 2]| [x * x.hypot(y), y * x.hypot(y)];
     let points: Vec<_> = file.mesh().points.iter().map(graded).collect();
@@ -189,10 +189,10 @@ fn no_bar_is_drawn_where_there_is_no_terminal() {
         command.args(["--report", "r.json", "--max-sweeps", &sweeps.to_string()]);
         let run = finish(&mut command);
         assert_eq!(run.code, Some(0), "{}", run.err);
-        // A line now and then at most, as in a log.
+        // Standard error is not a terminal here: it gets lines of progress, as a log does.
         assert!(!run.err.contains(['\r', '\u{1b}']), "{}", run.err);
         assert!(run.err.lines().all(super::is_progress), "{}", run.err);
-        // Long enough for a bar to show.
+        // The run took long enough that a terminal would show a bar.
         if number(&folder.json("r.json")["seconds"]["smooth"]) > 1.0 {
             return;
         }

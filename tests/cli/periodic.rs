@@ -1,10 +1,10 @@
-//! `--slide` of models that are periodic: vertices that belong together in pairs slide together.
+//! `--slide` on periodic models: the vertices of a pair slide together.
 
 use super::{Folder, assert_holds, number, slide};
 use gpu_smooth::Mesh;
 
-/// The vertices of a mesh of 9 by 5 places, in fields of which each is parted in two, with those of the left and the right side at the
-/// same heights.
+/// A mesh of 9 by 5 vertices, with two triangles in each field, and its materials. Vertices of the left and the right side
+/// are at the same heights.
 fn channel() -> (Mesh, Vec<i32>) {
     let (mut mesh, materials) = slide::square();
     for row in 0..5 {
@@ -17,7 +17,7 @@ fn rows<'a, T: 'a>(items: impl IntoIterator<Item = T>, row: impl Fn(T) -> String
     items.into_iter().map(row).collect()
 }
 
-/// A mesh as a file of gmsh 2.2, with a section of pairs, of an image and what it is the image of.
+/// A mesh as a file of gmsh 2.2, with a section of periodic pairs.
 fn gmsh2(mesh: &Mesh, pairs: &str) -> String {
     let nodes = rows(mesh.points.iter().zip(1..), |([x, y], tag)| format!("{tag} {x:?} {y:?} 0\n"));
     let elements = rows(mesh.triangles.iter().zip(1..), |([a, b, c], tag)| {
@@ -30,7 +30,7 @@ fn gmsh2(mesh: &Mesh, pairs: &str) -> String {
     )
 }
 
-/// The same of version 4.0, and of 4.1.
+/// A mesh as a file of gmsh 4.0 or 4.1, with a section of periodic pairs.
 fn gmsh4(mesh: &Mesh, version: &str, pairs: &str) -> String {
     let (n, m) = (mesh.points.len(), mesh.triangles.len());
     let row = |([x, y], tag): (&[f64; 2], i32)| match version {
@@ -55,7 +55,7 @@ fn gmsh4(mesh: &Mesh, version: &str, pairs: &str) -> String {
     )
 }
 
-/// A mesh as a binary file of gmsh 4.1, with pairs of an image and what it is the image of.
+/// A mesh as a binary file of gmsh 4.1. Each pair is an image and the vertex that it is the image of.
 fn binary41(mesh: &Mesh, motion: &[f64], pairs: &[[u64; 2]]) -> Vec<u8> {
     let mut file = b"$MeshFormat\n4.1 1 8\n\x01\0\0\0\n$EndMeshFormat\n$Nodes\n".to_vec();
     let put = |file: &mut Vec<u8>, sizes: &[u64]| {
@@ -90,14 +90,14 @@ fn binary41(mesh: &Mesh, motion: &[f64], pairs: &[[u64; 2]]) -> Vec<u8> {
     file
 }
 
-/// The pairs of the channel's sides, by tags from one.
+/// The pairs of the channel's left and right sides, as tags from one.
 fn sides() -> Vec<[u64; 2]> {
     (0..5).map(|row| [9 * row + 9, 9 * row + 1]).collect()
 }
 
 const MOTION: &str = "1 0 0 8 0 1 0 0 0 0 1 0 0 0 0 1";
 
-/// A section `$Periodic` in a form before 4.1, or as 4.1 has it.
+/// A section `$Periodic` as versions before 4.1 have it, or as 4.1 has it.
 fn section(version: &str, with_motion: bool, pairs: &[[u64; 2]]) -> String {
     let motion = match (version, with_motion) {
         ("4.1", true) => format!("16 {MOTION}\n"),
@@ -113,7 +113,7 @@ fn write(folder: &Folder, name: &str, content: impl AsRef<[u8]>) {
     std::fs::write(folder.path(name), content).unwrap();
 }
 
-/// Checks that a run lets partners slide together, and `compare` proves it.
+/// Checks that in a run the vertices of each pair slide together, and that `compare` proves it.
 fn slides_together(folder: &Folder, mesh: &str, pairs: usize, options: &str) {
     let out = format!("out-{mesh}");
     let line = format!("{mesh} {out} --engine cpu --slide {options} --report r.json");
@@ -145,7 +145,7 @@ fn partners_of_a_translation_slide_together_in_all_forms_of_gmsh() {
             slides_together(&folder, mesh, 3, "");
         }
     }
-    // A partner that is taken back is missed.
+    // `compare` notices if one vertex of a pair is put back.
     let text = folder.text("out-2.msh");
     let was = folder.text("2.msh");
     let own = |text: &str| text.lines().find(|row| row.starts_with("18 8")).unwrap().to_owned();
@@ -158,7 +158,7 @@ fn partners_of_a_translation_slide_together_in_all_forms_of_gmsh() {
 #[test]
 fn pairs_that_make_no_sense_stay_and_nothing_else_is_harmed() {
     let (mut mesh, _) = channel();
-    // One is off its place by a tenth of an edge.
+    // Moves one vertex of a pair along its side by a tenth of an edge.
     mesh.points[9 * 2 + 8][1] += 0.1;
     let folder = Folder::new(&[]);
     let run = |pairs: &[[u64; 2]], told: &[&str]| {
@@ -168,9 +168,9 @@ fn pairs_that_make_no_sense_stay_and_nothing_else_is_harmed() {
         assert_holds(&run.err, told);
         folder.line("compare in.msh out.msh --slide").clean();
     };
-    // Its neighbors would have to slide as it does.
+    // The neighbors of this vertex would have to slide as those of its partner do.
     run(&sides(), &["--slide: 14 vertices", "1 pair stays"]);
-    // A pair of itself, a vertex of three pairs, an inner one, and what the file does not have.
+    // A vertex paired with itself, a vertex in three pairs, a vertex inside, and vertices that do not exist.
     run(&[[10, 10]], &["--slide: 19 vertices"]);
     run(&[[10, 18], [18, 28], [28, 10]], &["--slide: 17 vertices"]);
     run(&[[10, 12]], &["--slide: 19 vertices"]);

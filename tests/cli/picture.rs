@@ -1,10 +1,10 @@
-//! `--picture`: files that hold what was asked for, the right way up.
+//! `--picture`: files that show what was asked for, the right way up.
 
 use super::output::INVERTED;
 use super::{Folder, assert_holds, finish, small};
 use std::fs;
 
-/// An image and its size.
+/// The pixels of an image, and its size.
 struct Image {
     width: usize,
     height: usize,
@@ -22,14 +22,14 @@ impl Image {
         Self { width: info.width as usize, height: info.height as usize, pixels }
     }
 
-    /// The places of pixels of some color.
+    /// The places of the pixels whose color fits.
     fn places(&self, is: impl Fn([u8; 4]) -> bool) -> Vec<[usize; 2]> {
         let place = |i: usize| [i % self.width, i / self.width];
         (0..self.pixels.len()).filter(|&i| is(self.pixels[i])).map(place).collect()
     }
 }
 
-/// Least and largest x and y.
+/// The least and the largest x and y.
 fn bounds(places: &[[usize; 2]]) -> [[usize; 2]; 2] {
     [0, 1].map(|axis| {
         let all = places.iter().map(|place| place[axis]);
@@ -41,7 +41,7 @@ fn is_red(pixel: [u8; 4]) -> bool {
     pixel == [230, 25, 75, 255]
 }
 
-/// A color of the scale, not of lines and letters.
+/// Whether a pixel has a color of the scale, and not the black or white of lines and letters.
 fn is_face(pixel: [u8; 4]) -> bool {
     let [r, g, b, _] = pixel;
     r.abs_diff(g).max(g.abs_diff(b)) > 20
@@ -49,7 +49,7 @@ fn is_face(pixel: [u8; 4]) -> bool {
 
 #[test]
 fn a_picture_is_upright_with_equal_axes_and_shows_inverted_triangles() {
-    // A square 1 wide and high. Its center lies above it, so that the upper triangle is inverted, or to the right of it.
+    // A square of side 1. Its center vertex is above it, so that the upper triangle is inverted, or to the right of it.
     let [node, ele] = INVERTED;
     let above = node.replace("1.5 0.5", "0.5 1.5");
     for (node, x, y) in [(node, [1.0_f64, 1.5], [0.0_f64, 1.0]), (&above, [0.0, 1.0], [1.0, 1.5])] {
@@ -57,7 +57,7 @@ fn a_picture_is_upright_with_equal_axes_and_shows_inverted_triangles() {
         folder.line("quality in --picture p.png --picture-size 700").clean();
         let image = Image::read(&folder, "p.png");
         assert_eq!(image.width, 700);
-        // All that is colored above the legend.
+        // All colored pixels above the legend.
         let mesh = |[_, row]: &[usize; 2]| *row < image.height - 70;
         let mut red = image.places(is_red);
         red.retain(mesh);
@@ -87,7 +87,7 @@ fn a_run_is_drawn_before_and_after_on_one_scale() {
     folder.line("in out --engine cpu -q --picture p.png --picture-size 900").clean();
     let image = Image::read(&folder, "p.png");
     let before = |x: usize| x < 450;
-    // Good triangles are light; the legend is the same on both sides of nothing.
+    // Good triangles are light. The legend is left out.
     let mesh = |[_, row]: &[usize; 2]| *row < image.height - 90;
     let mean = |is_side: &dyn Fn(usize) -> bool| {
         let mut places = image.places(is_face);
@@ -98,7 +98,7 @@ fn a_run_is_drawn_before_and_after_on_one_scale() {
     let [dark, light] = [mean(&before), mean(&|x| !before(x))];
     assert!(light > dark + 20.0, "{dark} before, {light} after");
     assert_eq!(image.places(is_red), [[0; 2]; 0]);
-    // Nothing else is written.
+    // No other file is written.
     assert_eq!(folder.content().len(), 5);
 }
 
@@ -151,7 +151,7 @@ fn an_svg_has_every_triangle() {
             _ => {}
         }
     }
-    // Those in the insets come on top.
+    // At least all triangles of the mesh; the insets show some of them again.
     assert!(triangles >= 160, "{triangles}");
     assert_holds(
         &words,

@@ -1,4 +1,4 @@
-//! The job the command is for, on the mesh that comes with it.
+//! The example of the README: the plate of `meshes/`, smoothed by the command.
 
 use super::{Folder, assert_holds, assert_smoothed, number, plate_path, support};
 use gpu_smooth::MeshFile;
@@ -38,7 +38,7 @@ fn plate_is_smoothed_alike_on_gpu_and_cpu() {
     }
 }
 
-/// Comment, header, numbers and markers as before; of a vertex on the boundary the coordinates too.
+/// Checks that comments, header, numbers and markers are kept, and the coordinates of boundary vertices too.
 fn assert_rows_kept(before: &str, after: &str) {
     assert_eq!(before.lines().count(), after.lines().count());
     let rows = before.lines().zip(after.lines());

@@ -1,4 +1,4 @@
-//! What a run tells while it is under way, on a terminal and in a log.
+//! What a run reports while it goes on, on a terminal and in a log.
 
 use super::{Folder, assert_holds, small};
 use serde_json::Value;
@@ -26,7 +26,7 @@ fn a_log_of_json_has_an_object_on_every_line() {
     assert_eq!((&end["event"], &end["mesh"]), (&"end".into(), &"in".into()));
     assert_eq!((&end["stop"], &end["sweeps"]), (&report["stop"], &report["sweeps"]));
     assert_eq!(end["f_after"], report["after"]["f"]["imr"]);
-    // What is asked for is printed as ever.
+    // The result is printed to standard output as without `--log`.
     assert_holds(&run.out, &["\nconverged after "]);
 
     let run = folder.line("none out --log json");
@@ -50,7 +50,7 @@ fn many_meshes_are_logged_one_by_one() {
     assert_eq!(events[2]["event"], "error");
 }
 
-/// Every stage tells that it is under way, also one that does not tell how far it is.
+/// Every stage reports that it goes on, also one that cannot tell how far it is.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_stage_that_lasts_is_told_on_a_terminal_and_in_a_log() {

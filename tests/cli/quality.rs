@@ -1,4 +1,4 @@
-//! `gpu-smooth quality`: what it tells of meshes, in each of its forms.
+//! `gpu-smooth quality`: its text, JSON and CSV.
 
 use super::output::INVERTED;
 use super::{Folder, assert_holds, disturbed, finish, number, small, support};
@@ -6,7 +6,7 @@ use gpu_smooth::{Measure, Measured, MeshFile, Topology};
 use serde_json::Value;
 use std::fs;
 
-/// The numbers of a row of the text.
+/// The numbers in a row of the text.
 fn numbers(row: &str) -> Vec<f64> {
     row.split_whitespace().filter_map(|word| word.parse().ok()).collect()
 }
@@ -30,7 +30,7 @@ fn all_forms_tell_the_same_statistics() {
         let mut values = measured.values(measure);
         values.sort_by(f64::total_cmp);
         let mean = values.iter().sum::<f64>() / 160.0;
-        // Of 160 values, 8 are 5 %.
+        // 5 % of 160 values are 8.
         let expected = [values[0], mean, values[159], values[7], values[79], values[151]];
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b.abs();
 
@@ -82,7 +82,7 @@ fn histograms_count_every_triangle() {
         let first = counts.iter().position(|&n| n > 0).unwrap();
         assert_eq!(drawn, counts[first..first + drawn.len()], "{block}");
         assert_eq!(drawn.iter().sum::<u64>(), 160);
-        // No blocks where there is no terminal.
+        // Histograms have no block characters if the output is not a terminal.
         assert!(block.is_ascii() && block.contains('#'), "{block}");
     }
     let ascii = folder.line("quality in --ascii").clean().out;
@@ -146,7 +146,7 @@ fn a_threshold_fails_where_triangles_pass_it() {
     {
         run(&passed).clean();
     }
-    // Each threshold and each mesh has its line; the other forms fail alike.
+    // Standard error has a line for each threshold that is exceeded, in each mesh, also with `--json`.
     let line = "quality in in.ele --json --threshold min-angle<60 --threshold condition>=1 --threshold shape<0";
     let run = folder.line(line);
     assert_eq!((run.code, run.err.lines().count()), (Some(1), 4), "{}", run.err);
@@ -223,7 +223,7 @@ fn regions_are_told_apart() {
         assert_eq!(region["first_triangle"], first.label);
         let least = shapes[range.clone()].iter().copied().fold(1.0, f64::min);
         assert!((number(&region["measures"]["shape"]["min"]) / least - 1.0).abs() < 1e-12);
-        // By what `--only` takes.
+        // The name that `--only` takes.
         let group = region["groups"][0].as_str().unwrap();
         let groups = file.groups().unwrap();
         let found = groups.find(group).unwrap();
@@ -248,14 +248,14 @@ fn regions_are_told_apart() {
         Measure::ALL.len()
     );
     assert_holds(csv.lines().next().unwrap(), &[",p95,groups"]);
-    // A name is told before a tag.
+    // A named group is told by its name, not by its tag.
     let named = support::write_msh22(&mesh)
         .replace("$Nodes", "$PhysicalNames\n1\n2 1 \"outer wall\"\n$EndPhysicalNames\n$Nodes");
     fs::write(folder.path("named.msh"), named).unwrap();
     let text = folder.line("quality named.msh --by-region").clean().out;
     let rows = ["\n1 outer wall ", "\nregion 1: physical surface outer wall"];
     assert_holds(&text, &rows);
-    // A mesh of one region has that region.
+    // A mesh without regions is one region.
     let folder = small();
     assert_holds(
         &folder.line("quality in --by-region").clean().out,
@@ -266,7 +266,7 @@ fn regions_are_told_apart() {
 #[test]
 fn defects_are_counted() {
     let [node, ele] = INVERTED;
-    // The center in a corner, and a sixth vertex that nothing uses.
+    // The center moves onto a corner, and there is a sixth vertex that no triangle uses.
     let node = node.replace("5 2 0 0", "6 2 0 0").replace("1.5 0.5", "1 1") + "6 9 9\n";
     let folder = Folder::new(&[("in.node", &node), ("in.ele", ele)]);
     let told = json(&folder, "quality in --json");

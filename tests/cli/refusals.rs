@@ -1,5 +1,5 @@
-//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, OUT untouched. Several inverted or
-//! flat triangles are listed under it.
+//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, and OUT untouched. Several inverted or
+//! flat triangles are listed under that line.
 
 use super::{Folder, assert_holds, output::INVERTED, plate_path, support};
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n10 0 0 0\n2
 9 2 2 0 1 30 40 50\n11 2 2 0 1 40 10 50\n$EndElements\n";
 const TRIANGULATED: [(&str, &str); 2] = [("in.node", NODE), ("in.ele", ELE)];
 
-/// Smoothing `input` is refused with each of the parts, and OUT left as it was, there or not.
+/// Checks that smoothing `input` is refused with each of the parts, and that OUT does not change, whether it exists or not.
 #[track_caller]
 fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
     let gmsh = input.ends_with(".msh");
@@ -29,7 +29,7 @@ fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
         folder.run([input, out, "--engine", "cpu"]).refused(parts);
         assert!(folder.content() == before, "files have changed");
         let run = folder.run([input, out, "--engine", "cpu", "--report", "r.json"]).refused(parts);
-        // Only bad triangles are reported.
+        // Only bad triangles are reported in several lines.
         let is_list = run.err.contains("inverted") || run.err.contains("flat");
         let others = |content: Vec<(PathBuf, Vec<u8>)>| -> Vec<_> {
             content.into_iter().filter(|(path, _)| !path.ends_with("r.json") || !is_list).collect()
@@ -139,7 +139,7 @@ fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
             "\n  in.ele:3: triangle 2 (vertices 2, 3, 5) is inverted\n  in.ele:4: triangle 3 (vertices 3, 4, 5) is inverted\n",
         ],
     );
-    // Numbers from zero.
+    // Vertices numbered from zero.
     let zero = "5 2\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n4 1.5 .5\n";
     let ele = "4 3\n0 0 1 4\n1 1 2 4\n2 2 3 4\n3 3 0 4\n";
     assert_triangle_refused(zero, ele, &["in.ele:3: triangle 1 (vertices 1, 2, 4) is inverted"]);
@@ -148,13 +148,13 @@ fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
         "50 1.5 0.5",
         &["in.msh:15: triangle 8 (vertices 20, 30, 50) is inverted", untangle],
     );
-    // A folded mesh, all clockwise but for one.
+    // All triangles are clockwise but for one, which is inverted.
     let clockwise = "4 3\n1 2 1 5\n2 3 2 5\n3 4 3 5\n4 1 4 5\n";
     assert_triangle_refused(&moved("0.5 -1"), clockwise, &["triangle 1 (vertices 2, 1, 5) is inv"]);
 }
 
-/// A strip two squares wide, as a Triangle and a gmsh mesh. Of every eight rows one has its middle vertex thrown across its
-/// neighbors, which inverts triangles, and one has it on top of a neighbor, which makes triangles flat.
+/// A strip two squares wide, as a Triangle and as a gmsh mesh. In every eighth row the middle vertex is moved across its
+/// neighbors, which inverts triangles. In another it is put onto a neighbor, which makes triangles flat.
 fn folded(rows: usize) -> Folder {
     let mut mesh = support::lattice(2, rows);
     for row in (1..rows).step_by(4) {
@@ -181,7 +181,7 @@ fn all_inverted_and_flat_triangles_are_listed() {
             .lines()
             .map(|line| line.split_whitespace().map_while(|word| word.parse().ok()).collect())
             .collect();
-        // The vertices are the last three numbers of a row in both formats.
+        // In both formats, the vertices are the last three numbers of a row.
         let row_of = |t: usize| {
             let vertices = mesh.triangles[t].map(|v| u64::from(v) + 1);
             lines.iter().position(|row| row.len() > 3 && row.ends_with(&vertices)).unwrap()
@@ -254,7 +254,7 @@ fn an_edge_of_three_triangles_is_told() {
         "5\n70 2 2 0 1 10 50 30\n7 2 2",
         &["the edge between vertices 10 and 50 belongs to 3 triangles (70, 7, 11)"],
     );
-    // As gmsh lists what is of two physical groups in version 2.2.
+    // gmsh lists an element of two physical groups twice in version 2.2.
     assert_gmsh_refused(
         "4\n7 2 2 0 1 10 20 50",
         "5\n70 2 2 0 2 50 10 20\n7 2 2 0 1 10 20 50",

@@ -1,4 +1,4 @@
-//! Vertices between regions of a mesh: what stays in place, what is told, and how to let them move.
+//! Vertices between regions of a mesh: which ones stay, what is reported, and how to let them move.
 
 use super::files::{assert_middle_row_held, middle_row};
 use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
@@ -15,7 +15,7 @@ fn folder(files: &support::regions::Files) -> Folder {
     folder
 }
 
-/// The regions of the small mesh, below and above its middle row.
+/// The region of each triangle of the small mesh: `below` or `above` its middle row.
 fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
     let half = mesh.triangles.len() / 2;
     (0..mesh.triangles.len()).map(|t| if t < half { below } else { above }).collect()
@@ -24,7 +24,7 @@ fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
 #[test]
 fn interfaces_between_regions_moved_silently() {
     let mesh = disturbed();
-    // Physical groups, or entities of one physical group.
+    // The regions are physical groups, or entities of one physical group.
     for regions in [[[1, 7], [2, 7]], [[-1, 7], [-1, 8]]] {
         for files in support::write_regions(&mesh, &halves(&mesh, regions)) {
             let (folder, input) = (folder(&files), files[0].0);
@@ -58,7 +58,7 @@ fn free_interfaces_move_as_if_all_were_one_region() {
     }
 }
 
-/// Attributes of an `.ele` may be anything, a value for each triangle too.
+/// Attributes of an `.ele` may be anything, even another value for each triangle.
 #[test]
 fn a_mesh_of_which_every_triangle_is_a_region_says_how_to_smooth_it() {
     let mesh = disturbed();

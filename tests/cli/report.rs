@@ -1,4 +1,4 @@
-//! What the JSON report holds.
+//! What the JSON report contains.
 
 use super::{number, small};
 use serde_json::Value;
@@ -149,7 +149,7 @@ fn goal_is_in_the_report_of_a_run_that_has_one() {
     }
 }
 
-/// What the report says of the files, against the files and another program.
+/// Compares the certificate of the report with the files, and its hashes with another program.
 #[cfg(unix)]
 #[test]
 fn the_certificate_holds_of_the_files() {
@@ -178,7 +178,7 @@ fn the_certificate_holds_of_the_files() {
             .map(|file| format!("{}  {}\n", text(&file["sha256"]), text(&file["path"])))
             .collect();
         assert_eq!(mine, sums);
-        // The command that needs nothing but the files prints the same.
+        // `gpu-smooth compare`, which sees only the files, prints the same.
         let choice = if options.contains("box") { "--fix-box 0,0,3,3" } else { "" };
         let compared = folder.line(&format!("compare in out {choice}"));
         assert!(compared.out.contains(&sums), "{}{}", compared.out, compared.err);

@@ -1,4 +1,4 @@
-//! Every metric and the paper's alternations, on both engines.
+//! Every metric and the alternating schemes of the paper, on both engines.
 
 use super::{Folder, assert_smoothed, number, small, support};
 
@@ -30,7 +30,7 @@ fn assert_scheme_works(folder: &Folder, scheme: &str, engine: &str) {
     assert!(f("after") < f("before"), "{scheme} on {engine}: f {}", f("after"));
     let rows = report["history"].as_array().unwrap();
     assert!(rows.len() > 4);
-    // Metrics take turns until corrections begin, which are by the first.
+    // Metrics alternate until corrections begin, which lower the first one.
     let swept: Vec<_> = rows[1..].iter().map(|row| row["metric"].as_str().unwrap()).collect();
     let turns = swept.iter().zip(metrics.iter().cycle()).take_while(|(a, b)| a == b).count();
     assert!(swept[turns..].iter().all(|metric| *metric == metrics[0]), "{scheme}: {swept:?}");

@@ -3,7 +3,7 @@
 use super::{Folder, assert_holds, finish};
 use std::fs;
 
-/// All names of options and commands in a help text.
+/// All names of options and commands that a help text mentions.
 fn named(help: &str) -> Vec<String> {
     let words = help.split(|c: char| !(c.is_alphanumeric() || c == '-'));
     let mut names: Vec<String> =
@@ -30,7 +30,7 @@ fn completions_and_manual_have_every_option() {
         }
     }
     let page = folder.line("man").clean().out;
-    // A hyphen is written so that it is no minus sign.
+    // Manual pages escape hyphens, so that they are not minus signs.
     let plain = page.replace("\\-", "-");
     options.iter().for_each(|option| assert_holds(&plain, &[option]));
     assert_holds(&plain, &[".TH gpu-smooth 1", "Examples:", ".SH \"WHAT MAY MOVE\""]);
@@ -76,7 +76,7 @@ fn help_has_examples_for_each_command_with_options() {
     for heading in ["Metric and engine", "Stopping", "What may move", "Untangling", "Many meshes"] {
         assert_eq!(help.matches(&format!("\n{heading}:\n")).count(), 1, "{heading}");
     }
-    // What a help names as an option of a command is one.
+    // Each option in the examples of a command's help must exist.
     let examples = help.split("Examples:\n").nth(1).unwrap();
     let options = named(help.split("Examples:\n").next().unwrap());
     assert!(named(examples).iter().all(|option| options.contains(option)), "{examples}");

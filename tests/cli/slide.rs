@@ -3,7 +3,7 @@
 use super::{Folder, assert_holds, number, support};
 use gpu_smooth::Mesh;
 
-/// A square of two materials, 8 by 4 fields, whose vertices on lines are off their places along them.
+/// A square of two materials with 8 by 4 fields. Vertices on its lines are moved along these.
 pub(super) fn square() -> (Mesh, Vec<i32>) {
     let mut random = support::SplitMix64::new(2);
     let (mut points, mut triangles, mut materials) = (Vec::new(), Vec::new(), Vec::new());
@@ -22,7 +22,7 @@ pub(super) fn square() -> (Mesh, Vec<i32>) {
     (Mesh { points, triangles, fixed: vec![] }, materials)
 }
 
-/// The square as a file of Medit.
+/// The square as a file of Medit, in text.
 fn medit() -> String {
     let (mesh, materials) = square();
     let points = mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n"));
@@ -42,7 +42,7 @@ fn a_mesh_that_slid_is_reported_and_compared() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     let run = folder.line("in.mesh out.mesh --engine cpu --slide --report r.json");
     assert_eq!(run.code, Some(0), "{}", run.err);
-    // 2 x 6 + 2 x 3 on the boundary, less the ends of the line between the materials, and 3 on that.
+    // 2 x 6 + 2 x 3 vertices on the boundary, without the ends of the line between the materials, and 3 on that line.
     assert_holds(
         &run.out,
         &["21 of 21 vertices on lines slid along them", "area of the mesh stayed the same"],
@@ -58,7 +58,7 @@ fn a_mesh_that_slid_is_reported_and_compared() {
     folder
         .line("compare in.mesh out.mesh")
         .refused(&["21 vertices have moved that must not", "--slide"]);
-    // One that was fixed by hand has moved.
+    // A vertex that --fix-box fixes has moved.
     let fixed = "compare -q in.mesh out.mesh --slide --fix-box 0.5,-1,2.5,0.5";
     folder.line(fixed).refused(&["2 vertices have moved that must not"]);
 }

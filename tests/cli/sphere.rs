@@ -1,4 +1,4 @@
-//! `--surface sphere` across the line where longitudes start again, around the globe, and at a pole.
+//! `--surface sphere`: meshes across the date line, around the globe, and at a pole.
 
 use super::{Folder, assert_holds, number, support};
 use std::fmt::Write;
@@ -6,8 +6,8 @@ use std::fmt::Write;
 const COLUMNS: u32 = 18;
 const ROWS: u32 = 5;
 
-/// A band around the globe from 10 to 60 degrees north, as a grid of SCHISM, or a part of it: so many of the fields of 20 degrees.
-/// Longitudes are from -180 to 180. With a pole, triangles go on from the top row to a vertex there.
+/// A band around the globe from 10 to 60 degrees north, as a grid of SCHISM, or a part of it. It is `fields` fields of 20
+/// degrees wide, and has longitudes from -180 to 180. With a pole, triangles join the top row to a vertex there.
 fn band(fields: u32, has_pole: bool) -> String {
     let mut random = support::SplitMix64::new(4);
     let across = if fields == COLUMNS { fields } else { fields + 1 };
@@ -62,12 +62,12 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
         assert!(f("after") < f("before"), "{} {}", f("before"), f("after"));
         let (before, after) = (folder.mesh("in.gr3"), folder.mesh("out.gr3"));
         assert_eq!(report["mesh"]["vertices"], before.points.len());
-        // In the range of the file, and with depths that are those of the new places.
+        // Longitudes stay in the range of the file, and depths are those of the new places.
         assert!(after.points.iter().all(|point| (-180.0..=180.0).contains(&point[0])));
         let compared =
             folder.line("compare in.gr3 out.gr3 --surface sphere --slide --interpolate depth");
         assert_eq!(compared.code, Some(0), "{}", compared.err);
-        // The command for quality measures the same angles on the sphere.
+        // `gpu-smooth quality` measures the same angles on the sphere.
         let quality = folder.line("quality out.gr3 --surface sphere --json --picture q.png");
         let quality: serde_json::Value = serde_json::from_str(&quality.out).unwrap();
         assert_eq!(quality["vertices"], before.points.len());
@@ -83,7 +83,7 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
             let measured = number(&measures[measure][extreme]);
             assert!((measured / told - 1.0).abs() < 1e-9, "{key}: {measured} {told}");
         }
-        // A vertex that is moved by hand to the other side of its triangles is found.
+        // Moves a vertex to the other side of its triangles: `compare` must find that.
         let text = folder.text("out.gr3");
         let inside = (fields + usize::from(fields < COLUMNS) as u32) as usize + 1;
         let row = text.lines().nth(2 + inside).unwrap();
@@ -119,10 +119,10 @@ fn what_is_across_the_line_is_refused_with_the_way_out_elsewhere() {
         .refused(&["in.gr3:6: triangle 1 has a pole of the sphere inside of it", "projection"]);
 }
 
-/// The sizes of a background are the same whichever way it has its longitudes, and whether it goes around the globe or not.
+/// A background gives the same sizes in either range of longitudes, and around the globe or not.
 #[test]
 fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
-    // Depths are sizes, of which none is 0; longitudes are from -180 or from 0 on.
+    // Depths serve as sizes, so none may be 0. Longitudes are in the 360 degrees after `from`.
     let rewritten = |text: &str, from: f64| {
         let row = |row: &str| match row.split(' ').collect::<Vec<_>>()[..] {
             [number, x, y, depth] => {
@@ -134,7 +134,7 @@ fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
         text.lines().map(row).collect::<String>()
     };
     let part = rewritten(&band(9, false), -180.0);
-    // There nothing is across a line.
+    // In this range of longitudes, no triangle is across the line.
     let turned = rewritten(&band(9, false), 0.0);
     let view = |text: &str| {
         let rows: Vec<Vec<f64>> = text
@@ -178,7 +178,7 @@ fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
         let f = f(mesh, target);
         assert!((0..2).all(|k| (f[k] / own[k] - 1.0).abs() < 1e-6), "{target}: {f:?} {own:?}");
     }
-    // Around the globe with a pole, of which other vertices are off their places.
+    // A background around the globe with a pole. Its other vertices are at other places.
     let around = f("in.gr3", "size=globe.gr3:depth");
     assert!((around[0] / own[0] - 1.0).abs() < 0.1, "{around:?} {own:?}");
     let both = f("globe.gr3", "size=globe.gr3:depth");

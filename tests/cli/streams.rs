@@ -1,4 +1,4 @@
-//! Meshes through standard input and output, and compressed ones.
+//! Meshes through standard input and output, and compressed meshes.
 
 use super::{Folder, Run, assert_holds, assert_smoothed, disturbed, small, support};
 use gpu_smooth::{Mesh, MeshFile};
@@ -7,7 +7,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::process::Stdio;
 
-/// What a run left that was given these bytes; its output, which may be binary, by itself.
+/// Runs with these bytes on standard input. Returns the run, and its output as bytes, as it may be binary.
 fn piped(folder: &Folder, args: &str, input: &[u8]) -> (Run, Vec<u8>) {
     let mut command = folder.command();
     command.args(args.split_whitespace()).stdin(Stdio::piped());
@@ -31,7 +31,7 @@ fn a_mesh_goes_in_and_out_through_pipes() {
         let before = mesh_of(bytes.clone());
         let (run, out) = piped(&folder, "- - --engine cpu", &bytes);
         assert_eq!(run.code, Some(0), "{}", run.err);
-        // What else would be printed there.
+        // As the mesh goes to standard output, the summary goes to standard error.
         assert_holds(&run.err, &["99 vertices (63 free", "converged after"]);
         assert_smoothed(&before, &mesh_of(out.clone()));
 

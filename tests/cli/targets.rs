@@ -1,4 +1,4 @@
-//! What elements are to look like: sizes and shapes that are kept, given, or seen on the sphere.
+//! Target sizes and shapes: kept, given, or seen on the sphere.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
 use gpu_smooth::{Mesh, MeshFile};
@@ -15,7 +15,7 @@ fn folder(more: &[(&str, &str)]) -> Folder {
     Folder::new(&[&files, more].concat())
 }
 
-/// A number for each vertex, growing from left to right.
+/// A size for each vertex, growing from left to right.
 fn sizes() -> Vec<f64> {
     disturbed().points.iter().map(|&[x, _]| 1.0 + x.abs()).collect()
 }
@@ -84,12 +84,12 @@ fn sizes_and_tensors_come_from_files_of_medit_and_bamg_and_from_point_data() {
         folder.line(&line).clean();
         ends.push(folder.mesh("out.node").points);
     }
-    // A size is the tensor of its inverse square, but for rounding.
+    // A size h is the tensor 1 / h² times the identity, so the meshes agree but for rounding.
     for other in &ends {
         let apart = ends[0].iter().zip(other).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
         assert!(apart.fold(0.0, f64::max) < 1e-9);
     }
-    // Sizes make a difference: where they grow by half, elements do.
+    // Without targets the mesh comes out different.
     folder.line("in even --engine cpu --scheme soft-size").clean();
     assert_ne!(folder.mesh("even.node").points, ends[0]);
 
@@ -154,7 +154,7 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
     assert_eq!(run.code, Some(2), "{}", run.err);
 }
 
-/// The small mesh as a grid of SCHISM, with half its heights as latitudes from `south` on.
+/// The small mesh as a grid of SCHISM. Its latitudes grow from `south` by half its heights.
 fn gr3(south: f64) -> String {
     let mesh = disturbed();
     let mut text = format!("bay\n{} {}\n", mesh.triangles.len(), mesh.points.len());
@@ -178,7 +178,7 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
     assert!(!sphere.err.contains(note), "{}", sphere.err);
     let report = folder.json("r.json");
     assert_eq!(report["target"]["surface"], "sphere");
-    // f and angles are those on the sphere. Targets take its lengths at vertices, f those in the middle of triangles.
+    // f and angles are those on the sphere. Targets take lengths at vertices, f those in the middle of triangles.
     let [f, target] = [&report["after"]["f"]["imr"], &report["target"]["f"][1]].map(number);
     assert!((f / target - 1.0).abs() < 2e-3, "{f} {target}");
     let angle = number(&report["after"]["min_angle"]);
@@ -190,7 +190,7 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
         .refused(&["its latitude is not between -90 and 90 degrees"]);
 }
 
-/// Two triangles around the small mesh, in a file of gmsh, with `h` at their corners: 1 on the left and 4 on the right.
+/// A file of gmsh with two triangles around the small mesh. `h` at their corners is 1 on the left and 4 on the right.
 fn background(factor: f64) -> String {
     let points = disturbed().points;
     let most = |axis: usize| points.iter().fold(f64::MIN, |most, p| most.max(p[axis]));
@@ -231,7 +231,7 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     }
     assert_eq!(ends[0], ends[1]);
     assert_ne!(ends[0], ends[2]);
-    // The same as a view of gmsh, and views that are none.
+    // The same sizes as a view of gmsh, and files that are not such views.
     let points = MeshFile::read(&folder.path("bg.msh")).unwrap().mesh().points.clone();
     let corners = |t: [usize; 3]| {
         let places = t.map(|v| format!("{:?},{:?},0", points[v][0], points[v][1])).join(", ");
@@ -257,7 +257,7 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     folder.line("in out --engine cpu --target metric=bg.pos").refused(&["take size=bg.pos"]);
     let run = folder.line("in out --engine cpu --target size=half.msh:h");
     assert_holds(&run.err, &["vertices are outside of half.msh, by up to", "the nearest place"]);
-    // The mesh's own sizes, of places.
+    // The sizes that the mesh itself has at its places.
     folder.line("in out --engine cpu --target keep-size --target-of place").clean();
     for (target, parts) in [
         ("size=bg.msh:g", &["no point data is called 'g'"][..]),

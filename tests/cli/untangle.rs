@@ -1,4 +1,4 @@
-//! `--untangle`: meshes with inverted triangles are refused without it, and mended with it.
+//! `--untangle`: meshes with inverted triangles are untangled with it, and refused without it.
 
 use super::{Folder, assert_holds, disturbed, support};
 use gpu_smooth::Mesh;
@@ -56,7 +56,7 @@ fn a_sound_mesh_is_smoothed_as_without_the_option() {
 
 #[test]
 fn what_cannot_be_untangled_is_listed_and_written_only_if_asked_for() {
-    // A triangle without a free vertex, turned over.
+    // Reverses a triangle that has no free vertex.
     let mut mesh = tangled();
     let held = check::held(&mesh);
     let lone = mesh.triangles.iter().position(|t| t.iter().all(|&v| held[v as usize])).unwrap();

@@ -1,4 +1,4 @@
-//! `--improve-worst`: what it tells and reports.
+//! `--improve-worst`: what it prints and reports.
 
 use super::{Folder, assert_holds, assert_smoothed, number, support};
 
@@ -24,7 +24,7 @@ fn what_became_of_the_worst_triangle_is_told_and_reported() {
     );
     assert_holds(&run.out, &[&sentence]);
     assert_holds(&std::fs::read_to_string(folder.path("p.html")).unwrap(), &[&sentence]);
-    // The measure is part of the option, so that a file is not taken for it.
+    // The measure needs `=`: the word after the option is a file.
     let run = folder.line("--engine cpu --improve-worst in.node out").clean();
     assert_holds(&run.out, &["the worst imr of movable triangles was improved from "]);
     let run = folder.line("in.node out --improve-worst=size");

@@ -1,4 +1,4 @@
-//! An application: its device, its buffers, its encoders.
+//! A small application for the tests: its device, its buffers, its encoders.
 
 use std::sync::{Arc, LazyLock, Mutex};
 
@@ -11,16 +11,16 @@ use wgpu::BufferUsages as Usage;
 
 use crate::support::{perturb_random, triangulate};
 
-/// What no mesh of these tests exceeds.
+/// The size of the largest mesh of these tests.
 const LARGEST: MeshSize = MeshSize { vertices: 10_000, triangles: 20_000 };
 
-/// An application with a device of its own. Panics when it is dropped if its error handler was called.
+/// An application with a device of its own. Dropping it panics if its error handler was called.
 pub(crate) struct App {
     pub(crate) gpu: Gpu,
     uncaptured: Arc<Mutex<Vec<String>>>,
 }
 
-/// The one all devices are of. wgpu panics where resources of two instances meet.
+/// The adapter of all devices. wgpu panics where resources of two instances meet.
 pub(crate) fn adapter() -> &'static wgpu::Adapter {
     static ADAPTER: LazyLock<wgpu::Adapter> = LazyLock::new(|| {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -30,14 +30,14 @@ pub(crate) fn adapter() -> &'static wgpu::Adapter {
     &ADAPTER
 }
 
-/// What an application that needs nothing for itself asks for.
+/// The limits of an application that needs nothing for itself.
 pub(crate) fn least_limits(size: MeshSize) -> wgpu::Limits {
     let own = wgpu::Limits::downlevel_webgl2_defaults();
     Gpu::required_limits(own, size, &adapter().limits()).unwrap()
 }
 
 impl App {
-    /// On a device made with exactly what the library says it needs, and room for vertices of any stride.
+    /// Makes a device with exactly what the library says it needs, and room for vertices of any stride.
     pub(crate) fn new() -> Self {
         Self::with(Gpu::required_features(), Self::limits()).unwrap()
     }
@@ -46,7 +46,7 @@ impl App {
         wgpu::Limits { max_storage_buffer_binding_size: 1 << 20, ..least_limits(LARGEST) }
     }
 
-    /// On one that has a clock as well.
+    /// Makes a device that has timestamps as well.
     pub(crate) fn with_timestamps() -> Self {
         Self::with(Gpu::optional_features(), Self::limits()).unwrap()
     }
@@ -73,12 +73,12 @@ impl App {
         Ok(Self { gpu: gpu?, uncaptured })
     }
 
-    /// A handle of the same device for the library's blocking calls.
+    /// Another `Gpu` of the same device, for the library's blocking calls.
     pub(crate) fn another_gpu(&self) -> Gpu {
         Gpu::new(self.gpu.device().clone(), self.gpu.queue().clone()).unwrap()
     }
 
-    /// What has reached the application's error handler, and is thereby forgiven.
+    /// Takes the errors that reached the application's handler. These no longer make the drop panic.
     pub(crate) fn take_uncaptured(&self) -> Vec<String> {
         std::mem::take(&mut *self.uncaptured.lock().unwrap())
     }
@@ -123,7 +123,7 @@ impl App {
         bytemuck::pod_collect_to_vec(&view[..])
     }
 
-    /// Positions as the device has them, and no sweep or import on the way.
+    /// Positions as the device has them. No sweep or import is done for it.
     pub(crate) fn points(&self, device_mesh: &DeviceMesh) -> Vec<[f64; 2]> {
         device_mesh.read_points().unwrap()
     }
@@ -147,7 +147,7 @@ impl Drop for App {
     }
 }
 
-/// Every word of a [`Vertices`] buffer that is no coordinate: a NaN that tells where it stands.
+/// The value of each word of a [`Vertices`] buffer that is not a coordinate: a NaN that contains the word's index.
 pub(crate) fn filler(word: usize) -> u32 {
     0x7fc0_0000 | word as u32
 }
@@ -160,7 +160,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// Filled with [`filler`], but for the coordinates of the vertices that a triangle uses.
+    /// Makes a buffer full of [`filler`], but for the coordinates of the vertices that a triangle uses.
     pub(crate) fn new(app: &App, mesh: &Mesh, offset: u64, stride: u64) -> Self {
         let bytes = offset + stride * mesh.points.len() as u64;
         let usage = Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
@@ -175,17 +175,17 @@ impl Vertices {
         vertices
     }
 
-    /// As most applications have it: x, y, z.
+    /// Makes a buffer with the usual layout: x, y, z.
     pub(crate) fn usual(app: &App, mesh: &Mesh) -> Self {
         Self::new(app, mesh, 0, 12)
     }
 
-    /// Where the x of a vertex stands, in words.
+    /// The index of the word that holds the x of a vertex.
     pub(crate) fn word(&self, vertex: u32) -> usize {
         ((self.offset + u64::from(vertex) * self.stride) / 4) as usize
     }
 
-    /// Moves a vertex, as an application does.
+    /// Writes a vertex into the buffer, as an application moves it.
     pub(crate) fn put(&self, app: &App, vertex: u32, [x, y]: [f64; 2]) {
         let xy = [x as f32, y as f32];
         let at = 4 * self.word(vertex) as u64;
@@ -207,18 +207,18 @@ pub(crate) fn plate(vertices: usize) -> Mesh {
     triangulate(&crate::support::Outline::parse(text).unwrap(), vertices).unwrap()
 }
 
-/// The same with its interior badly placed.
+/// A plate with a round hole and a badly placed interior.
 pub(crate) fn bad_plate(vertices: usize) -> Mesh {
     perturb_random(&plate(vertices), 0.8, 7)
 }
 
-/// The vertices that no boundary holds.
+/// The vertices that are neither fixed nor on the boundary.
 pub(crate) fn interior(mesh: &Mesh) -> Vec<u32> {
     let held = crate::support::check::held(mesh);
     (0..mesh.points.len() as u32).filter(|&v| !held[v as usize]).collect()
 }
 
-/// What the device said, wherever in a run it said it.
+/// The device's error inside of a run's error; panics if there is none.
 pub(crate) fn gpu_error(error: SmoothError) -> GpuError {
     match error {
         SmoothError::Gpu(error) => error,
@@ -226,7 +226,7 @@ pub(crate) fn gpu_error(error: SmoothError) -> GpuError {
     }
 }
 
-/// An application may prepare meshes on another thread than it draws them on.
+/// Fails to compile unless these types can move between threads.
 const _: () = {
     const fn moves_between_threads<T: Send + Sync>() {}
     moves_between_threads::<Gpu>();

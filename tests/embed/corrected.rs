@@ -1,4 +1,4 @@
-//! Encoded sweeps that are corrected from coarser levels, with a line search on the device.
+//! Encoded sweeps with corrections from coarser levels, whose line search is done on the device.
 
 use gpu_smooth::{
     Backend, DeviceMesh, Mesh, Method, Metric, ObjectiveValues, Options, SmoothError, Smoother,
@@ -13,18 +13,18 @@ fn corrected(metric: Metric) -> Options {
     Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
 }
 
-/// Sweeps that step as corrected ones do, without corrections.
+/// Options for sweeps with the relaxation of corrected ones, but without corrections.
 fn alone() -> Options {
     let method = Method::Sweeps;
     Options { method, omega: Some(1.3), plain_sweeps: 0, ..Options::default() }
 }
 
-/// A mesh of smooth errors, which sweeps alone take long for.
+/// A mesh displaced by long waves, for which sweeps alone take long.
 fn distorted() -> Mesh {
     distort_smooth(&plate(1200), 0.5)
 }
 
-/// f after each of so many sweeps of one frame each, and the mesh in the end.
+/// Encodes `count` frames of one sweep each. Returns f after each, and the points in the end.
 fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 2]>) {
     let app = App::new();
     let device_mesh = app.mesh(mesh);
@@ -39,7 +39,7 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
     (f, app.points(&device_mesh))
 }
 
-/// The least f.
+/// The least f that a run on the CPU finds.
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
     let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
@@ -55,7 +55,7 @@ fn corrected_sweeps_are_near_the_limit_after_a_dozen_and_never_raise_f() {
         let limit = limit(&mesh, metric);
         let left = f[14] / limit - 1.0;
         assert!(left < 1e-5, "{metric}: {left} left of {limit}: {f:?}");
-        // By as much as single precision tells.
+        // f may rise only by the rounding of single precision.
         assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{metric}: {f:?}");
         let end = Mesh { points, ..mesh.clone() };
         assert!(orientations(&end).iter().all(|&sign| sign == 1));
@@ -92,7 +92,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
         });
         assert!(app.objective(&sweeps).inverted > 0);
         ends.push(app.points(&device_mesh));
-        // Home again, it is corrected.
+        // When the vertex is back, the mesh is corrected again.
         vertices.put(&app, v, [x, y]);
         app.submit(|encoder| {
             bound.encode_import(encoder);
@@ -107,7 +107,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
 
 #[test]
 fn where_nothing_is_gained_every_bit_stays() {
-    // Equilateral, so that neither a sweep nor a correction has anything to gain.
+    // Equilateral triangles, so that neither sweeps nor corrections gain anything.
     let mesh = lattice(30, 30);
     let (f, points) = frames(&mesh, &corrected(Metric::Imr), 3);
     assert!((f[2] - 1.0).abs() < 1e-6);
@@ -144,7 +144,7 @@ fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them(
     }
     let values = app.objective(&sweeps);
     assert!(values.of(Metric::Imr) < after_one && after_one < first && values.inverted == 0);
-    // As low as sweeps alone get in the end, around the same vertices.
+    // f is as low as sweeps alone get in the end, with the same vertices held.
     let mut alone = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     app.submit(|encoder| alone.encode_sweeps(encoder, 200));
     let end = app.objective(&sweeps).of(Metric::Imr);
@@ -295,7 +295,7 @@ fn frames_take_no_memory() {
 
 #[test]
 fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
-    // As it is uploaded, elements at one end are a nineteenth as wide as at the other.
+    // When the mesh is uploaded, elements at one end are a nineteenth as wide as at the other.
     let mesh = distorted();
     let graded = |&[x, y]: &[f64; 2]| [x * (0.1 + 0.3 * x), y];
     let uploaded = Mesh { points: mesh.points.iter().map(graded).collect(), ..mesh.clone() };

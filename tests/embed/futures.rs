@@ -1,4 +1,4 @@
-//! Runs that do not block: who polls, who cancels.
+//! Runs as futures: who polls the device, and what happens when a future is dropped.
 
 use std::future::Future;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use gpu_smooth::{
 
 use crate::app::{App, bad_plate};
 
-/// Drives a future as an application does that polls its device once a frame, and counts the frames.
+/// Polls a future as an application does that polls its device once a frame. Returns the result and the number of frames.
 fn drive<F: Future>(device: &wgpu::Device, future: F) -> (F::Output, u32) {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
@@ -34,7 +34,7 @@ fn go_on(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Everything but the time it took.
+/// Compares two outcomes, but for their times.
 fn assert_same(expected: &Outcome, found: &Outcome) {
     assert_eq!(expected.points, found.points);
     assert_eq!((expected.stop, expected.sweeps), (found.stop, found.sweeps));
@@ -76,7 +76,7 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
     }
 }
 
-/// A runtime with many threads takes only futures that are `Send`.
+/// A runtime with several threads takes only futures that are `Send`.
 #[test]
 fn futures_can_move_between_threads() {
     const fn is_send<T: Send>(_: &T) {}
@@ -96,7 +96,7 @@ fn futures_can_move_between_threads() {
     is_send(&device_mesh.read_points_async());
 }
 
-/// What a runtime asks of a task that it spawns.
+/// A runtime asks this of a task that it spawns: `Send` and `'static`.
 #[test]
 fn a_prepared_mesh_that_owns_all_it_needs_is_run_in_another_thread() {
     fn spawn<T: Send + 'static>(
@@ -231,7 +231,7 @@ fn a_dropped_run_leaves_the_device_usable() {
     let (expected, _) = drive(app.device(), smoother.run_async(&options, &app.gpu));
     let expected = expected.unwrap();
     let endless = Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() };
-    // Dropped before it was polled, at its first wait, and later ones.
+    // Dropped before the first poll, at its first wait, and later.
     for polls in [0, 1, 2, 7] {
         let mut observe = go_on;
         let mut future = Box::pin(smoother.run_async_observed(&endless, &app.gpu, &mut observe));

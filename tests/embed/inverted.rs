@@ -1,20 +1,20 @@
-//! Meshes the application has broken between two frames.
+//! Meshes in which the application has inverted triangles between two frames.
 
 use gpu_smooth::{Derivatives, Mesh, Metric, Options, Quality, Sweeps, Topology};
 
 use crate::app::{App, Vertices, bad_plate, interior};
 use crate::support::{is_ccw, orientations};
 
-/// Where the application throws a vertex: `to` and `opposite` are its neighbors in one triangle.
+/// Where the application moves a vertex, relative to its two neighbors in one triangle.
 #[derive(Clone, Copy, Debug)]
 enum Throw {
     /// Beyond a neighbor, out of its star.
     Out,
-    /// Onto a neighbor: some triangles become flat, two of them to a point.
+    /// Onto a neighbor: some triangles become flat, two of them degenerate to an edge.
     Onto,
     /// Onto the middle of an edge of its star: one triangle becomes flat.
     Flat,
-    /// To where areas are large, but still floats.
+    /// So far away that areas are large, but still finite in floats.
     Far,
 }
 
@@ -34,8 +34,8 @@ impl Throw {
     }
 }
 
-/// The plate in coordinates that floats hold exactly, so that flat stays flat, and that plate with every
-/// 50th of its free vertices thrown.
+/// The plate, and the plate with every 50th of its free vertices moved. Coordinates are exact in floats, so that flat
+/// triangles stay flat.
 fn broken(throw: Throw) -> (Mesh, Mesh) {
     let mut sound = bad_plate(900);
     let exact = |x: f64| (x * 65536.0).round() / 65536.0;
@@ -48,7 +48,7 @@ fn broken(throw: Throw) -> (Mesh, Mesh) {
     (sound, broken)
 }
 
-/// The triangles none of whose vertices has a broken triangle at it.
+/// The mesh with only the triangles that have no vertex in common with a broken triangle.
 fn clean(mesh: &Mesh) -> Mesh {
     let mut at_broken = vec![false; mesh.points.len()];
     for (triangle, _) in mesh.triangles.iter().zip(orientations(mesh)).filter(|(_, o)| *o != 1) {

@@ -1,4 +1,4 @@
-//! Sweeps that end by themselves, judged on the device.
+//! Sweeps that end by themselves, as the device judges when.
 
 use gpu_smooth::{
     Backend, DeviceMesh, Mesh, Method, ObjectiveValues, Options, Smoother, Stop, Sweeps,
@@ -8,7 +8,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior, plate};
 
-/// An application that smooths a mesh some sweeps in a frame and looks at the objective.
+/// An application that does some sweeps in each frame and reads the objective.
 struct Frames {
     app: App,
     mesh: Mesh,
@@ -26,7 +26,7 @@ impl Frames {
         Self { app, mesh, device_mesh, sweeps, vertices }
     }
 
-    /// Imports, sweeps and exports; the objective of then.
+    /// Does a frame: imports, sweeps, exports. Returns the objective after it.
     fn frame(&mut self, count: u32) -> ObjectiveValues {
         let bound = self.vertices.bind(&self.device_mesh);
         self.app.submit(|encoder| {
@@ -37,7 +37,7 @@ impl Frames {
         self.app.objective(&self.sweeps)
     }
 
-    /// Frames until the sweeps have ended.
+    /// Does frames until the sweeps have ended.
     fn end(&mut self) -> ObjectiveValues {
         let ended = (0..300).map(|_| self.frame(7)).find(|values| values.stop().is_some());
         ended.expect("the sweeps end")
@@ -83,7 +83,7 @@ fn sweeps_end_where_a_run_ends_however_they_are_split() {
                     assert!(same, "vertex {v}: {e:?} {f:?}");
                 }
             }
-            // From there on sweeps do nothing.
+            // After the end, sweeps do nothing.
             assert_eq!(frames.frame(each), found);
             assert_eq!(frames.points(), settled);
         }
@@ -97,7 +97,7 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     let v = interior(&frames.mesh)[30];
     let settled = frames.points();
 
-    // A vertex that the application moves.
+    // The application moves a vertex.
     let [x, y] = settled[v as usize];
     frames.vertices.put(&frames.app, v, [x + 1e-3, y]);
     let values = frames.frame(1);
@@ -105,13 +105,13 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     assert!(frames.end().has_converged());
     assert_ne!(frames.points(), settled);
 
-    // One that it holds, or lets go.
+    // The application pins a vertex, or lets it go.
     frames.device_mesh.pin(&[v]).unwrap();
     assert_eq!(frames.app.objective(&frames.sweeps).stop(), None);
     assert_eq!(frames.frame(2).sweeps, 2);
     assert!(frames.end().has_converged());
 
-    // Toward a target, and a target that it has reached.
+    // The application moves a vertex toward a target; later the vertex has reached it.
     let targets = frames.app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
     let share = frames.app.buffer(4, Usage::STORAGE);
     let place = VertexBuffer::new(&targets, 8);
@@ -123,7 +123,7 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
         frames.app.objective(&frames.sweeps).stop()
     };
     assert_eq!(dragged(), None);
-    // No import, which would take the vertex back to where the buffer has it.
+    // Exports without an import, as that would move the vertex back to its place in the buffer.
     let bound = frames.vertices.bind(&frames.device_mesh);
     frames.app.submit(|encoder| bound.encode_export(encoder));
     assert!(frames.end().has_converged());
@@ -161,7 +161,7 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
     assert_eq!(app.objective(&other).sweeps, 0);
     app.submit(|encoder| other.encode_sweeps(encoder, 2));
     assert_eq!(app.objective(&other).sweeps, 2);
-    // Sweeps of another scheme are no changes by the application.
+    // Sweeps of another scheme do not count as changes by the application.
     assert_eq!(app.objective(&sweeps).stop(), Some(Stop::Converged));
 }
 

@@ -1,4 +1,4 @@
-//! Devices with low limits, and meshes that are too large for them.
+//! Devices with low limits, and meshes that are too large for a device.
 
 use gpu_smooth::{
     Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Options, Smoother, Sweeps, VertexBuffer,
@@ -30,7 +30,7 @@ fn required_limits_name_the_limit_that_is_too_low() {
         &Gpu::required_limits(Limits::default(), SIZE, &low).unwrap_err(),
         "max_storage_buffer_binding_size",
         7_900,
-        // Half of them, in one of two bindings.
+        // Positions may be bound in two halves, so a binding needs half of their bytes.
         "the buffer of vertex positions (1000 vertices) needs 8000, \
          but the device's max_storage_buffer_binding_size is 7900",
     );
@@ -77,7 +77,7 @@ fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
     let limits = Gpu::required_limits(Limits::default(), size, &most).unwrap();
     assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
     assert_eq!(limits.max_buffer_size, 1_200_000_000);
-    // Part by part, with an eighth binding for the positions where these take two.
+    // Below the size of a buffer it is bound in parts. Positions that need two bindings take an eighth one.
     for (bound, bindings) in [(1_199_999_999, 7), (800_000_000, 7), (799_999_999, 8)] {
         let less = Limits { max_storage_buffer_binding_size: bound, ..most.clone() };
         let own = Limits { max_storage_buffers_per_shader_stage: 0, ..Limits::default() };
@@ -135,7 +135,7 @@ fn a_device_with_exactly_the_limits_of_a_vertex_buffer_binds_it() {
     assert_eq!(VertexBuffer::binding_size(0, 8, 0), 8);
 }
 
-/// A device that binds 32 KiB at once.
+/// A device that binds at most 32 KiB at once.
 fn small() -> App {
     let limits = least_limits(SIZE);
     App::with_limits(Limits { max_storage_buffer_binding_size: 32 << 10, ..limits }).unwrap()
@@ -155,7 +155,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     let run = smoother.run(&Options::default(), &backend);
     assert_limit(&gpu_error(run.unwrap_err()), name, 32 << 10, text);
 
-    // A smaller one goes well afterward.
+    // After the refusal, a smaller mesh is accepted.
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();

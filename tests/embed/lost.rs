@@ -1,4 +1,4 @@
-//! A device that is lost in the middle.
+//! A device that is lost during a run, between frames, or before.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use gpu_smooth::{
 use crate::app::{App, Vertices, bad_plate, gpu_error};
 use crate::support::{SplitMix64, check, f_imr};
 
-/// Fails instead of hanging.
+/// Runs `work` on another thread, and fails if it takes more than a minute.
 fn within_a_minute<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let (sender, receiver) = mpsc::channel();
     let worker = std::thread::spawn(move || sender.send(work()));
@@ -55,13 +55,13 @@ fn a_run_says_that_the_device_was_lost() {
         let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
         assert_lost(&gpu_error(error));
         assert_eq!(calls.get(), 2);
-        // And every later one.
+        // A later run on the same device fails alike.
         let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
         assert_lost(&gpu_error(error));
     });
 }
 
-/// Goes on on the CPU when the device fails.
+/// A keeper that lets the run go on on the CPU when the device fails.
 struct GoesOn {
     interval: Duration,
     told: Vec<(GpuError, u32)>,
@@ -99,7 +99,7 @@ fn run_with_a_loss(
     (outcome, keeper)
 }
 
-/// How long a run takes on a device that is not lost.
+/// The time of a run on a device that is not lost.
 fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     let backend = Backend::Gpu(App::new().another_gpu());
     let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
@@ -110,8 +110,8 @@ fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     start.elapsed()
 }
 
-/// The device is destroyed by another thread at any moment: the run ends on the CPU as well as it would have. How often is in
-/// the environment variable ROUNDS.
+/// Another thread destroys the device at a random moment. The run must end on the CPU with the same quality. The
+/// environment variable ROUNDS is the number of runs.
 #[test]
 fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
     let rounds = std::env::var("ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
@@ -126,7 +126,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             let base = scheme.base();
             let options = Options { scheme, ..Options::default() };
             let on_cpu = smoother.run(&options, &Backend::Cpu).unwrap();
-            // Of the time that a run takes here, or a fast machine would be done before.
+            // A share of the time that a run takes on this machine: on a fast one the run would else be done before.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
             let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
             let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(base);
@@ -150,7 +150,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
     assert!(lost.expect("it hangs, or has failed") > rounds / 4);
 }
 
-/// Positions that were kept in memory are where the run goes on.
+/// A run goes on from the positions that were last kept in memory.
 #[test]
 fn a_run_goes_on_from_what_was_kept() {
     within_a_minute(|| {
@@ -163,7 +163,7 @@ fn a_run_goes_on_from_what_was_kept() {
             let mut keeper = GoesOn { interval, told: Vec::new() };
             let mut lost_at = None;
             let mut observe = |progress: &Progress| {
-                // The state of the observer's sweep is kept after it was told, so the loss shows one sweep later.
+                // The state of a sweep is kept after the observer is called, so the loss shows one sweep later.
                 if progress.sweep >= 6 && lost_at.is_none() {
                     lost_at = Some(progress.sweep);
                     app.device().destroy();
@@ -189,7 +189,7 @@ fn a_future_completes_when_the_device_is_lost() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
         let smoother = Smoother::new(&mesh).unwrap();
-        // Lost while the future waits, or between two of its polls.
+        // The device is lost before the first poll, or between later ones.
         for waited in [0, 1, 5] {
             let app = App::new();
             let options = endless();
@@ -205,7 +205,7 @@ fn a_future_completes_when_the_device_is_lost() {
                 if let Poll::Ready(outcome) = future.as_mut().poll(&mut context) {
                     break outcome.unwrap_err();
                 }
-                // On a lost device it may fail: that is the application's to see.
+                // Polling a lost device may fail, which is for the application to handle.
                 let _ = app.device().poll(wgpu::PollType::Poll);
                 polls += 1;
             };
@@ -235,7 +235,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
-            // Most of wgpu looks as if it still worked.
+            // Encoding for a lost device succeeds as if it still worked.
             bound.encode_import(encoder);
             mask.encode_mask(encoder);
             drag.encode_move(encoder);
@@ -245,7 +245,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             bound.encode_export(encoder);
         });
         let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
-        // Its queue is its own all the same.
+        // The queue of a lost device is not taken for that of another one.
         assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
         let _ = device_mesh.pin(&[1]);
         judged.restart();

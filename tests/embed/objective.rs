@@ -1,4 +1,4 @@
-//! Objectives written into a buffer of the application, against those of the points read back.
+//! Objectives written to a buffer of the application, compared with those of the points read back.
 
 use gpu_smooth::{Mesh, Metric, ObjectiveValues, Options, Quality, Sweeps, Topology};
 use wgpu::BufferUsages as Usage;
@@ -68,7 +68,7 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
-    // More than the device remembers.
+    // More sweeps than the device's history holds.
     let count = 300;
     let published = readable(&app, WORDS * count);
     app.submit(|encoder| {
@@ -123,7 +123,7 @@ fn triangles_the_application_inverts_are_counted() {
     let vertices = Vertices::usual(&app, &mesh);
     let mut counts = Vec::new();
     for v in interior(&mesh).into_iter().step_by(60) {
-        // Out of its star, by far.
+        // Far out of its star.
         vertices.put(&app, v, [-0.4, 2.5]);
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
@@ -164,7 +164,7 @@ fn the_worst_triangle_is_named() {
     }
     assert!(named.len() > 2);
 
-    // An inverted one is worse than any other.
+    // An inverted triangle counts as worse than any other.
     let vertices = Vertices::usual(&app, &mesh);
     vertices.put(&app, interior(&mesh)[70], [-0.4, 2.5]);
     app.submit(|encoder| vertices.bind(&device_mesh).encode_import(encoder));
@@ -189,7 +189,7 @@ fn equilateral_triangles_are_named_too() {
 
 #[test]
 fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
-    // At this place, single precision has a hundredth of an edge.
+    // At this place, single precision resolves a hundredth of an edge.
     let mesh = transformed(&bad_plate(600), 0.02, [400.0, -300.0]);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
@@ -219,18 +219,18 @@ fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
             let exact = quality(&mesh, &points);
             for &metric in Metric::ALL {
                 let (found, f) = (f64::from(found.of(metric)), exact.f(metric));
-                // The others go by the mean area of the mesh as it was uploaded.
+                // Metrics of size depend on the mean area of the mesh as it was uploaded, others on the shape alone.
                 let is_of_shape = matches!(metric, Metric::Edge | Metric::Imr | Metric::Ar);
                 let bound = if is_of_shape { 1e-5 } else { 1e-2 };
                 assert!((found / f - 1.0).abs() < bound, "{metric}: {found} for {f}");
             }
             assert!((f64::from(found.worst_imr) / exact.worst_imr - 1.0).abs() < 1e-3);
-            // What is on the device has more digits.
+            // The positions on the device have more digits than the floats in the buffer.
             let own = app.objective(&sweeps);
             let off = |metric| (found.of(metric) / own.of(metric) - 1.0).abs();
             assert!(off(Metric::Edge) > 3e-5, "{found:?} {own:?}");
         }
-        // Only what is drawn is inverted, and then no more.
+        // A vertex is moved in the buffer only: what is drawn has an inverted triangle, the mesh on the device has none.
         let v = interior(&mesh)[50];
         let [x, y] = [0, 1].map(|i| (points[v as usize][i] - origin[i]) * scale);
         vertices.put(&app, v, [x + 2.0 * scale, y]);

@@ -1,5 +1,5 @@
-//! Meshes whose buffers are larger than what a device binds at once: bound part by part, they are smoothed as if they
-//! were not, bit for bit.
+//! Meshes whose buffers are larger than what a device binds at once. They are bound part by part, and smoothed to the same
+//! bits as when bound whole.
 
 use std::ops::ControlFlow;
 
@@ -12,10 +12,10 @@ use wgpu::Limits;
 use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
 use crate::support::lattice;
 
-/// What the small device binds at once.
+/// How many bytes the small device binds at once.
 const BOUND: u64 = 89 << 8;
 
-/// A mesh whose positions take two bindings of the small device, its rings and triangles three.
+/// A mesh whose positions take two bindings on the small device, and its rings and triangles three each.
 fn mesh() -> Mesh {
     bad_plate(2400)
 }
@@ -24,7 +24,7 @@ fn size(mesh: &Mesh) -> MeshSize {
     MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() }
 }
 
-/// A device that binds all of such a mesh at once, and one that does not.
+/// A device that binds each buffer of the mesh whole, and one that binds them in parts.
 fn devices(mesh: &Mesh) -> [App; 2] {
     let most = Limits { max_storage_buffer_binding_size: BOUND, ..adapter().limits() };
     let own = Limits::downlevel_webgl2_defaults();
@@ -58,7 +58,7 @@ fn a_run_is_the_same_part_by_part() {
     };
     let names = Metric::ALL.iter().map(|metric| metric.name());
     let alone = names.map(sweeps);
-    // The best of the last two is not the last.
+    // The best sweep of these two schemes is not the last.
     let others = ["edge+imr", "imr+area"].map(sweeps);
     for options in alone.chain(others) {
         let [whole, parts] = devices.each_ref().map(|app| run(app, &mesh, &options));
@@ -87,14 +87,14 @@ fn an_application_sees_no_parts() {
             [4, 8].map(|bytes| app.buffer(bytes * mesh.points.len() as u64, usage));
         app.gpu.queue().write_buffer(&mask, 0, bytemuck::cast_slice(&words));
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
-        // All vertices toward one place, which soon a triangle stops.
+        // All vertices that are dragged go toward one place, until a triangle stops them.
         let to = vec![[1.0f32, 1.0]; mesh.points.len()];
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
         let share = app.buffer(4, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
         let place = VertexBuffer::new(&targets, 8);
         let moved: Vec<u32> = (0..mesh.points.len() as u32).step_by(41).collect();
         let drag = device_mesh.bind_move(&moved, &place, 1e4, (&share, 0)).unwrap();
-        // A corner of the plate, taken along by an import.
+        // An import takes over a corner of the plate that has moved.
         vertices.put(&app, 0, [-0.125, -0.25]);
         let last_valid = device_mesh.keep_last_valid().unwrap();
         let all: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -112,7 +112,7 @@ fn an_application_sees_no_parts() {
             bound.encode_export(encoder);
         });
         let before = app.points(&device_mesh);
-        // One vertex out of the plate, and back.
+        // A vertex is moved out of the plate, and restored.
         vertices.put(&app, 300, [9.0, 9.0]);
         app.submit(|encoder| {
             bound.encode_import(encoder);
@@ -120,7 +120,7 @@ fn an_application_sees_no_parts() {
             bound.encode_export(encoder);
         });
         assert!(app.points(&device_mesh) == before);
-        // Again, and untangled instead; a hole that is beyond mending, too.
+        // The same vertex is moved out again, and untangled. A corner is moved where untangling cannot mend it.
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
         vertices.put(&app, 300, [9.0, 9.0]);
         vertices.put(&app, 0, [2.0, 1.5]);
@@ -141,7 +141,7 @@ fn an_application_sees_no_parts() {
 
 #[test]
 fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
-    // Positions of this one would take three bindings.
+    // A mesh whose positions would take three bindings.
     let large = lattice(53, 53);
     let [_, app] = devices(&mesh());
     let error = app.gpu.check_size(size(&large)).unwrap_err();
@@ -150,7 +150,7 @@ fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
          but the device's max_storage_buffer_binding_size is {BOUND}"
     );
     assert_eq!(error.to_string(), text);
-    // After a poll, in which the device lets go of what it needs no longer.
+    // Counts allocations after a poll, in which the device frees what it no longer needs.
     let made = || {
         app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
         app.device().generate_allocator_report().map(|report| report.allocations.len())
@@ -207,7 +207,7 @@ fn corrections_are_the_same_part_by_part() {
 
 #[test]
 fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
-    // Its only coarse level has some 80 unknowns: their inverse matrix is more than the device binds.
+    // The only coarse level has some 80 unknowns: their inverse matrix is more than the device binds.
     let mesh = bad_plate(870);
     let [large, small] = devices(&self::mesh());
     let auto = Options::default();
@@ -227,7 +227,7 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
 
 #[test]
 fn encoded_corrections_are_the_same_part_by_part() {
-    // Of `mesh` the vectors of the levels are more than the small device binds.
+    // For `mesh()`, the vectors of the levels would be more than the small device binds, so the mesh is smaller.
     let mesh = bad_plate(1500);
     let points = devices(&mesh).each_ref().map(|app| {
         let device_mesh = app.mesh(&mesh);

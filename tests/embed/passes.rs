@@ -1,4 +1,4 @@
-//! Encoding into a compute pass that the application has begun.
+//! Encoding into a compute pass of the application.
 
 use gpu_smooth::{ObjectiveValues, Options, Sweeps, UntanglingSweeps, VertexBuffer, wgpu};
 use wgpu::BufferUsages as Usage;
@@ -53,7 +53,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
-        // The application's own kernel before and after: the targets are doubled, and the vertices exported.
+        // Kernels of the application: one doubles the targets before, the other doubles the exported vertices after.
         let before = doubling(&app, &targets);
         let after = doubling(&app, &vertices.buffer);
         let own = |pass: &mut wgpu::ComputePass<'_>, (pipeline, bound): &(_, _), groups| {

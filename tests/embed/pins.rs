@@ -1,4 +1,4 @@
-//! Vertices the application holds and lets go.
+//! Vertices that the application pins, masks and lets go.
 
 use gpu_smooth::{DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, wgpu};
 
@@ -40,7 +40,7 @@ impl Held {
 fn set_pinned_holds_and_releases() {
     let mut held = Held::new(bad_plate(600));
     let free = interior(&held.mesh);
-    // Every third, the first and the last by any numbering among them.
+    // Every third free vertex, with the first and the last among them.
     let (third, others): (Vec<u32>, Vec<u32>) = free.iter().partition(|&v| v % 3 == 0);
     let within = |part: &[u32], whole: &[u32]| part.iter().all(|v| whole.contains(v));
 
@@ -86,7 +86,7 @@ fn pins_take_effect_in_what_is_submitted_after_it() {
     assert_eq!(held.points(), before);
 }
 
-/// `set_fixed`, as it was, let go of them.
+/// Unpinning once let fixed vertices of the mesh go.
 #[test]
 fn fixed_vertices_of_the_mesh_stay_whatever_is_pinned() {
     let mesh = bad_plate(600);
@@ -113,7 +113,7 @@ fn pins_come_and_go_one_by_one() {
     assert!(held.moved().iter().all(|v| others.contains(v)));
     held.device_mesh.pin(others).unwrap();
     assert_eq!(held.moved(), []);
-    // Scattered, next to each other, and one that is not pinned.
+    // Each vertex is named twice: the second time it is no longer pinned.
     for v in [some[0], some[1], others[7]] {
         held.device_mesh.unpin(&[v, v]).unwrap();
     }
@@ -124,7 +124,7 @@ fn pins_come_and_go_one_by_one() {
     assert!(held.moved().len() > free.len() / 2);
 }
 
-/// A buffer of a word for each vertex, after 12 bytes of something else.
+/// A mask buffer with a word for each vertex, after 12 bytes that do not belong to it.
 fn mask(held: &Held, which: impl Fn(u32) -> bool) -> wgpu::Buffer {
     let words: Vec<u32> =
         (0..held.mesh.points.len() as u32).map(|v| 7 * u32::from(which(v))).collect();
@@ -141,7 +141,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
     let mut held = Held::new(Mesh { fixed: vec![free[3]], ..mesh });
     let buffer = mask(&held, |v| v % 2 == 0);
     let bound = held.device_mesh.bind_mask(&buffer, 12).unwrap();
-    // Not before it is encoded.
+    // The mask applies only once it is encoded.
     assert!(held.moved().iter().any(|v| v % 2 == 0));
     held.app.submit(|encoder| bound.encode_mask(encoder));
     let moved = held.moved();
@@ -150,7 +150,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
     held.device_mesh.pin(&[pinned]).unwrap();
     assert!(!held.moved().contains(&pinned));
 
-    // A mask that the application has changed; pins and fixed vertices stay.
+    // The application changes the mask; pinned and fixed vertices stay.
     let words = vec![0u32; held.mesh.points.len()];
     held.app.gpu.queue().write_buffer(&buffer, 12, bytemuck::cast_slice(&words));
     held.app.submit(|encoder| bound.encode_mask(encoder));

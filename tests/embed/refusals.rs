@@ -1,5 +1,5 @@
-//! What the library refuses, and in what words. Whatever wgpu itself refuses on the way must not reach the
-//! application's error handler; [`App`] looks at that when it is dropped.
+//! What the library refuses, and the messages. What wgpu itself refuses on the way must not reach the application's error
+//! handler, which [`App`] checks when it is dropped.
 
 use gpu_smooth::{
     DeviceMesh, Gpu, GpuError, Guard, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer,
@@ -10,7 +10,7 @@ use wgpu::BufferUsages as Usage;
 use crate::app::{App, Vertices, bad_plate};
 use crate::support::{lattice, orientations, transformed};
 
-/// What is said to a place for the vertices of a lattice of 36.
+/// Checks the message for a vertex buffer that is refused. The mesh is a lattice of 36 vertices.
 #[track_caller]
 fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text: &str) {
     let app = App::new();
@@ -31,7 +31,7 @@ fn a_buffer_without_storage_is_refused() {
 
 #[test]
 fn a_buffer_too_small_is_refused() {
-    // 35 strides and one x and y.
+    // Needed: 35 strides, and the x and y of the last vertex.
     assert_place_refused(
         12 * 35 + 4,
         Usage::STORAGE,
@@ -74,7 +74,7 @@ fn a_stride_that_fits_no_vertex_is_refused() {
     }
 }
 
-/// A mesh whose elements are smaller than the digits of an f32 where it stands would come out tangled.
+/// Elements are smaller than the steps of an f32 where the mesh is, so rounding would invert triangles.
 #[test]
 fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
     let app = App::new();
@@ -100,7 +100,7 @@ fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
     }
 }
 
-/// What a place for objectives is refused with.
+/// Checks the message for a buffer for objectives that is refused.
 #[track_caller]
 fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
     let app = App::new();
@@ -146,19 +146,19 @@ fn what_belongs_to_another_device_is_refused() {
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
 }
 
-/// wgpu tells the faults of such a queue to the handler of the queue's own device, which no error scope of the other
-/// catches.
+/// wgpu reports errors of such a queue to the handler of the queue's own device. No error scope of the other device catches
+/// them.
 #[test]
 fn a_queue_of_another_device_is_refused() {
     let (app, other) = (App::new(), App::new());
     let refused = |app: &App, other: &App| {
-        // To make a device clears a buffer on it, and while it is busy nothing can be told.
+        // Making a device clears a buffer. While the device is busy with that, the queue cannot be told to be another's.
         app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
         let error = Gpu::new(app.device().clone(), other.gpu.queue().clone()).err().unwrap();
         assert!(matches!(error, GpuError::Queue), "{error:?}");
     };
     refused(&app, &other);
-    // One that has done work, and one that has not.
+    // One of the devices has done work, the other has not.
     let mesh = bad_plate(300);
     app.points(&app.mesh(&mesh));
     refused(&app, &other);
@@ -201,7 +201,7 @@ fn an_empty_mesh_is_refused() {
 #[test]
 fn a_mesh_with_an_inverted_triangle_is_refused() {
     let mut mesh = lattice(5, 5);
-    // A vertex of the middle, across its star.
+    // Moves an inner vertex across its star.
     mesh.points[14][0] += 1.5;
     let error = mesh_error(&mesh);
     let MeshError::Infeasible { triangles } = &error else { panic!("{error}") };
@@ -256,7 +256,7 @@ fn options_out_of_range_are_refused() {
 #[test]
 fn errors_of_the_application_itself_still_reach_its_handler() {
     let app = App::new();
-    // The library's error scopes must not outlive its calls.
+    // The library's error scopes must have ended with its calls.
     let _ = app.mesh(&lattice(5, 5));
     let too_large = app.device().limits().max_buffer_size + 4;
     let _ = app.buffer(too_large, Usage::STORAGE);

@@ -1,4 +1,4 @@
-//! Encoded sweeps are those of a run, however they are split and interleaved.
+//! Encoded sweeps give the same result as a run, however they are split and interleaved.
 
 use gpu_smooth::{
     Backend, Derivatives, Mesh, Method, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
@@ -12,7 +12,7 @@ fn options(scheme: &str) -> Options {
     Options { scheme: scheme.parse().unwrap(), method, ..Options::default() }
 }
 
-/// The best that a run of `sweeps` sweeps makes of a mesh, and the sweep that did.
+/// Runs `sweeps` sweeps on the GPU. Returns the best points, and the number of the sweep that reached them.
 fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
@@ -22,15 +22,15 @@ fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     (outcome.points, outcome.best_sweep)
 }
 
-/// Perturbed until a triangle is beyond the shape guard of every metric: a run takes the worst triangle of its mesh for
-/// its guard where that is less, which an application's mesh, never at rest, does not.
+/// The mesh perturbed until a triangle is beyond the shape guard of every metric. Otherwise a run would guard against the
+/// worst triangle of its mesh, which encoded sweeps do not, as an application's mesh may change.
 fn flattened(mesh: &Mesh) -> Mesh {
     let mesh = perturb_random(mesh, 1.0, 1);
     assert!(crate::support::worst_imr(&mesh) > 30.0);
     mesh
 }
 
-/// Bit by bit where a vertex has moved, and to the device's 48 bits where it has not.
+/// Checks that vertices are the same: bit by bit where they have moved, to the device's 48 bits where not.
 fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]]) {
     let mut moved = 0;
     for (v, (e, f)) in expected.iter().zip(found).enumerate() {
@@ -61,7 +61,7 @@ fn encoded_sweeps_are_those_of_a_run() {
         ("sharpened", Options { sharpness: Some(Sharpness::CONTINUED), ..options("edge") }, 12),
         (
             "by differences",
-            // Not over-relaxed: from there on differences need not lower f, and the best is returned.
+            // Without over-relaxation: with it, sweeps by differences may raise f, and a run returns the best state.
             Options {
                 derivatives: Derivatives::FiniteDifference,
                 omega: Some(1.0),
@@ -78,7 +78,7 @@ fn encoded_sweeps_are_those_of_a_run() {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
         let mut encoded = Sweeps::new(&device_mesh, &options).unwrap();
-        // Three calls in one command buffer, one of them for nothing, and the rest in others.
+        // Three calls in one command buffer, one of them with no sweeps; the rest in other command buffers.
         app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode_sweeps(encoder, n)));
         app.submit(|encoder| encoded.encode_sweeps(encoder, 1));
         app.submit(|encoder| encoded.encode_sweeps(encoder, sweeps - 4));
@@ -139,7 +139,7 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     let app = App::new();
     let options = options("imr+rms");
     let options = Options { omega: Some(1.6), ..options };
-    // Seven sweeps, and seven more: after a restart, by a scheme bound anew, and going on.
+    // Seven sweeps, and then seven more: after a restart, by newly made sweeps, or by going on.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();

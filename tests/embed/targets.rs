@@ -1,4 +1,4 @@
-//! An application's mesh whose elements are to look like targets.
+//! Targets for a mesh on an application's device.
 
 use gpu_smooth::{
     Backend, Derivatives, DeviceMesh, Mesh, MeshError, Method, Metric, Options, SmoothError,
@@ -7,7 +7,7 @@ use gpu_smooth::{
 
 use crate::app::{App, bad_plate};
 
-/// Sizes that grow threefold across the mesh.
+/// Target sizes that grow threefold across the mesh.
 fn growing(mesh: &Mesh) -> Targets {
     let across = |f: fn(f64, f64) -> f64, start| mesh.points.iter().map(|p| p[0]).fold(start, f);
     let (low, high) = (across(f64::min, f64::INFINITY), across(f64::max, f64::NEG_INFINITY));

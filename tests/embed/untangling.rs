@@ -1,4 +1,4 @@
-//! Meshes that the application has tangled are untangled on the device, in the frames that follow.
+//! A mesh that the application has tangled is untangled on the device, within some frames.
 
 use gpu_smooth::{
     BoundVertices, DeviceMesh, Mesh, ObjectiveValues, Options, Sweeps, Targets, UntanglingSweeps,
@@ -7,7 +7,7 @@ use gpu_smooth::{
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
 use crate::support::{SplitMix64, orientations};
 
-/// Number of triangles that are inverted or flat, by exact predicates.
+/// The number of triangles that are inverted or flat, by exact predicates.
 fn bad(mesh: &Mesh, points: &[[f64; 2]]) -> usize {
     let mesh = Mesh { points: points.to_vec(), ..mesh.clone() };
     orientations(&mesh).into_iter().filter(|&sign| sign != 1).count()
@@ -34,13 +34,13 @@ impl Frames {
     fn of(app: App, mesh: Mesh, device_mesh: DeviceMesh) -> Self {
         let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
-        // Words of the application before, between and after the coordinates.
+        // The buffer has words of the application before, between and after the coordinates.
         let vertices = Vertices::new(&app, &mesh, 20, 16);
         let bound = vertices.bind(&device_mesh);
         Self { app, mesh, vertices, bound, untangling, sweeps, device_mesh }
     }
 
-    /// A frame with so many sweeps of untangling and so many ordinary ones.
+    /// Does a frame of `untangling` untangling sweeps and `sweeps` ordinary ones.
     fn frame(&mut self, untangling: u32, sweeps: u32) -> ObjectiveValues {
         let Self { app, bound, .. } = self;
         app.submit(|encoder| {
@@ -52,7 +52,7 @@ impl Frames {
         app.objective(&self.sweeps)
     }
 
-    /// The number of frames of five sweeps of untangling and three others until nothing is inverted.
+    /// Does frames, of five untangling sweeps and three others, until nothing is inverted. Returns their number.
     fn frames_until_valid(&mut self) -> usize {
         let valid = (1..100).find(|_| self.frame(5, 3).inverted == 0);
         valid.unwrap_or_else(|| panic!("{} stay inverted", bad(&self.mesh, &self.points())))
@@ -72,7 +72,8 @@ impl Frames {
     }
 }
 
-/// Beyond the middle of the edge opposite to a vertex in one of its triangles: by this share of the way there.
+/// A point beyond the edge opposite to `v` in one of its triangles. It is `share` of the way from `v` to the middle of the
+/// edge farther than this.
 fn beyond(mesh: &Mesh, v: u32, share: f64) -> [f64; 2] {
     let [mut a, mut b, mut c] = *mesh.triangles.iter().find(|t| t.contains(&v)).unwrap();
     while a != v {
@@ -143,7 +144,7 @@ fn untangled_in_every_frame_of_a_drag_a_mesh_is_valid_again_when_it_can_be() {
         }
         inverted.push(frames.frame(5, 3).inverted);
     }
-    // At the farthest, the hole is partly outside of the plate.
+    // When it is farthest away, the hole is partly outside of the plate.
     assert!(inverted[19] > 10 && inverted[..5] == [0; 5], "{inverted:?}");
     assert!(inverted[36..] == [0; 4], "{inverted:?}");
     let words = frames.app.read(&frames.vertices.buffer);
@@ -194,7 +195,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     let before = frames.points();
     assert_eq!(frames.frame(20, 0).inverted, 0);
     assert_eq!(frames.points(), before);
-    // It is no change of the mesh: judged sweeps stay ended.
+    // Untangling a valid mesh changes nothing: sweeps that have ended stay ended.
     let options = Options { max_sweeps: 1, ..Options::default() };
     let mut judged = Sweeps::until_converged(&frames.device_mesh, &options).unwrap();
     frames.app.submit(|encoder| judged.encode_sweeps(encoder, 1));
@@ -212,7 +213,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     let moved = |v: u32| now[v as usize] != good.points[v as usize];
     let count = interior(&good).into_iter().filter(|&v| moved(v)).count();
     assert!(moved(v) && count < 60, "{count} vertices moved");
-    // Valid again, it is left alone again, and the next tangle begins with its own neighbors.
+    // Once valid, the mesh is left alone. The next tangle wakes only vertices near it.
     frames.frame(5, 0);
     assert_eq!(frames.points(), now);
     let other = *interior(&good).last().unwrap();
@@ -229,7 +230,7 @@ fn what_is_held_stays_and_what_nothing_can_mend_moves_nothing() {
     let mut frames = Frames::new(plate(600));
     let good = frames.as_it_is();
     let v = interior(&good)[100];
-    // Neighbors get out of the way of a vertex that the user holds.
+    // The neighbors of a pinned vertex move away to make its triangles valid.
     frames.device_mesh.pin(&[v]).unwrap();
     frames.put(v, beyond(&good, v, 0.2));
     frames.frame(0, 0);
@@ -237,7 +238,7 @@ fn what_is_held_stays_and_what_nothing_can_mend_moves_nothing() {
     frames.frames_until_valid();
     assert_eq!(frames.points()[v as usize], held);
 
-    // If they are held too, nothing can be done, and nothing is.
+    // If the neighbors are pinned too, nothing can be mended and nothing moves.
     let all: Vec<u32> = (0..good.points.len() as u32).collect();
     let ring: Vec<u32> =
         good.triangles.iter().filter(|t| t.contains(&v)).flatten().copied().collect();

@@ -1,6 +1,6 @@
-//! A compiler that takes floats for real numbers, simulated: it reads functions of a kernel as naga parses them, brings
-//! every sum to its simplest form, and evaluates that in any order. What passes through `opaque`, an exclusive or with a
-//! zero of unknown value, it cannot look into.
+//! Simulates a compiler that takes floats for real numbers. It reads functions of a kernel as naga parses them, brings every
+//! sum to its simplest form, and evaluates that in any order. It cannot look into what passes through `opaque`, an exclusive
+//! or with a zero whose value it does not know.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,22 +12,22 @@ use naga::{
 
 use crate::support::SplitMix64;
 
-/// Products of atoms by number, with the coefficient of each.
+/// A sum of products: the coefficient of each product, which is a list of atoms by number.
 type Sum = BTreeMap<Vec<usize>, f64>;
 
-/// What the simulated compiler cannot take apart.
+/// A factor that the simulated compiler cannot take apart.
 #[derive(Clone, Debug, PartialEq)]
 enum Atom {
     /// An argument, or a number in a buffer.
     Input(String),
-    /// A rounded number of unknown origin.
+    /// A rounded sum behind `opaque`.
     Opaque(Sum),
 }
 
 #[derive(Clone, Debug)]
 enum Value {
     Floats(Vec<Sum>),
-    /// The bits of floats. `hidden` behind the zero that is known at run time only.
+    /// The bits of floats. `hidden` means after the exclusive or with the zero that is known at run time only.
     Bits {
         floats: Vec<Sum>,
         hidden: bool,
@@ -65,7 +65,7 @@ impl Program {
         Self { results, atoms: reader.atoms }
     }
 
-    /// Evaluates the results, in an order of its own at each call.
+    /// Evaluates the results, in another random order at each call.
     pub(crate) fn evaluate(&self, input: &dyn Fn(&str) -> f32, rng: &mut SplitMix64) -> Vec<f32> {
         let mut known = HashMap::new();
         self.results.iter().map(|sum| self.sum(sum, input, rng, &mut known)).collect()
@@ -83,7 +83,7 @@ impl Program {
             .map(|(atoms, &coefficient)| {
                 let factors = atoms.iter().map(|&atom| self.atom(atom, input, rng, known));
                 let product = factors.fold(coefficient, |product, x| product * f64::from(x));
-                // Rounded by itself, or fused with the addition.
+                // The product may be rounded by itself, or fused with the addition.
                 if rng.below(2) == 0 { f64::from(product as f32) } else { product }
             })
             .collect();
@@ -114,7 +114,7 @@ impl Program {
     }
 }
 
-/// Follows calls and expressions without branches.
+/// Reads a function: follows calls, and accepts expressions without branches.
 struct Reader<'m> {
     module: &'m Module,
     info: &'m ModuleInfo,

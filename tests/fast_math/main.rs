@@ -12,13 +12,13 @@ use gpu_smooth::gpu::Kernel;
 use gpu_smooth::{Derivatives, Metric};
 use support::SplitMix64;
 
-/// Numbers by the names of a function's arguments.
+/// Values by the names of a function's arguments.
 type Inputs = Vec<(&'static str, f32)>;
 
-/// The error of results, given the arguments by name, in units of what rounding may lose.
+/// Computes the error of results, in units of what rounding may lose. Takes the arguments by name, and the results.
 type ErrorOf = fn(&dyn Fn(&str) -> f64, &[f64]) -> f64;
 
-/// A function of a kernel, numbers to try it on, and how far its results are from exact ones.
+/// A function of a kernel, random inputs for it, and the error of its results.
 struct Case {
     function: &'static str,
     kernel: Kernel,
@@ -28,7 +28,7 @@ struct Case {
 
 /// Half a unit in the last place of a float near one, with room for several roundings.
 const FLOAT: f64 = 1.0 / (1u64 << 21) as f64;
-/// The same for a pair.
+/// Half a unit in the last place of a pair of floats near one, with room for several roundings.
 const PAIR: f64 = 1.0 / (1u64 << 44) as f64;
 
 fn split(x: f64) -> [f32; 2] {
@@ -36,7 +36,7 @@ fn split(x: f64) -> [f32; 2] {
     [high, (x - f64::from(high)) as f32]
 }
 
-/// A number of any sign, with random digits.
+/// A number of either sign and up to this size, with random digits.
 fn number(rng: &mut SplitMix64, size: f64) -> f64 {
     let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
     sign * size * rng.range(0.5, 2.0)
@@ -52,14 +52,14 @@ fn two_pairs(rng: &mut SplitMix64) -> Inputs {
     vec![("a.x", a), ("a.y", a_low), ("b.x", b), ("b.y", b_low)]
 }
 
-/// Pairs that are a millionth of their size apart, or as far as their size.
+/// Two pairs whose difference is a millionth of their size, or as large as they are.
 fn near_pairs(rng: &mut SplitMix64) -> ([f32; 2], [f32; 2]) {
     let a = number(rng, 1.0);
     let apart = [1e-6, 1e-3, 1.0][rng.below(3)];
     (split(a), split(a + number(rng, apart)))
 }
 
-/// Two positions, in the order of the names.
+/// Values for two positions, whose arguments have these names.
 fn positions(rng: &mut SplitMix64, [tail, head]: [[&'static str; 4]; 2]) -> Inputs {
     let ([ax, ax_low], [bx, bx_low]) = near_pairs(rng);
     let ([ay, ay_low], [by, by_low]) = near_pairs(rng);
@@ -160,7 +160,7 @@ fn cases() -> Vec<Case> {
             },
         },
         Case {
-            // A short edge between vertices that a correction carries far along.
+            // A short edge between vertices that a correction moves far.
             function: "moved_edge",
             kernel: Kernel::ObjectiveAlongCorrection(Metric::Imr),
             inputs: |rng| {
@@ -189,7 +189,7 @@ fn cases() -> Vec<Case> {
             },
         },
         Case {
-            // A mesh far from the origin: the normalized position is small beside the center.
+            // A mesh far from the origin: the normalized position is small compared with the center.
             function: "imported",
             kernel: Kernel::Import,
             inputs: |rng| {
@@ -216,7 +216,7 @@ fn cases() -> Vec<Case> {
                     ],
                     ["p.x", "p.y", "p.z", "p.w"],
                 ];
-                // A position that the center nearly cancels.
+                // The position nearly cancels the center.
                 let mut inputs = positions(rng, names);
                 inputs[4..].iter_mut().for_each(|(_, p)| *p *= -8.0);
                 inputs.push(("exchange.inverse_scale", 0.125));
@@ -243,7 +243,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The largest error of a function, over inputs and orders of evaluation.
+/// The largest error of a function, over random inputs and orders of evaluation.
 fn worst(case: &Case, wgsl: &str) -> f64 {
     let program = Program::new(wgsl, case.function);
     let mut rng = SplitMix64::new(51);
@@ -251,7 +251,7 @@ fn worst(case: &Case, wgsl: &str) -> f64 {
     for _ in 0..2000 {
         let inputs = (case.inputs)(&mut rng);
         let input = |name: &str| {
-            // Of sums in the history: by the argument that the place depends on, and the part.
+            // Sums in the history are found by the argument in their index (`earlier` or `later`) and the part, `.x` or `.y`.
             let of_history = ["earlier", "later"]
                 .into_iter()
                 .find(|argument| name.starts_with("control.") && name.contains(argument))
@@ -275,9 +275,9 @@ fn no_order_of_evaluation_loses_digits() {
     }
 }
 
-/// A guard taken away, and the functions that lose digits then.
+/// Guards to take out of the source, and the functions that then lose digits.
 const UNGUARDED: [(&str, &str, &[&str]); 7] = [
-    // As shaders/pairs.wgsl and shaders/patch.wgsl once were.
+    // As shaders/pairs.wgsl and shaders/patch.wgsl once were, without this guard.
     (
         "opaque(a - aa) + opaque(b - bb)",
         "(a - aa) + (b - bb)",

@@ -13,7 +13,7 @@ fn misleading(file: &mut Binary, name: &str) {
     file.text(&format!("\n$End{name}\n"));
 }
 
-/// What [`GMSH22`] holds, but that its first node, the tag of which does not fit an `int`, has the tag 90000.
+/// The mesh of [`GMSH22`] in binary. The tag of its first node does not fit an `int`, so it is 90000 here.
 pub(crate) fn msh22(big: bool) -> Vec<u8> {
     let mut file = Binary::new("2.2", big);
     file.text("$PhysicalNames\n1\n2 1 \"$Nodes # a\"\n$EndPhysicalNames\n$Nodes\n6\n");
@@ -35,7 +35,7 @@ pub(crate) fn msh22(big: bool) -> Vec<u8> {
     file.bytes
 }
 
-/// What [`GMSH41`] holds.
+/// The mesh of [`GMSH41`] in binary.
 pub(crate) fn msh41(big: bool) -> Vec<u8> {
     let mut file = Binary::new("4.1", big);
     misleading(&mut file, "Entities");
@@ -67,7 +67,7 @@ fn read(bytes: &[u8]) -> (Folder, MeshFile) {
     (folder, file)
 }
 
-/// The only place where these bytes stand.
+/// Where `part` starts in `bytes`; it must occur exactly once.
 fn find(bytes: &[u8], part: &[u8]) -> usize {
     let at: Vec<_> = bytes.windows(part.len()).enumerate().filter(|(_, w)| *w == part).collect();
     assert_eq!(at.len(), 1, "{part:?}");
@@ -153,7 +153,7 @@ fn binary_files_come_back_but_for_what_moved() {
     }
 }
 
-/// A mesh in each arrangement of its rows.
+/// Files of the mesh with its rows in several arrangements.
 fn arrangements(mesh: &Mesh) -> [Vec<u8>; 6] {
     let arranged = |big| {
         [
@@ -184,7 +184,7 @@ fn long_binary_files_come_back_but_for_what_moved() {
         file.write(&folder.path("out"), &moved.points).unwrap();
         assert!(fs::read(folder.path("out")).unwrap() == after);
 
-        // A tag out of the order, and a triangle the other way around.
+        // A tag that is out of order, and a triangle that starts at another corner or is wound the other way.
         let start = |triangle| match file.triangle_place(triangle).location {
             Location::Byte(at) => at,
             Location::Line(line) => panic!("line {line}"),
@@ -243,7 +243,7 @@ fn parametric_nodes_of_version_2_are_read() {
     }
 }
 
-/// The error of a file in which the only place of `from` holds `to` instead.
+/// The error of reading a file in which `from`, which occurs once, is replaced by `to`.
 fn error(bytes: &[u8], from: &[u8], to: &[u8]) -> (usize, String) {
     let at = find(bytes, from);
     let damaged = [&bytes[..at], to, &bytes[at + from.len()..]].concat();
@@ -340,7 +340,7 @@ fn errors_in_blocks_of_binary_files_name_byte_and_remedy() {
     let wanted = format!("a.msh, byte {at}: triangle 3 lists node 9 twice. Remove the triangle");
     assert!(message.starts_with(&wanted), "{message}");
     for cut in nodes..v4.len() {
-        // All that is asked for is there once $EndElements is.
+        // A file that is cut after $EndElements is complete.
         if let Err(error) = std::panic::catch_unwind(|| error_of(&v4[..cut])) {
             let whole = find(&v4, b"$EndElements") + "$EndElements".len();
             assert!(cut >= whole, "cut at {cut}: {error:?}");

@@ -1,11 +1,11 @@
-//! Damaged files.
+//! Damages files at random.
 
 use super::binary::{msh22, msh41};
 use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
 use gpu_smooth::{Location, MeshFile, Place};
 use std::fs;
 
-/// Random numbers below the one given, by SplitMix64.
+/// A generator of random numbers below its argument, by SplitMix64.
 pub(crate) fn random(seed: u64) -> impl FnMut(usize) -> usize {
     let mut state = seed;
     move |below: usize| {
@@ -17,7 +17,7 @@ pub(crate) fn random(seed: u64) -> impl FnMut(usize) -> usize {
     }
 }
 
-/// How many files of a format to damage: so many, or as many as `GPU_SMOOTH_DAMAGES` says for a longer round.
+/// The number of damaged files of a format: `usual`, or `GPU_SMOOTH_DAMAGES` for a longer test.
 pub(crate) fn rounds(usual: usize) -> usize {
     let wanted = std::env::var("GPU_SMOOTH_DAMAGES").ok();
     wanted.map_or(usual, |wanted| wanted.parse().expect("GPU_SMOOTH_DAMAGES is a number"))
@@ -40,7 +40,7 @@ pub(crate) fn damaged(content: &[u8], mut random: impl FnMut(usize) -> usize) ->
     damaged
 }
 
-/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+/// Reading a file with random bytes cut, replaced or doubled gives an error or a mesh with places, never a panic.
 #[test]
 fn damaged_files_never_panic() {
     let mut random = random(7);

@@ -1,4 +1,4 @@
-//! Data of vertices: found by their names, replaced where they stand, and nothing else changed.
+//! Data of vertices: fields are found by their names and replaced in place, and nothing else changes.
 
 use super::made::base;
 use super::others::{folder, for_each};
@@ -8,7 +8,7 @@ use gpu_smooth::{Conversion, Format, MeshFile, PointField, Precision};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What a value becomes: most of them another one, in few digits.
+/// The changed value: for three of four indices another one, with few digits.
 fn changed(value: f64, index: usize) -> f64 {
     value + 0.25 * (index % 4) as f64
 }
@@ -28,7 +28,7 @@ fn bits(fields: &[PointField]) -> Vec<(String, usize, Vec<u64>)> {
     all.collect()
 }
 
-/// The file with all its real numbers changed holds these numbers and is otherwise the same.
+/// Changes all data and coordinates of a file: it must hold the new numbers and be otherwise the same.
 fn check(folder: &Folder, name: &str) -> usize {
     let file = folder.read(name);
     let out = name.replace("in.", "out.").replace("fort", "out");
@@ -38,7 +38,7 @@ fn check(folder: &Folder, name: &str) -> usize {
     file.write_with(&folder.path(&out), &file.mesh().points, &fields).unwrap();
     assert!(fs::read(folder.path(&out)).unwrap() == read, "{name}: unchanged");
     change(&mut fields);
-    // Coordinates beside them move too.
+    // Changes coordinates and data in one call.
     let points: Vec<_> = file.mesh().points.iter().map(|[x, y]| [x + 0.125, *y]).collect();
     file.write_with(&folder.path(&out), &points, &fields).unwrap();
     let after = folder.read(&out);
@@ -51,7 +51,7 @@ fn check(folder: &Folder, name: &str) -> usize {
     if numbers > 0 {
         assert!(file.difference(&after).is_some());
     }
-    // Only the data, and back again: the numbers that were read.
+    // Changes only data, and then changes them back: the original numbers must be read.
     file.write_with(&folder.path(&out), &file.mesh().points, &fields).unwrap();
     let after = folder.read(&out);
     let mut back = after.point_fields(None).unwrap();
@@ -79,7 +79,7 @@ fn data_are_replaced_in_every_format() {
     assert!(files >= 30 && numbers > 30 * files, "{numbers} numbers in {files} files");
 }
 
-/// Arrays beside each other, of which each moves the place of those after it.
+/// Arrays follow each other, and each may change its length and so move those after it.
 #[test]
 fn data_are_replaced_in_every_encoding_of_vtu() {
     for style in styles().into_iter().step_by(3) {
@@ -91,7 +91,7 @@ fn data_are_replaced_in_every_encoding_of_vtu() {
     assert_eq!(file.data_names(), ["z", "flow", "wind"]);
 }
 
-/// In text, what is replaced is the tokens of the numbers and no other: the file is taken apart without the reader.
+/// In text, only the words that are numbers of data change. The file is split without the reader.
 #[test]
 fn only_the_tokens_of_data_change_in_text() {
     let tried = AtomicUsize::new(0);
@@ -144,7 +144,7 @@ fn node_data_of_gmsh_are_those_of_the_nodes_they_name() {
     let mut values = v.values().to_vec();
     values[13] = 5.5;
     v.set(values).unwrap();
-    // The value of a node that has none is not written; one that is not finite leaves the number.
+    // The view lists no value for one node, so that value is not written. A value that is not finite leaves the number.
     assert_eq!(view.set(vec![f64::NAN, 9.0, 8.0, 9.0, 1.5]).unwrap(), 1);
     file.write_with(&folder.path("out.msh"), &file.mesh().points, &fields).unwrap();
     let expected = GMSH.replace("30 7", "30 8.0").replace("50 4.0 5 6", "50 4.0 5.5 6");
@@ -152,7 +152,7 @@ fn node_data_of_gmsh_are_those_of_the_nodes_they_name() {
     assert!(fields[0].set(vec![0.0; 4]).is_err());
 }
 
-/// Full fields of many views of one node each would take many times the file.
+/// Many views of one node each, read as fields of all nodes, would take many times the size of the file.
 #[test]
 fn node_data_of_very_few_nodes_are_no_field() {
     let row = |n: u32| format!("{} {} 7 0\n", n + 100, n);
@@ -199,7 +199,7 @@ fn attributes_of_triangle_are_data() {
     assert_eq!(folder.text("out.node"), expected);
 }
 
-/// Every time step of every variable, in both byte orders.
+/// Every variable is read and replaced in every time step, in both byte orders.
 #[test]
 fn variables_of_selafin_are_data_in_every_step() {
     let tried = AtomicUsize::new(0);
@@ -215,7 +215,7 @@ fn variables_of_selafin_are_data_in_every_step() {
     assert!(tried.into_inner() > 1);
 }
 
-/// Data that are damaged make an error or other values, never a panic, and what is read can be written.
+/// Damaged data give an error or other values, never a panic. What is read can be written.
 #[test]
 fn damaged_data_never_panic() {
     let mut random = damage::random(31);
@@ -240,10 +240,10 @@ fn damaged_data_never_panic() {
     assert!(read > 40, "{read} of 400 files were read");
 }
 
-/// Grids without a depth somewhere were refused, as were the nan of programs in other numbers of a PLY.
+/// Grids with a vertex of no depth were refused once, and so was NaN in other numbers of a PLY.
 #[test]
 fn depths_and_other_numbers_need_not_be_finite() {
-    // A square, its center and a place for the depth of the center.
+    // A square and its center. The depth of the center is given.
     let square = ["0 0", "4 0", "4 4", "0 4"];
     let row = |before: &str, z: &str| -> String {
         let corner = |at: &&str| format!("{before}{at} 1\n");
@@ -303,7 +303,7 @@ fn depths_and_other_numbers_need_not_be_finite() {
                 let Some(text) = converted.text() else { continue };
                 MeshFile::from_bytes("converted".as_ref(), text.into_bytes()).unwrap();
             }
-            // Moved, the vertex keeps what it has.
+            // A vertex that moves keeps its data.
             let mut points = file.mesh().points.clone();
             points[4] = [2.0, 2.0];
             file.write(&out, &points).unwrap();

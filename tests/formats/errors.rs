@@ -1,11 +1,11 @@
-//! What each error says: file, line, what is there and what to do.
+//! Error messages: the file, the line, what stands there, and what to do.
 
 use super::{ELE, Folder, GMSH22, GMSH41, NODE, POLY, triangle};
 use gpu_smooth::MeshFile;
 use std::fs;
 use std::path::Path;
 
-/// The error of reading the first file, which must hold each of the parts and be one line.
+/// Checks that reading the first file fails with one line that contains each of the parts.
 fn assert_error(files: &[(&str, &str)], parts: &[&str]) {
     let folder = Folder::new(files);
     let error = MeshFile::read(&folder.path(files[0].0)).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! Exodus II: what can be named in it, and what is refused.
+//! Exodus II: names of groups, and refused files.
 
 use super::Folder;
 use super::made::{Made, all, base};
@@ -30,14 +30,14 @@ fn blocks_and_sets_are_groups() {
             ("sideset line shore", Some(40), 0, 2, 4),
             ("nodeset point 1", Some(1), 0, 0, 3),
         ] {
-            // The block of the first triangles has as many vertices as these have.
+            // The number of vertices is not checked for `steel`, as the mesh decides it.
             let found = told.iter().find(|group| group.0 == expected.0);
             let Some(found) = found else { panic!("no {} in {told:?}", expected.0) };
             assert_eq!((found.1, found.2, found.3), (expected.1, expected.2, expected.3));
             assert!(found.4 == expected.4 || expected.0.contains("steel"), "{found:?}");
         }
         assert_eq!(groups.find("nodeset:1").unwrap().vertices(), [0, 12, 14]);
-        // Nodes of node sets are free to move.
+        // Vertices of node sets may move.
         assert!(!file.mesh().fixed.contains(&14));
         assert!(groups.find("steel").unwrap().triangles().iter().copied().eq(0..30));
     }
@@ -85,7 +85,7 @@ fn other_files_are_refused_with_what_to_do() {
         &["block 1 has elements of the type WORD", "TRI3"],
     );
     refused(&replaced(&made.bytes, b"coordy", b"coordw"), &["no coordinates in two or three axes"]);
-    // The offset of y stands 24 bytes after its name; that of x becomes its own.
+    // The offset of an array stands 24 bytes after its name. Here y gets the offset of x.
     let offset = |name: &[u8]| {
         let at = made.bytes.windows(name.len()).position(|part| part == name).unwrap();
         at + name.len() + 24

@@ -1,4 +1,4 @@
-//! What can be named in a file of each format: groups, vertices by their numbers, arrays of point data.
+//! What has a name in each format: groups, vertices by their numbers, arrays of point data.
 
 use super::Folder;
 use super::grouped::{
@@ -8,7 +8,8 @@ use super::grouped::{
 use gpu_smooth::{GroupError, Location, MeshFile, ReadError};
 use std::fs;
 
-/// Every group as its spelling, what it is, how many points, lines, triangles and quadrilaterals it has, and its vertices.
+/// Every group as text: its name as a user writes it, its kind, its numbers of points, lines, triangles and
+/// quadrilaterals, and its vertices.
 fn told(file: &MeshFile) -> Vec<String> {
     let groups = file.groups().unwrap();
     let spellings = groups.spellings();
@@ -43,7 +44,7 @@ fn gmsh_has_physical_groups_and_entities() {
             "8 = entity surface 8: [0, 0, 2, 0] [0, 2, 3, 4]",
         ],
     );
-    // Without a dimension, as in version 2.0, a name is that of all groups of the tag.
+    // A name without a dimension, as in version 2.0, applies to all groups with the tag.
     let old = GMSH22.replace("1 1 \"the", "1 \"the").replace("2 1 \"sea", "5 \"sea");
     let folder = Folder::new(&[("in.msh", &old)]);
     assert_eq!(
@@ -139,7 +140,7 @@ fn medit_and_freefem_have_references_of_each_kind() {
     assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
 }
 
-/// As mmg leaves them alone.
+/// Required triangles keep their vertices, as mmg does not change them.
 #[test]
 fn vertices_of_required_triangles_stay() {
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n3\n3");
@@ -160,7 +161,7 @@ fn vertices_of_required_triangles_stay() {
         let references = "-3 = reference surface -3: [0, 0, 2, 0] [0, 2, 3, 4]";
         assert!(told.contains(&references.to_owned()), "{told:?}");
     }
-    // A number of no triangle is none of ours to judge.
+    // The number of a triangle that does not exist is not an error.
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n1\n99");
     let folder = Folder::new(&[("in.mesh", &text)]);
     assert_eq!(folder.read("in.mesh").interface_vertices(), [4]);
@@ -263,7 +264,7 @@ fn triangles_of_a_group_are_those_of_the_mesh() {
     );
 }
 
-/// A mesh is read whatever its entities say, and groups are told or refused with a place.
+/// A mesh is read however its entities are damaged. Groups are then read, or refused with a place.
 #[test]
 fn damaged_entities_are_refused_only_where_groups_are_asked_for() {
     let text = gmsh41();

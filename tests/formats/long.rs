@@ -1,4 +1,4 @@
-//! Lists long enough to be read and written on several threads: nothing about them differs from short ones.
+//! Lists that are long enough for several threads to read and write them: results are those of short lists.
 
 use super::Folder;
 use gpu_smooth::{Location, MeshFile};
@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// Vertices along a side.
 const SIDE: usize = 180;
 
-/// The text of a mesh, decorated, and the line in which each row of its lists stands.
+/// The text of a mesh with comments and blank lines, and the line numbers of its vertices and triangles.
 struct Text {
     name: &'static str,
     text: String,
@@ -41,7 +41,7 @@ impl Text {
         self.lines
     }
 
-    /// The same with one line replaced, or left out.
+    /// The text with one line replaced, or left out for `None`.
     fn with(&self, line: usize, by: Option<&str>) -> String {
         let mut text: Vec<&str> = self.text.split_inclusive(self.end).collect();
         let replaced = by.map(|by| format!("{by}{}", self.end)).unwrap_or_default();
@@ -67,7 +67,7 @@ fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
     let [node, ele, v2, v4] = &mut texts;
     let triangles = triangles();
     let (n, m) = (points.len(), triangles.len());
-    // Tags of one file are far apart.
+    // Tags are not consecutive in one of the files.
     let (apart, tag) = (|v: usize| 3 * (v + first), |v: usize| v + first);
     node.row(&format!("{n} 2"));
     ele.row(&format!("{m} 3"));
@@ -249,9 +249,9 @@ fn errors_in_long_lists_name_their_line() {
         let line = v4.triangle_lines[at];
         check(v4, line, Some("5 3 6 6"), line, "triangle 5 lists node 6 twice");
     }
-    // A row too few, and one that was announced by mistake.
+    // One row too few, and one row announced too many.
     let line = node.vertex_lines[20_000];
-    // A line was left out before it.
+    // The row stands one line higher, as one was removed before it.
     let next = node.vertex_lines[20_001] - 1;
     check(node, line, None, next, "vertex 20002 stands where vertex 20001 should");
     let last_row = node.vertex_lines[SIDE * SIDE - 1];
@@ -260,7 +260,7 @@ fn errors_in_long_lists_name_their_line() {
     check(ele, last_row, None, ele.lines - 1, "the file ends after 64081 of 64082 triangles");
 }
 
-/// The mesh in formats of one list after the other, in two regions, and where they have them with references.
+/// The mesh in formats with one list after another, in two regions. Vertices have references where the format has them.
 fn plain_texts() -> Vec<(&'static str, String)> {
     let (points, triangles) = (points(), triangles());
     let (n, m) = (points.len(), triangles.len());

@@ -1,4 +1,4 @@
-//! Reading and writing mesh files: what comes back byte for byte, and what each error says.
+//! Reading and writing mesh files: what comes back byte for byte, and what each error message says.
 
 mod binary;
 mod convert;
@@ -103,7 +103,7 @@ fn triangle_numbers_may_start_at_zero() {
     let folder = Folder::new(&[("m.node", node), ("m.ele", "1 3\n0 0 1 2\n"), ("m.poly", own)]);
     let file = folder.read("m.node");
     assert_eq!(file.mesh().triangles, [[0, 1, 2]]);
-    // Those it lists, under its own numbers, and those of its segment.
+    // Fixed are the vertices that the .poly lists, under its own numbers, and the ends of its segment.
     assert_eq!(file.mesh().fixed, [0, 1, 2, 2, 0]);
     assert_eq!(file.triangle_place(0).label, 0);
     let place = file.vertex_place(2);
@@ -123,7 +123,7 @@ fn gmsh_maps_tags_and_fixes_what_is_not_a_triangle() {
     let file = folder.read("b.msh");
     assert_eq!(file.format(), Format::Gmsh41);
     assert_eq!(file.mesh().triangles, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
-    // Vertex 0 is in a block of a model point, too.
+    // Vertex 0 is also in a block of a point of the model.
     assert_eq!(file.mesh().fixed, [0, 0, 1]);
     assert!(file.notes().is_empty() && file.has_parameters());
 }
@@ -179,7 +179,7 @@ fn places_of_many_are_those_of_each() {
     let gmsh = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
     for file in [folder.read("la.1"), gmsh.read("a.msh"), gmsh.read("b.msh")] {
         let (vertices, triangles) = (file.mesh().points.len(), file.mesh().triangles.len());
-        // In any order, repeated, and some that there are not.
+        // In any order, repeated, and some that do not exist.
         let places = file.triangle_places([triangles, triangles - 1, 1, 0, 1, usize::MAX]);
         assert!(places.keys().copied().eq([0, 1, triangles - 1]));
         assert!(places.iter().all(|(&t, place)| *place == file.triangle_place(t)));
@@ -234,7 +234,7 @@ fn only_moved_coordinates_change() {
     for (text, expected) in replaced {
         let folder = Folder::new(&[("a.msh", text)]);
         let file = folder.read("a.msh");
-        // In place.
+        // Overwrites its input.
         file.write(&folder.path("a.msh"), &moved(&file)).unwrap();
         assert_eq!(folder.text("a.msh"), expected);
         let again = folder.read("a.msh");

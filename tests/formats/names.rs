@@ -1,4 +1,4 @@
-//! Names of Triangle's files: what is written is what is read.
+//! File names of Triangle's meshes: what is written is found again when it is read.
 
 use super::{ELE, Folder, NODE, POLY};
 use gpu_smooth::MeshFile;
@@ -33,7 +33,7 @@ fn a_mesh_is_not_written_where_another_file_would_be_read_with_it() {
     }
     let names = ["out.node", "out.ele", "plain.node", "plain.ele"];
     assert!(names.iter().all(|name| !folder.path(name).exists()));
-    // With a .poly of its own the older one is replaced.
+    // The mesh has a .poly of its own, which replaces the older one.
     fs::write(folder.path("in.poly"), POLY).unwrap();
     let file = MeshFile::read(&folder.path("in.node")).unwrap();
     file.write(&folder.path("out.node"), &file.mesh().points).unwrap();

@@ -1,4 +1,4 @@
-//! The formats of other programs: what is read of each variant of them, and what is written.
+//! Formats of other programs: what is read from each variant of them, and what is written.
 
 use super::Folder;
 use super::made::{Made, PROBED, all, base};
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does a check of every variant, and fails with the names of those that failed.
+/// Runs a check on every variant, and fails with the names of those that failed.
 #[track_caller]
 pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made)) {
     let all = all(mesh);
@@ -17,19 +17,19 @@ pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made)) {
     assert!(failed.is_empty(), "{} of {} failed: {failed:#?}", failed.len(), all.len());
 }
 
-/// A folder with these bytes under the name of the sample.
+/// A folder with a file of these bytes under the sample's name.
 pub(crate) fn folder(made: &Made, bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
     fs::write(folder.path(made.name), bytes).unwrap();
     folder
 }
 
-/// The bytes with another end of lines.
+/// The text with a carriage return before each line feed.
 fn with_crlf(bytes: &[u8]) -> Vec<u8> {
     str::from_utf8(bytes).unwrap().replace('\n', "\r\n").into_bytes()
 }
 
-/// The file as it is, and if it is text also with the other end of lines.
+/// The bytes of the file; for text, also with carriage returns before line feeds.
 fn both_ends(made: &Made) -> Vec<Vec<u8>> {
     let mut both = vec![made.bytes.clone()];
     if made.is_text() {
@@ -66,7 +66,7 @@ fn every_variant_is_read_as_what_it_holds() {
     });
 }
 
-/// Every format is made by these tests or, as Triangle's and gmsh's, by others, and has its row in the documentation.
+/// Every format is tested here or, as those of Triangle and gmsh, in other files, and has its row in docs/formats.md.
 #[test]
 fn every_format_is_tried_and_documented() {
     let made: BTreeSet<String> = all(&base()).iter().map(|made| made.format.to_string()).collect();
@@ -94,14 +94,14 @@ fn unmoved_points_give_the_same_bytes_in_every_variant() {
             let file = folder.read(made.name);
             file.write(&folder.path("out"), &file.mesh().points).unwrap();
             assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
-            // Digits beyond those of the file are none of its points' moves.
+            // Digits that the file's precision cannot hold do not count as a move.
             file.write(&folder.path("out"), &made.mesh.points).unwrap();
             assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
         }
     });
 }
 
-/// The points with those that may move at other places.
+/// The points with all free vertices moved.
 fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
     let mut rng = SplitMix64::new(3);
     let mut points = file.mesh().points.clone();
@@ -118,7 +118,7 @@ fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
     points
 }
 
-/// Words and what stands between them, in turn.
+/// Words and the separators between them, in turn.
 fn pieces(bytes: &[u8]) -> Vec<&[u8]> {
     bytes.chunk_by(|a, b| a.is_ascii_whitespace() == b.is_ascii_whitespace()).collect()
 }
@@ -127,7 +127,7 @@ fn value(word: &[u8]) -> f64 {
     str::from_utf8(word).unwrap().replace('D', "E").parse().unwrap()
 }
 
-/// Every word that differs is a coordinate that has moved, and all of those are among them.
+/// Checks that the words that differ are exactly the coordinates that moved.
 fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) {
     let (old, new) = (pieces(before), pieces(after));
     assert_eq!(old.len(), new.len());
@@ -150,7 +150,7 @@ fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) 
     assert_eq!(differing, expected);
 }
 
-/// The bytes with every coordinate put where it stands.
+/// The bytes of a binary file with the coordinates `to` put in place.
 fn rewritten(made: &Made, to: &[[f64; 2]]) -> Vec<u8> {
     let mut bytes = made.bytes.clone();
     for (places, point) in made.coordinates.iter().zip(to) {
@@ -171,7 +171,7 @@ fn only_moved_coordinates_change_in_every_variant() {
             let mut file = folder.read(made.name);
             file.free_interfaces();
             let to = moved(&file);
-            // In place.
+            // Overwrites its input.
             file.write(&folder.path(made.name), &to).unwrap();
             let after = fs::read(folder.path(made.name)).unwrap();
             let again = folder.read(made.name);

@@ -1,4 +1,4 @@
-//! Files that are compressed as a whole.
+//! Files that are compressed as a whole by gzip or zstd.
 
 use super::made::base;
 use super::others::for_each;
@@ -12,7 +12,7 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// The bytes as another program may pack them.
+/// The bytes compressed as another program may do it.
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(bytes).unwrap();
@@ -36,10 +36,10 @@ fn every_variant_is_read_and_written_compressed() {
         fs::write(folder.path(made.name), &made.bytes).unwrap();
         let (file, plain) = (folder.read(&input), folder.read(made.name));
         assert_eq!((file.format(), file.mesh()), (plain.format(), plain.mesh()));
-        // Where nothing moves the bytes are the same, whoever has packed them.
+        // If nothing moves, the bytes stay the same, whichever program compressed them.
         file.write(&folder.path(output), &file.mesh().points).unwrap();
         assert!(fs::read(folder.path(output)).unwrap() == bytes);
-        // And whatever moves, what is in them is what would be written without compression.
+        // If vertices move, the unpacked content is what would be written without compression.
         let mut moved = file.mesh().points.clone();
         moved[14][0] += 0.0625;
         let uncompressed = output.trim_end_matches(".gz");
@@ -131,7 +131,7 @@ fn bytes_in_memory_are_read_and_written() {
 #[test]
 fn files_compressed_by_zstd_are_read_and_written() {
     let folder = Folder::new(&[("plain.msh", GMSH22)]);
-    // As another program may pack them.
+    // As another program may compress it.
     let bytes = compress_to_vec(GMSH22.as_bytes(), CompressionLevel::Uncompressed);
     fs::write(folder.path("in.msh.zst"), &bytes).unwrap();
     let (file, plain) = (folder.read("in.msh.zst"), folder.read("plain.msh"));

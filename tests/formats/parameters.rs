@@ -1,4 +1,4 @@
-//! Parameters of nodes on plane surfaces of a gmsh model, which move with the nodes.
+//! Parameters of nodes on plane surfaces of a gmsh model: they change as the nodes move.
 
 use super::Folder;
 use super::support::Binary;
@@ -6,16 +6,16 @@ use gpu_smooth::{MeshError, MeshFile};
 use std::fmt::Write;
 use std::fs;
 
-/// Three nodes on the boundary and two within, on a surface.
+/// Three nodes on the boundary and two inside, all on one surface.
 const NODES: [[f64; 2]; 5] = [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0], [1.0, 2.0], [3.0, 1.5]];
 const TRIANGLES: [[usize; 3]; 5] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [0, 4, 3], [0, 3, 2]];
 
-/// Parameters that are linear in the plane, or not.
+/// The parameters of a point on the surface: linear in its coordinates, or not if the surface is curved.
 fn parameters([x, y]: [f64; 2], curved: bool) -> [f64; 2] {
     [2.0 * x + y + 1.0, x - 3.0 * y + if curved { x * y } else { 0.0 }]
 }
 
-/// All nodes on the surface, so that what is linear is known from enough of them.
+/// A mesh with all nodes on one surface, enough of them to tell that its parameters are linear.
 fn text(curved: bool) -> String {
     let mut text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 5 1 5\n2 6 1 5\n".to_owned();
     (1..=5).for_each(|tag| writeln!(text, "{tag}").unwrap());
@@ -56,7 +56,7 @@ fn is_near(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12)
 }
 
-/// The nodes, of which one has moved.
+/// The nodes, one of them moved.
 fn moved() -> Vec<[f64; 2]> {
     let mut moved = NODES.to_vec();
     moved[4] = [2.5, 2.25];
@@ -83,7 +83,7 @@ fn parameters_on_a_plane_move_with_the_nodes() {
         assert!(is_near(&numbers[3..], &parameters([2.5, 2.25], false)), "{new}");
     }
     assert_eq!(before.lines().count(), out.lines().count());
-    // Where nothing moves, nothing is written anew.
+    // If nothing moves, nothing is written.
     let (fields, _) = file.plane_parameters(&NODES).unwrap();
     file.write_with(&folder.path("same.msh"), &NODES, &fields).unwrap();
     assert_eq!(folder.text("same.msh"), before);
@@ -112,7 +112,7 @@ fn parameters_on_other_surfaces_stay() {
     let file = folder.read("in.msh");
     let (fields, others) = file.plane_parameters(&moved()).unwrap();
     assert_eq!((fields.len(), others), (0, 1));
-    // Those that are the same everywhere are linear too.
+    // Parameters that are the same everywhere are linear too.
     let flat = folder.read("flat.msh");
     let (fields, others) = flat.plane_parameters(&flat.mesh().points).unwrap();
     assert_eq!((fields.len(), others), (1, 0));

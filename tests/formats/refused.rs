@@ -1,4 +1,4 @@
-//! What is not read of the formats of other programs, and what each error says to do.
+//! Files of other programs that are refused, and what each error message says to do.
 
 use super::Folder;
 use super::made::binary::selafin;
@@ -7,7 +7,7 @@ use super::others::{folder, for_each};
 use gpu_smooth::{Format, MeshFile, Precision};
 use std::fs;
 
-/// The error of reading these bytes, which must hold each of the parts and be one line.
+/// Checks that reading these bytes fails with one line that contains each of the parts.
 #[track_caller]
 fn assert_refused(name: &str, bytes: impl AsRef<[u8]>, parts: &[&str]) {
     let folder = Folder::new(&[]);
@@ -50,7 +50,7 @@ fn meshes_of_a_volume_are_refused() {
     }
 }
 
-/// One cell of so many points and this type.
+/// A file with one cell of this type and this number of points.
 fn vtk_of_one_cell(points: usize, cell_type: usize) -> String {
     let rows: String = (0..points).map(|i| format!("{i} {} 0\n", i * i)).collect();
     let corners: String = (0..points).map(|i| format!(" {i}")).collect();
@@ -116,7 +116,7 @@ fn what_else_a_file_of_the_formats_may_be_is_refused() {
     assert_refused("a.2dm", other, &["a.2dm:3: a node string has node 0"]);
 }
 
-/// How messages call the list of vertices of a format.
+/// The name of a format's list of vertices in messages.
 fn list_of(made: &Made) -> &'static str {
     match made.format {
         Format::Vtk | Format::VtkBinary => "POINTS",

@@ -1,4 +1,4 @@
-//! Which triangles are of one region, and which vertices that fixes.
+//! Which triangles form a region, and which vertices are fixed between regions.
 
 use super::Folder;
 use super::long::{points, triangles};
@@ -14,7 +14,7 @@ fn folder(files: &[(&str, Vec<u8>)]) -> Folder {
     folder
 }
 
-/// What is held between regions, by definition: no triangle at an edge of its own, and not all of one region.
+/// The vertices between regions, by definition: not on the boundary, with triangles of more than one region.
 pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
     let on_boundary = super::support::boundary(mesh);
     let mut of_vertex = vec![Vec::new(); mesh.points.len()];
@@ -28,7 +28,7 @@ pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
     (0..mesh.points.len() as u32).filter(between).collect()
 }
 
-/// A mesh in each format is of these regions, and comes back byte for byte.
+/// Checks in each format that the mesh has these regions and comes back byte for byte.
 #[track_caller]
 fn assert_regions(mesh: &Mesh, names: &[[i32; 2]], numbers: &[u32]) {
     let held = interfaces(mesh, numbers);
@@ -55,7 +55,7 @@ fn assert_regions(mesh: &Mesh, names: &[[i32; 2]], numbers: &[u32]) {
 #[test]
 fn triangles_of_one_group_and_entity_are_a_region_in_every_format() {
     let mesh = lattice(6, 4);
-    // A triangle of its own, stripes, and numbers that come again.
+    // A region of one triangle, stripes, and region numbers that occur in several places.
     let names = [[7, 1], [-7, 1], [7, 2], [0, 0]];
     let of_triangle: [fn(usize) -> usize; 3] =
         [|t| usize::from(t == 17), |t| t / 12, |t| [0, 1, 2, 0, 3, 3, 1][t % 7]];
@@ -113,7 +113,7 @@ fn what_is_fixed_by_other_means_is_not_counted_between_regions() {
     let folder = folder(files);
     let held = folder.read("in").interface_vertices().to_vec();
     assert_eq!(held, [15, 16, 17, 18, 19]);
-    // A segment along part of the interface, its ends under numbers from one.
+    // A segment along part of the interface. Its vertices are numbered from one.
     fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 17 18\n0\n").unwrap();
     let mut file = folder.read("in");
     assert_eq!(file.interface_vertices(), [15, 18, 19]);

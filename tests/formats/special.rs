@@ -1,4 +1,4 @@
-//! Single peculiarities of the formats of other programs.
+//! Details of the formats of other programs, one by one.
 
 use super::Folder;
 use super::made::{all, base};
@@ -16,7 +16,7 @@ fn read(name: &str, text: &str) -> MeshFile {
     }
 }
 
-/// Reads two halves of a square.
+/// Checks that the text is read as a square of two triangles.
 #[track_caller]
 fn assert_square(name: &str, text: &str, format: Format) -> MeshFile {
     let file = read(name, text);
@@ -50,7 +50,7 @@ fn comments_may_come_before_the_first_words() {
 fn the_content_tells_the_format_whatever_the_ending() {
     for made in all(&base()) {
         for name in ["in.dat", "in", "in.node", "in.stl"] {
-            // Of rows of numbers alone, those of Triangle's vertices are such too.
+            // Rows of numbers alone could also be the vertices of Triangle.
             if name == "in.node" && matches!(made.format, Format::Adcirc | Format::FreeFem) {
                 continue;
             }
@@ -76,7 +76,7 @@ fn a_byte_order_mark_is_no_part_of_a_text() {
 
 #[test]
 fn lines_and_points_of_an_obj_are_no_faces() {
-    // A line along three corners, one along all four, and three points.
+    // Lines along three or all four corners, and points.
     for row in ["l 1 2 3", "l 2 3 4 1", "p 1 2 3", "p 1 2", "l 1 -1"] {
         let file = assert_square("a.obj", &format!("{OBJ}{row}\n"), Format::Obj);
         let numbers = row.split_whitespace().skip(1);
@@ -173,7 +173,7 @@ fn what_stands_between_x_and_y_is_kept() {
     for between in ["  ", "\t", "\n", " \r\n\r\n ", " # x\n", "# x\n# y\n\n"] {
         let text = format!("{head}{}", VTK.replace("\n1 0 0", &format!("\n1{between}0 0")));
         let folder = Folder::new(&[("a.vtk", &text)]);
-        // A comment may be refused. Where it is read, it stays.
+        // A reader may refuse the comment. If it is read, it is kept.
         let Ok(file) = MeshFile::read(&folder.path("a.vtk")) else { continue };
         let mut points = file.mesh().points.clone();
         points[1] = [1.5, 0.25];

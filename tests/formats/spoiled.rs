@@ -8,7 +8,7 @@ use gpu_smooth::{Format, Location, MeshFile};
 use std::fs;
 use std::time::Instant;
 
-/// What a file gives that may be damaged: a mesh whose parts are found again, or an error of one line with its name.
+/// Reads a file that may be damaged: it must give a mesh whose parts have places, or an error of one line with its name.
 pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, String> {
     match MeshFile::read_welded(&folder.path(name)) {
         Ok(file) => {
@@ -52,7 +52,7 @@ fn a_file_cut_off_anywhere_is_an_error_or_a_mesh() {
     });
 }
 
-/// Counts that no file can hold, for one that stands in so many bytes.
+/// Counts that are too large for any file, in the format of the given one: digits, or as many bytes.
 fn huge(made: &Made, count: &[u8]) -> Vec<Vec<u8>> {
     if count.iter().all(u8::is_ascii_digit) {
         let numbers = ["4000000000", "9223372036854775807", "18446744073709551615"];
@@ -60,7 +60,7 @@ fn huge(made: &Made, count: &[u8]) -> Vec<Vec<u8>> {
         return numbers.iter().chain(&more).map(|n| n.as_bytes().to_vec()).collect();
     }
     let mut all = vec![vec![0xFF; count.len()]];
-    // The largest and the smallest number, and one whose multiples wrap around to small ones.
+    // The largest and the smallest number, and two that overflow to small ones when multiplied.
     for (first, others) in [(0x7F, 0xFF), (0x80, 0), (0x40, 0), (0x20, 0)] {
         let mut bytes = vec![others; count.len()];
         bytes[0] = first;
@@ -97,7 +97,7 @@ fn wrong_counts_are_errors() {
             let bytes = &made.bytes;
             let Ok(text) = str::from_utf8(&bytes[count.clone()]) else { continue };
             let Ok(number) = text.parse::<u64>() else { continue };
-            // One more than there are: the row after the list, or the end of the file, is none of its rows.
+            // A count that is one too large: what follows the list is not one of its rows.
             let more = (number + 1).to_string();
             let parts = [&bytes[..count.start], more.as_bytes(), &bytes[count.end..]];
             let read = mesh_or_error(&folder(made, &parts.concat()), made.name);
@@ -106,7 +106,7 @@ fn wrong_counts_are_errors() {
     });
 }
 
-/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+/// Reading a file with random bytes cut, replaced or doubled gives an error or a mesh with places, never a panic.
 #[test]
 fn damaged_files_of_other_programs_never_panic() {
     let rounds = damage::rounds(2000);

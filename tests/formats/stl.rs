@@ -8,7 +8,7 @@ use super::support::{Binary, check};
 use gpu_smooth::{Format, Location, Mesh, MeshFile, Precision};
 use std::fs;
 
-/// The mesh with its vertices in the order in which its triangles first have them.
+/// The mesh with its vertices numbered in the order in which its triangles first use them.
 fn in_order() -> Mesh {
     let mesh = base();
     let mut numbers = vec![u32::MAX; mesh.points.len()];
@@ -24,7 +24,7 @@ fn in_order() -> Mesh {
     Mesh { points, triangles, fixed: Vec::new() }
 }
 
-/// Two solids, the second from triangle 30 on, with words and numbers written in several ways.
+/// The mesh as text: two solids, the second from triangle 30 on, with words and numbers written in several ways.
 fn ascii(mesh: &Mesh, points: &[[f64; 2]], z: &str) -> String {
     let mut text = "solid  left half\r\n".to_owned();
     for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -44,7 +44,7 @@ fn ascii(mesh: &Mesh, points: &[[f64; 2]], z: &str) -> String {
     text + "endsolid"
 }
 
-/// In binary, under a header as that of text.
+/// The mesh in binary, under a header that looks like text.
 fn binary(mesh: &Mesh, points: &[[f64; 2]], z: f64) -> Vec<u8> {
     let mut out = Binary::empty(false);
     out.bytes = b"solid of another program".to_vec();
@@ -126,7 +126,7 @@ fn every_copy_of_a_moved_corner_is_written() {
         if format == Format::StlBinary {
             assert!(written == binary(&mesh, &moved, 7.0));
         } else {
-            // Numbers are written in one way, all else is kept.
+            // Compares text with all numbers written alike.
             let plain = |bytes: &[u8]| -> Vec<String> {
                 let text = String::from_utf8(bytes.to_vec()).unwrap();
                 let word =
@@ -135,7 +135,7 @@ fn every_copy_of_a_moved_corner_is_written() {
             };
             assert_eq!(plain(&written), plain(ascii(&mesh, &moved, "-2.5").as_bytes()));
         }
-        // A copy that is elsewhere is another vertex, so that the triangles are others.
+        // A changed copy of a corner is another vertex, so the triangles differ.
         let mut torn = written.clone();
         let at = match format {
             Format::StlBinary => 84 + 50 * 20 + 14,
@@ -152,7 +152,7 @@ fn every_copy_of_a_moved_corner_is_written() {
 fn places_are_those_of_the_first_copy() {
     let mesh = in_order();
     let (_folder, file) = read("in.stl", ascii(&mesh, &mesh.points, "0").as_bytes());
-    // Seven lines and a blank one to a triangle, after one line.
+    // A triangle takes seven lines and a blank one, after one line of the solid.
     assert_eq!(file.triangle_place(2).location, Location::Line(18));
     let first = mesh.triangles.iter().position(|t| t.contains(&9)).unwrap();
     let corner = mesh.triangles[first].iter().position(|&v| v == 9).unwrap();

@@ -1,4 +1,4 @@
-//! Arrays of strings and bits, and whole numbers of 64 bits, that other programs write beside a mesh.
+//! Arrays of strings and bits, and 64-bit integers, which other programs write beside a mesh.
 
 use super::Folder;
 use gpu_smooth::MeshFile;
@@ -7,7 +7,7 @@ use std::fs;
 const POINTS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.25, 0.0], [0.0, 1.0, 0.0]];
 const NAMES: [&str; 4] = ["a & b", "", "POINTS", "x"];
 
-/// A string of a legacy VTK file in binary, with its length in front, in so many bytes.
+/// A string of a legacy VTK file in binary, after its length in `bytes` bytes.
 fn string(text: &str, bytes: usize) -> Vec<u8> {
     let mut length = (text.len() as u64).to_be_bytes()[8 - bytes..].to_vec();
     length[0] |= match bytes {
@@ -91,7 +91,7 @@ fn strings_and_bits_of_vtk_are_passed_over() {
         file.write(&folder.path("out.vtk"), &moved).unwrap();
         let out = folder.read("out.vtk");
         assert_eq!((&out.mesh().points, file.difference(&out)), (&moved, None));
-        // Strings that are cut off, wherever that is.
+        // Strings cut off at any byte.
         let end = memchr::memmem::find(&bytes, b"POINTS 4").unwrap();
         for cut in 0..end {
             assert!(
@@ -102,7 +102,7 @@ fn strings_and_bits_of_vtk_are_passed_over() {
     }
 }
 
-/// Of an array of whole numbers, meshio makes a property of a type that PLY does not name.
+/// meshio writes an array of 64-bit integers as a property of a type that PLY does not define.
 #[test]
 fn ply_may_have_whole_numbers_of_64_bits() {
     let head = |form: &str| {

@@ -55,8 +55,7 @@ fn only_coordinates_change_in_every_encoding() {
         assert_eq!(after.mesh().points, rounded(&to, style.precision), "{style:?}");
         assert_eq!((&after.mesh().triangles, after.regions()), (&mesh.triangles, file.regions()));
         assert_eq!(file.difference(&after), None, "{style:?}");
-        // The whole file is what a writer makes of the moved mesh, where encoders are the same and numbers have no
-        // form of their own.
+        // The written file is what a writer makes of the moved mesh, if nothing is compressed and numbers are not text.
         if style.place != Place::Text && style.compressor.is_none() {
             let moved = Mesh { points: to, ..mesh.clone() };
             assert!(fs::read(folder.path("out.vtu")).unwrap() == write(&moved, style), "{style:?}");
@@ -73,7 +72,7 @@ fn only_coordinates_change_in_every_encoding() {
     }
 }
 
-/// Numbers in a file that a byte order mark stands before were read three bytes too early.
+/// Byte order marks were once left out of the count, so that numbers were read three bytes too early.
 #[test]
 fn a_byte_order_mark_moves_all_places() {
     for style in styles().into_iter().step_by(11) {
@@ -137,7 +136,7 @@ fn what_is_not_read_is_refused_by_its_name() {
     }
 }
 
-/// The mesh twice, the second time farther right.
+/// The mesh twice, the second copy farther right.
 fn pieces() -> [Mesh; 2] {
     let first = base();
     let mut second = first.clone();
@@ -205,7 +204,7 @@ fn pieces_and_polygons_are_read_and_come_back() {
         assert!(found.iter().map(bits).eq(fields.iter().map(bits)), "{style:?}");
         assert_eq!(file.difference_besides(&after, [&fields, &found]), None, "{style:?}");
 
-        // All of it comes over into one piece.
+        // The conversion joins all pieces to one, without loss.
         let conversion = Conversion::new(&file, Format::Vtu).unwrap().unwrap();
         assert_eq!(conversion.lost(), [""; 0]);
         conversion.write(&folder.path("one.vtu")).unwrap();
@@ -234,7 +233,7 @@ fn damaged_pieces_never_panic() {
     }
 }
 
-/// Neither depth nor entities make a small file a large one.
+/// Neither nested elements nor entities make a small file take much memory.
 #[test]
 fn hostile_xml_takes_no_memory_and_no_time() {
     let opening = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n";

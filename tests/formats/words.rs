@@ -1,4 +1,4 @@
-//! Text of gmsh, PLY and OFF, whose programs read words, whatever lines they are on; and rows that leave something out.
+//! Text of gmsh, PLY and OFF, whose programs read words on whatever lines they are, and rows with numbers left out.
 
 use super::Folder;
 use super::layouts::{assert_refused, assert_same};
@@ -13,7 +13,7 @@ $EndNodes\n$Elements\n1 2 1 2\n2 1 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
 const GMSH_40: &str = "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n2 4\n1 2 0 3\n1 0 0 0\n2 1 0 0\n\
 3 1 1.25 0\n1 2 0 1\n4 0 1 0\n$EndNodes\n$Elements\n1 2\n1 2 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
 
-/// The text with what stands between the lines of a section in another way.
+/// The text with the content of one section changed.
 fn within(text: &str, section: &str, change: impl Fn(&str) -> String) -> String {
     let (open, close) = (format!("${section}\n"), format!("\n$End{section}"));
     let start = text.find(&open).unwrap() + open.len();
@@ -34,7 +34,7 @@ fn lists_of_gmsh_are_words() {
                 }
             }
         }
-        // A row that lacks a number among those that are whole.
+        // One row of a list lacks a number.
         let broken = plain.replace("1.25 0\n", "1.25\n");
         assert_refused("a.msh", &broken, &["z of node 3 is missing"]);
     }
@@ -74,7 +74,7 @@ fn items_of_ply_are_words() {
         let file = assert_same("a.ply", PLY, &odd);
         assert_eq!(file.data_names(), ["q"]);
     }
-    // Elements without properties are nowhere in the file, so that there may be any number of them.
+    // Elements without properties take no space in the file, so any number of them may be announced.
     let many = "element nothing 18446744073709551615\n";
     assert_same("a.ply", PLY, &PLY.replace("element face", &format!("{many}element face")));
     assert_same("a.ply", PLY, &PLY.replace("end_header", &format!("{many}end_header")));
@@ -105,7 +105,7 @@ fn vertices_may_have_no_third_coordinate() {
         let points = plain.replace(" 0\n", "\n");
         let file = assert_same(name, plain, &points);
         assert!(file.point_fields(Some(&["z".into()])).is_err(), "there is no z");
-        // Those that are not there cannot be replaced.
+        // A file in which only some vertices have z: they are data, and can be replaced only where they are.
         let some = points.replace("1.25\n", "1.25 3\n");
         let folder = Folder::new(&[(name, &some)]);
         assert_eq!(folder.read(name).data_names(), ["z"]);
@@ -139,7 +139,7 @@ fn line_ends_of_old_systems_are_told() {
         Folder::new(&[("a.node", "3 2 0 0\r1 0 0\r2 1 0\r3 0 1\r"), ("a.ele", "1 3 0\n1 1 2 3\n")]);
     let error = gpu_smooth::MeshFile::read(&folder.path("a.ele")).unwrap_err().to_string();
     assert!(error.contains("a.node") && error.contains(told), "{error}");
-    // Words are read whatever ends lines.
+    // Formats that are read as words take any line ends.
     const MEDIT: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 3\n1 0 0\n1 1.25 0\n0 1 0\n\
                          Triangles\n2\n1 2 3 5\n1 3 4 5\nEnd\n";
     assert_same("a.mesh", MEDIT, &MEDIT.replace('\n', "\r"));

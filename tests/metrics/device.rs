@@ -1,10 +1,10 @@
-//! Runs a test's own entry point, appended to WGSL of the library, on the adapter the library takes.
+//! Appends a test's entry point to WGSL of the library, and runs it on the adapter that the library takes.
 
 use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
-/// Lines put after a module of the library: numbers in and numbers out, one row an invocation, beside
-/// the bindings of shaders/common.wgsl. `body` sees its row as `x` and leaves its results in `y`.
+/// WGSL to append to a module of the library. An entry point reads a row of numbers in each invocation and writes another,
+/// by bindings beside those of shaders/common.wgsl. `body` has its row in `x` and leaves its results in `y`.
 pub(crate) fn probe(inputs: usize, outputs: usize, body: &str) -> String {
     format!(
         "
@@ -30,7 +30,7 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    /// A machine without an adapter cannot run these tests, and must not seem to have passed them.
+    /// Panics without an adapter: these tests must not seem to have passed where they cannot run.
     pub(crate) fn open() -> Self {
         let chosen = gpu_smooth::gpu::adapters();
         let chosen = chosen.first().expect("these tests need a wgpu adapter, be it a software one");
@@ -81,7 +81,7 @@ impl Device {
                 mapped_at_creation: false,
             })
         };
-        // Params: all zero, so that the pair arithmetic has the zero it needs.
+        // Params: all zero, as pair arithmetic needs a zero at run time.
         let params = filled(&[0; 256], Usage::UNIFORM);
         let input = filled(bytemuck::cast_slice(rows), Usage::STORAGE);
         let output = empty(Usage::STORAGE | Usage::COPY_SRC);

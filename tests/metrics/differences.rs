@@ -1,4 +1,4 @@
-//! Finite differences as an engine takes them: a little off, and good enough to smooth with.
+//! Finite differences as an engine takes them: less exact than analytic derivatives, but good enough to smooth with.
 
 use crate::support;
 use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
@@ -45,8 +45,8 @@ fn a_sweep_by_differences_is_a_little_off() {
             off += a.distance(*b);
         }
         assert!(off > 0.0, "{metric}: not by differences");
-        // Forward differences of 1 % of a height are wrong by a few such widths, and by more where the
-        // p-norm of EDGE bends: it takes the 16th power.
+        // The step of a forward difference is 1 % of a height, and its error a few times that. It is larger for EDGE, whose
+        // p-norm has exponent 16 and bends more.
         let bound = if metric == Metric::Edge { 0.25 } else { 0.05 };
         assert!(off < bound * moved, "{metric}: {}", off / moved);
     }
@@ -59,7 +59,7 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
     let backends = [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())];
     for &metric in Metric::ALL {
         let f = |derivatives, backend| {
-            // Not corrected, as differences are not either: EDGE would end at another minimum.
+            // Without corrections, as runs by differences have none: EDGE would end at another minimum.
             let (scheme, method) = (metric.into(), Method::Sweeps);
             let options = Options { scheme, method, derivatives, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
@@ -70,11 +70,11 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
         let gone = smoother.quality(&mesh.points).unwrap().f(metric) - exact;
         for backend in &backends {
             let near = f(Derivatives::FiniteDifference, backend);
-            // The minimum is missed by half a width of the differences. That counts twice for the smooth
-            // metrics, once where EDGE has a kink; AREA has 0 for its ideal, so only the way gone is a measure.
+            // The minimum is missed by half a width of the differences. For smooth metrics f then differs in second order,
+            // for EDGE, which has a kink there, in first order. The ideal of AREA is 0, so it is compared with the total gain.
             let (missed, bound) = match metric {
                 Metric::Edge => (near / exact - 1.0, 5e-3),
-                // Where the shape guard stops runs of AREA, the way they came decides: either may end lower.
+                // The shape guard stops runs of AREA where their path led them, so either run may end lower.
                 Metric::Area => (((near - exact) / gone).abs(), 2e-2),
                 _ => (near / exact - 1.0, 1e-3),
             };
@@ -99,7 +99,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
         let best = history.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(history.last() > Some(&(best * (1.0 + 1e-6))), "the last is not the best");
         let f = smoother.quality(&outcome.points).unwrap().f(Metric::Rms);
-        // What single precision makes of the history.
+        // On a device the history has the digits of single precision.
         assert!((f / best - 1.0).abs() < 2e-7, "{f} returned, {best} seen");
         assert_eq!(history[outcome.best_sweep as usize], best);
     }

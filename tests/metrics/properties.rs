@@ -7,7 +7,7 @@ use gpu_smooth::{Corner, Metric};
 const COUNT: usize = 500;
 const WORST: f64 = 50.0;
 
-/// Rounding in a shape of this ratio: a few operations, of which the area cancels.
+/// The rounding to allow for a triangle: that of a few operations, enlarged as the area of a bad shape cancels.
 fn rounding(t: &Corner<f64>) -> f64 {
     16.0 * f64::EPSILON * (1.0 + imr(t))
 }
@@ -23,7 +23,7 @@ fn close(a: f64, b: f64, bound: f64) -> bool {
     (a - b).abs() <= bound * a.abs().max(b.abs()).max(1.0)
 }
 
-/// Area from the lengths alone, by Kahan's form of Heron's formula, which does not cancel.
+/// The area from the lengths alone, by Kahan's form of Heron's formula, which does not cancel.
 fn heron(t: &Corner<f64>) -> f64 {
     let mut l = lengths(t);
     l.sort_unstable_by(f64::total_cmp);
@@ -90,7 +90,7 @@ fn quality_is_that_of_the_formula_in_lengths_and_area() {
             }
         };
         let got = metric.quality(t);
-        // Heron's area is as good as the lengths allow: their rounding times the shape.
+        // The error of Heron's area: the rounding of the lengths, enlarged by the shape.
         assert!(close(got, wanted, 4.0 * rounding(t)), "{metric}: {got} for {wanted}, {t:?}");
     });
 }
@@ -105,12 +105,12 @@ fn excess_is_the_square_of_quality_less_that_of_the_ideal() {
 
 #[test]
 fn excess_keeps_its_digits_near_the_ideal() {
-    // A vertex moved by s changes q² - 1 by the order of s², which q² itself could not hold.
+    // A vertex moved by s changes q² - 1 by about s², which is lost if q² is rounded first.
     for metric in [Metric::Imr, Metric::Ar] {
         let moved = displaced(&equilateral(), [3e-7, 2e-7]);
         let by_imr = Metric::Imr.excess(&moved);
         assert!((1e-14..1e-12).contains(&by_imr), "{by_imr:e}");
-        // AR forms q first: its own rounding is all it may add.
+        // AR computes q first, so it may add the rounding of q.
         assert!((metric.excess(&moved) - by_imr).abs() < 2e-15, "{metric}");
     }
 }
@@ -134,7 +134,7 @@ fn size_matters_as_the_row_says() {
             let larger = scaled(t, factor);
             let alike = close(metric.quality(&larger), q, rounding(t));
             assert_eq!(alike, metric.properties().scale_invariant, "{metric} times {factor}");
-            // Whatever the unit of length, if the mean area is in it too.
+            // A change of the unit of length changes nothing, as the mean area is in the same unit.
             let same = Corner { mean_area: t.mean_area * factor * factor, ..larger };
             assert!(close(metric.quality(&same), q, rounding(t)), "{metric} in units of {factor}");
         }
@@ -147,7 +147,7 @@ fn a_barrier_grows_without_bound_and_the_others_do_not() {
         let flat = |height: f64| corner([[0.5, height], [0.0, 0.0], [1.0, 0.0]], 0.4);
         let quality = |height: f64| metric.quality(&flat(height));
         if metric.properties().barrier {
-            // By the root of the height at least: q² is one over it.
+            // q grows at least as the root of 1 / height, as q² grows at least as 1 / height.
             assert!(quality(1e-6) > 500.0 && quality(1e-9) > 30.0 * quality(1e-6), "{metric}");
             for height in [0.0, -1e-3, -1.0] {
                 assert_eq!(quality(height), f64::INFINITY, "{metric} at {height}");
@@ -155,7 +155,7 @@ fn a_barrier_grows_without_bound_and_the_others_do_not() {
         } else {
             assert!(quality(0.0) < 3.0 && close(quality(1e-9), quality(0.0), 1e-8), "{metric}");
         }
-        // Where there is neither barrier nor guard, nothing would keep triangles from turning over.
+        // Without a barrier or a shape guard, nothing would keep triangles from inverting.
         let properties = metric.properties();
         assert!(properties.barrier || properties.shape_guard.is_finite(), "{metric}");
     }
@@ -191,7 +191,7 @@ fn imr_and_ar_are_the_same_number() {
         let [di, da] = [Metric::Imr, Metric::Ar].map(|metric| metric.derivatives(&t, 4));
         let scale = di.hessian.iter().fold(0f64, |m, x| m.max(x.abs()));
         for (x, y) in di.hessian.into_iter().zip(da.hessian) {
-            // Two derivatives more, each with the same cancellation.
+            // The Hessian takes two derivatives more than the value, each with the same cancellation.
             assert!((x - y).abs() <= 8.0 * rounding(&t) * scale, "{x} {y} of {scale}");
         }
     }
@@ -213,7 +213,7 @@ fn the_p_norm_of_edge_is_exact_at_equilateral_and_comes_up_from_below() {
         for sharpness in 0..=10 {
             let norm = Metric::Edge.model(&t, sharpness) + 1.0;
             let k = 2f64.powi(sharpness as i32);
-            // A mean of three numbers is at least a third of the largest, which is one, in both factors.
+            // In both factors, the mean of three powers is at least a third of the largest, which is one.
             let least = exact * 9f64.powf(-1.0 / k);
             let slack = 1e-13 * exact;
             assert!(norm <= exact + slack && norm >= least - slack, "k = {k}: {norm} for {exact}");

@@ -1,5 +1,5 @@
-//! Each metric's WGSL, value and hand-written derivatives, against the dual numbers of the CPU engine on
-//! the same single-precision input.
+//! Compares each metric's WGSL, its value and hand-written derivatives, with the dual numbers of the CPU engine on the same
+//! single-precision input.
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
@@ -14,10 +14,10 @@ const SHARPNESS: u32 = 4;
 /// Half a unit in the last place of a float near one.
 const ULP: f64 = 1.0 / 16_777_216.0;
 
-/// What goes to the device: the triangle, and the width of differences.
+/// The input of an invocation: the triangle, its mean area, and the width of differences.
 type Row = [f32; 6];
 
-/// What the probe leaves, in this order.
+/// The output of an invocation, in this order.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Found {
@@ -73,7 +73,7 @@ fn rows() -> Vec<Row> {
         [ax, ay, bx, by, mean_area, width as f32]
     };
     let mut rows: Vec<Row> = all.into_iter().enumerate().map(of).collect();
-    // Rounding may have made the flattest ones flatter still.
+    // Rounding may have made the flattest triangles flatter still.
     rows.retain(|row| {
         let t = triangle(row);
         t.doubled_area() > 0.0 && imr(&t) < 1.2e4
@@ -88,8 +88,8 @@ fn triangle(row: &Row) -> Corner<f64> {
     Corner { a: [ax, ay], b: [bx, by], mean_area }
 }
 
-/// How large the terms of value, gradient and Hessian of q² are, and how much larger an error in the
-/// last place of an edge comes out in each.
+/// The size of the terms of value, gradient and Hessian of q², and by how much each enlarges an error in the last place of
+/// an edge.
 struct Scales {
     sizes: [f64; 3],
     conditions: [f64; 3],
@@ -102,8 +102,7 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
     match metric {
         Metric::Edge => {
             let (k, shortest) = (f64::from(1u32 << SHARPNESS), a.min(b));
-            // The edge that does not move is the difference of the two that do, and the power k
-            // multiplies what is wrong with the shares.
+            // The third edge is the difference of the two that move with the vertex. The power k enlarges the error of the shares.
             let cancelled = 1.0 + a.max(b) / c;
             Scales {
                 sizes: [q * q, q * q / shortest, k * q * q / (shortest * shortest)],
@@ -132,7 +131,7 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
         Metric::ShapeSize => {
             let mean = 2.0 * t.mean_area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant, and how fast these change.
+            // Derivatives by the squared norm and by the determinant; then second derivatives.
             let (by_norm, by_det) =
                 (1.0 + 1.0 / (tau * tau), 1.0 + (1.0 + norm / tau) / (tau * tau));
             let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
@@ -147,7 +146,7 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
         Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
             let mean = 2.0 * t.mean_area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant, of both parts, and how fast these change.
+            // Derivatives by the squared norm and by the determinant, of both parts of the metric; then second derivatives.
             let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
             let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
             let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);
@@ -187,17 +186,16 @@ fn errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     worst
 }
 
-/// The difference, infinite where there is no number.
+/// The absolute difference; infinite for NaN.
 fn error(got: f64, want: f64) -> f64 {
     Some((got - want).abs()).filter(|error| error.is_finite()).unwrap_or(f64::INFINITY)
 }
 
-/// About ten operations that may round, and divisions and square roots that a GPU may get wrong by a few
-/// units. A software adapter stays below 6.
+/// Bounds the errors in units of their scales: about ten operations round, and a GPU may get divisions and square roots
+/// wrong by a few units. A software adapter stays below 6.
 const BOUND: f64 = 16.0;
 
-/// The same for differences, where the rounding of two values is all that counts. A software adapter
-/// stays below 2.
+/// Bounds the errors of finite differences, where only the rounding of two values counts. A software adapter stays below 2.
 const DIFFERENCE_BOUND: f64 = 8.0;
 
 #[test]
@@ -221,7 +219,7 @@ fn values_and_derivatives_are_those_of_dual_numbers() {
     }
 }
 
-/// One mistake in the derivatives of each metric, in the gradient or in the Hessian.
+/// One mistake for the derivatives of each metric, in the gradient or in the Hessian: a test must notice each.
 const MISTAKES: [(Metric, &str, &str); 18] = [
     (Metric::Edge, "own + k * spread", "own - k * spread"),
     (Metric::Edge, "q * g, q *", "1.001 * q * g, q *"),
@@ -256,7 +254,7 @@ fn a_wrong_derivative_is_seen() {
     }
 }
 
-/// Gradient and Hessian by the forward differences that both engines are to take.
+/// Gradient and Hessian by forward differences, as both engines take them.
 fn forward(metric: Metric, t: &Corner<f64>, h: f64) -> Dual {
     let value = |x: f64, y: f64| metric.model(&displaced(t, [x * h, y * h]), SHARPNESS);
     let gradient = |x: f64, y: f64| {
@@ -269,13 +267,13 @@ fn forward(metric: Metric, t: &Corner<f64>, h: f64) -> Dual {
     Dual { value: value(0.0, 0.0), gradient: here, hessian }
 }
 
-/// Largest errors of differences, in units of what rounding of the values makes of them.
+/// Largest errors of finite differences, in units of the error that rounding of the values causes.
 fn difference_errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {
         let (t, h) = (triangle(row), f64::from(row[5]));
         let Scales { sizes, conditions } = scales(metric, &t);
-        // A displaced edge is rounded too: by its own length, against the shortest that counts.
+        // A moved edge is rounded too: by its own length, relative to the shortest edge that counts.
         let [a, b, c] = lengths(&t);
         let displaced = (a + b) * sizes[1] / sizes[0] + (a + b) / c;
         let noise = sizes[0] * (conditions[0] + displaced) * ULP;
@@ -321,7 +319,7 @@ fn differences_of_the_wrong_values_are_seen() {
     }
 }
 
-/// -|H|⁻¹g by rotation to the eigenvectors of H, and the slope along it.
+/// The direction -|H|⁻¹g, computed in the eigenvectors of H, and the slope along it.
 fn newton(gradient: Vec2, [xx, xy, yy]: [f64; 3], floor: f64) -> (Vec2, f64) {
     let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
     let (sin, cos) = angle.sin_cos();
@@ -349,7 +347,7 @@ fn the_newton_direction_is_that_of_absolute_eigenvalues() {
             if length([gx, gy]) < 1e-30 {
                 continue;
             }
-            // The smaller eigenvalue is known to rounding of the larger, and at least the floor.
+            // The smaller eigenvalue is known to the rounding of the larger one, and is at least the floor.
             let bound = 8.0 * ULP / floor;
             let got = found.direction.map(f64::from);
             let off = length(sub(got, direction)) / length(direction);

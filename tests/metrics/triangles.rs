@@ -13,7 +13,7 @@ pub(crate) fn length(u: Vec2) -> f64 {
     u[0].hypot(u[1])
 }
 
-/// A triangle as seen from its first vertex, of a mesh with this mean area.
+/// A triangle seen from its first vertex, in a mesh with this mean area.
 pub(crate) fn corner([p, q, r]: [Vec2; 3], mean_area: f64) -> Corner<f64> {
     Corner { a: sub(q, p), b: sub(r, p), mean_area }
 }
@@ -42,7 +42,7 @@ pub(crate) fn lengths(t: &Corner<f64>) -> [f64; 3] {
     [length(t.a), length(t.b), length(sub(t.b, t.a))]
 }
 
-/// The height over the edge that does not move with the vertex.
+/// The height over the edge opposite to the vertex.
 pub(crate) fn height(t: &Corner<f64>) -> f64 {
     t.doubled_area() / length(sub(t.b, t.a))
 }
@@ -53,13 +53,13 @@ pub(crate) fn imr(t: &Corner<f64>) -> f64 {
     squares / (2.0 * 3f64.sqrt() * t.doubled_area())
 }
 
-/// Equilateral, of unit mean area, and of that area too.
+/// An equilateral triangle of area 1, in a mesh of mean area 1.
 pub(crate) fn equilateral() -> Corner<f64> {
     let edge = (4.0 / 3f64.sqrt()).sqrt();
     corner([[0.0, 0.0], [edge, 0.0], [0.5 * edge, 3f64.sqrt() / 2.0 * edge]], 1.0)
 }
 
-/// Of any shape no worse than `worst`, at any angle, with edges near one.
+/// A triangle of any shape with an inverse mean ratio of at most `worst`, at any angle, with edges near one.
 pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
     loop {
         let vertex = [0; 3].map(|_| [0; 2].map(|_| rng.range(-1.0, 1.0)));
@@ -70,8 +70,8 @@ pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
     }
 }
 
-/// A triangle with an inverse mean ratio near `ratio`: a flat one with three long edges (`needle` 0)
-/// or one with a short edge (`needle` 1), seen from any vertex.
+/// A triangle with an inverse mean ratio near `ratio`, seen from any vertex. With `needle` it has a short edge, otherwise
+/// three long ones.
 pub(crate) fn thin(rng: &mut SplitMix64, ratio: f64, needle: bool) -> Corner<f64> {
     let thickness = 1.0 / ratio;
     let tip = if needle { [0.3 * thickness, thickness] } else { [rng.range(0.2, 0.8), thickness] };

@@ -1,19 +1,19 @@
-//! The energy of untangling in WGSL, against that of the CPU on the same single-precision input.
+//! Compares the energy of untangling in WGSL with that of the CPU on the same single-precision input.
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
 use gpu_smooth::gpu::Kernel;
 use gpu_smooth::internal::untangling_energy;
 
-/// What goes to the device: two edges, and ε in units of the doubled area.
+/// The input of an invocation: two edges, and ε in units of the doubled area.
 type Row = [f32; 5];
-/// Value, gradient and Hessian, and the value by itself.
+/// The output of an invocation: value, gradient and Hessian, and the value computed alone.
 type Found = [f32; 7];
 
 /// Half a unit in the last place of a float near one.
 const ULP: f64 = 1.0 / 16_777_216.0;
 
-/// As for the metrics. A software adapter stays below 6.
+/// The bound of tests/metrics/shader.rs. A software adapter stays below 6.
 const BOUND: f64 = 16.0;
 
 fn wgsl() -> String {
@@ -23,7 +23,7 @@ fn wgsl() -> String {
     Kernel::Untangle.wgsl() + &probe(5, 7, body)
 }
 
-/// Triangles of either sign, from good to flat, tiny, ordinary and huge, with ε from next to nothing to more than their areas.
+/// Triangles of either orientation, from good to flat, tiny to huge. ε goes from next to nothing to more than their areas.
 fn rows() -> Vec<Row> {
     let mut rng = SplitMix64::new(47);
     let mut rows = Vec::new();
@@ -32,7 +32,7 @@ fn rows() -> Vec<Row> {
         let mut edge = || [rng.range(-1.0, 1.0) * size, rng.range(-1.0, 1.0) * size];
         let (a, mut b) = (edge(), edge());
         if i % 4 == 0 {
-            // Nearly flat: b is a share of a, and a little beside.
+            // Nearly flat: b is a multiple of a, and a little beside it.
             let (share, beside) = (rng.range(-1.0, 2.0), rng.range(-1e-4, 1e-4));
             b = [share * a[0] - beside * a[1], share * a[1] + beside * a[0]];
         }
@@ -43,13 +43,13 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// Largest errors of value, gradient and Hessian, in units of what an error in the last place of an edge makes of them.
+/// Largest errors of value, gradient and Hessian, in units of the error that the last place of an edge causes.
 fn errors(rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {
         let [ax, ay, bx, by, epsilon] = row.map(f64::from);
         let [a, b, c] = [[ax, ay], [bx, by], [bx - ax, by - ay]].map(|[x, y]: [f64; 2]| x.hypot(y));
-        // An area in doubled units: that of a target of one half.
+        // A target area of one half makes the doubled area the unit.
         let exact = untangling_energy([[ax, ay], [bx, by]], 0.5, epsilon);
         let root = epsilon.hypot(ax * by - ay * bx);
         let value = exact[0];

@@ -1,4 +1,4 @@
-//! Binary files in either byte order: their numbers, and meshes as gmsh's `.msh`.
+//! Writes binary files in either byte order: numbers, and meshes as gmsh's `.msh`.
 
 use gpu_smooth::{Mesh, Precision};
 

@@ -1,4 +1,4 @@
-//! The oracle: what a mesh must be and how good it is, by the plainest means and exact predicates.
+//! Checks of meshes and their quality, by plain formulas and exact predicates, independent of the library.
 
 use gpu_smooth::Mesh;
 use robust::{Coord, orient2d};
@@ -57,7 +57,7 @@ fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
 
 /// Which vertices end an edge that has one triangle.
 pub fn boundary(mesh: &Mesh) -> Vec<bool> {
-    // Sorted, as a map of the edges of a million triangles takes its time.
+    // Sorted, as a map of the edges of a million triangles is slow.
     let mut all: Vec<_> = mesh.triangles.iter().flat_map(|&t| edges(t)).map(ascending).collect();
     all.sort_unstable();
     let mut on = vec![false; mesh.points.len()];
@@ -148,7 +148,7 @@ pub fn min_angle(mesh: &Mesh) -> f64 {
         let corners = corners(mesh, t);
         let mut squared = squared_lengths(corners);
         squared.sort_unstable_by(f64::total_cmp);
-        // It lies between the two longer edges.
+        // The smallest angle lies between the two longer edges.
         let cosine_part = (squared[1] + squared[2] - squared[0]) / 2.0;
         orient(corners).abs().atan2(cosine_part)
     });

@@ -1,4 +1,4 @@
-//! Meshes made worse, never inverted: what a smoother has to undo.
+//! Makes meshes worse without inverting a triangle.
 
 use super::check::{held, imr, orient, squared_distance};
 use super::rng::SplitMix64;
@@ -7,19 +7,18 @@ use gpu_smooth::Mesh;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// No move of [`perturb_random`] makes a triangle worse than this. A triangle is flatter than any
-/// bound with a chance that falls only as the inverse of the bound, so that without one the flattest
-/// triangle, and f_imr with it, would be a matter of luck and of the number of vertices.
+/// No move of [`perturb_random`] makes a triangle's inverse mean ratio larger than this. The chance that a triangle gets
+/// flatter than some bound falls only as one over the bound. Without a limit, the flattest triangle, and f_imr with it,
+/// would depend on luck and on the number of vertices.
 const WORST: f64 = 1000.0;
 
-/// How far toward its random place strength 1 takes a vertex. All the way would leave a flat triangle
-/// at about every vertex rather than here and there.
+/// How far toward its random place strength 1 takes a vertex, as a share of the way. A share of 1 would leave a flat
+/// triangle at nearly every vertex.
 const FARTHEST: f64 = 0.7;
 
-/// Moves each vertex that may move, one after the other, toward a random place of its star, or half,
-/// a quarter and so on of the way until no triangle inverts. Strength 0.5 brings f_imr to about 1.3,
-/// 1 to well over 100, nearly all of it from the few triangles that end up nearly flat.
-/// Needs a mesh wound counterclockwise.
+/// Moves each vertex that may move, one after the other, toward a random place of its star. If that inverts a triangle, it
+/// goes half of the way, a quarter, and so on. Strength 0.5 brings f_imr to about 1.3. Strength 1 brings it to well over
+/// 100, nearly all of it from the few triangles that end up nearly flat. Needs a mesh wound counterclockwise.
 pub fn perturb_random(mesh: &Mesh, strength: f64, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let (held, stars) = (held(mesh), Stars::new(mesh));
@@ -50,7 +49,7 @@ pub fn perturb_random(mesh: &Mesh, strength: f64, seed: u64) -> Mesh {
     moved
 }
 
-/// Which triangles each vertex has.
+/// The triangles at each vertex.
 struct Stars {
     start: Vec<usize>,
     triangles: Vec<u32>,
@@ -79,8 +78,8 @@ impl Stars {
     }
 }
 
-/// Moves the interior by a few long waves that fade toward all that is held. An `amplitude` of 1 is
-/// where the first triangle would become flat. Needs a mesh wound counterclockwise.
+/// Moves the interior by a few long waves that fade toward all vertices that are held. At an `amplitude` of 1 the first
+/// triangle would become flat. Needs a mesh wound counterclockwise.
 pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     let [[left, width], [bottom, height]] = [0, 1].map(|x| {
         let low = mesh.points.iter().map(|p| p[x]).fold(f64::INFINITY, f64::min);
@@ -91,7 +90,7 @@ pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     let farthest = distance.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
     let waves = mesh.points.iter().zip(distance).map(|(&[x, y], distance)| {
         let (u, v) = ((x - left) / width, (y - bottom) / height);
-        // Zero with zero slope at what is held, one with zero slope in the middle.
+        // The weight is zero with zero slope at held vertices, and one with zero slope in the middle.
         let near = distance / farthest;
         let weight = near * near * (3.0 - 2.0 * near);
         let across = sin_turns(1.3 * v + 0.1) + 0.6 * sin_turns(2.1 * u + 0.9 * v);
@@ -118,29 +117,29 @@ pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     }
 }
 
-/// How far the corners go in direction of the waves until the triangle is flat.
+/// How far the corners go along the waves until the triangle is flat, as a factor of the waves.
 fn flattens_at([p, q, r]: [[f64; 2]; 3], [a, b, c]: [[f64; 2]; 3]) -> f64 {
     let minus = |u: [f64; 2], v: [f64; 2]| [u[0] - v[0], u[1] - v[1]];
     let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
     let (e, f, de, df) = (minus(q, p), minus(r, p), minus(b, a), minus(c, a));
-    // Twice the area is `area + slope t + bend t^2`; wanted is its smallest positive root.
+    // Twice the area is `area + slope t + bend t^2`. Finds its smallest positive root.
     let (area, slope, bend) = (cross(e, f), cross(e, df) + cross(de, f), cross(de, df));
     let discriminant = slope * slope - 4.0 * bend * area;
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
-    // Both roots by the formula that does not cancel.
+    // Both roots, by the formula without cancellation.
     let half = -(slope + discriminant.sqrt().copysign(slope)) / 2.0;
     [half / bend, area / half].into_iter().filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
 }
 
-/// The approximate distance of each vertex to the nearest held one, which is sought only among those nearest to its
-/// neighbors.
+/// The approximate distance of each vertex to the nearest held one. Of the held vertices, it considers only those that
+/// are nearest to its neighbors.
 fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
     let stars = Stars::new(mesh);
     let held = held(mesh);
     let mut squared = vec![f64::INFINITY; mesh.points.len()];
-    // By distance first: positive floats order like their bits.
+    // Ordered by distance: positive floats order like their bits.
     let mut queue: BinaryHeap<_> =
         (0..squared.len()).filter(|&v| held[v]).map(|v| Reverse((0u64, v, v))).collect();
     while let Some(Reverse((bits, v, source))) = queue.pop() {

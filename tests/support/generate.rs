@@ -1,4 +1,4 @@
-//! Meshes from nothing: a lattice, a graded ring, and what an outline encloses.
+//! Makes meshes: lattices, graded rings, hubs, layers, and triangulations of an outline.
 
 use super::check::{area, boundary, is_ccw, is_valid, min_angle};
 use super::outline::Outline;
@@ -13,8 +13,8 @@ type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// Refinement keeps angles above this, except where the outline itself has smaller ones.
 pub const ANGLE_LIMIT: f64 = 29.0;
 
-/// `columns` times `rows` equilateral pairs of unit edge: every triangle is ideal to rounding. The
-/// sides are ragged, so that it grows as a rectangle rather than lean over.
+/// `columns` times `rows` pairs of equilateral triangles of unit edge: every triangle is ideal up to rounding. The left
+/// and right sides zigzag, so that the lattice is a rectangle and does not lean over.
 pub fn lattice(columns: usize, rows: usize) -> Mesh {
     let height = 3f64.sqrt() / 2.0;
     let mut mesh = Mesh::default();
@@ -42,8 +42,8 @@ pub fn lattice(columns: usize, rows: usize) -> Mesh {
 pub fn graded(around: usize, ratio: f64) -> Mesh {
     assert!(around >= 8 && ratio > 0.0, "a ring needs 8 vertices and a hole");
     let turns = 1.0 / around as f64;
-    // Between the shrinkage that makes the triangles standing on a ring equilateral and that which
-    // does so for those hanging from it.
+    // Halfway between two factors: with one, the triangles that stand on a ring are equilateral, with the other those
+    // that hang from it.
     let [cos, sin] = on_circle(turns / 2.0);
     let height = 3f64.sqrt() * sin;
     let shrink = ((cos - height) / (cos + height)).sqrt();
@@ -73,8 +73,8 @@ pub fn graded(around: usize, ratio: f64) -> Mesh {
     }
 }
 
-/// A vertex with `around` neighbors in the middle of rings of as many vertices, which grow outward to `1 / ratio` times the
-/// innermost. Beyond the innermost, triangles are nearly equilateral.
+/// A vertex with `around` neighbors, in the middle of rings with `around` vertices each. The outermost ring is `1 / ratio`
+/// times as large as the innermost. Outside of the innermost ring, triangles are nearly equilateral.
 pub fn hub(around: usize, ratio: f64) -> Mesh {
     let mut mesh = graded(around, ratio);
     let center = mesh.points.len() as u32;
@@ -85,15 +85,15 @@ pub fn hub(around: usize, ratio: f64) -> Mesh {
     mesh
 }
 
-/// The same with so many rings in equal distances between the unit circle and the vertex in the middle: the more stretched, the
-/// nearer.
+/// A vertex with `around` neighbors, in the middle of `rings` rings at equal distances, with `around` vertices each.
+/// Triangles nearer to the middle are more stretched.
 pub fn hub_evenly(around: usize, rings: usize) -> Mesh {
-    // Of this ratio there are rings enough.
+    // A ratio at which `hub` makes at least that many rings.
     let mut mesh = hub(around, (-6.0 * rings as f64 / around as f64).exp());
     let all = (mesh.points.len() - 1) / around;
     assert!(all >= rings, "{all} rings instead of {rings}");
     let last = (rings * around) as u32;
-    // The triangles within the last ring that is wanted are left out, and a fan takes their place.
+    // Replaces the triangles inside the last ring that is kept by a fan.
     mesh.triangles.retain(|t| t.iter().all(|&v| v < last));
     mesh.points.truncate(last as usize);
     for (i, point) in mesh.points.iter_mut().enumerate() {
@@ -108,7 +108,7 @@ pub fn hub_evenly(around: usize, rings: usize) -> Mesh {
     mesh
 }
 
-/// The mesh of [`layered`] with its rows in waves: one over its width, of so many edges.
+/// The mesh of [`layered`] with wavy rows: one wave over the width, `height` edges high.
 pub fn wavy_layer(columns: usize, ratio: f64, height: f64) -> Mesh {
     let mut mesh = layered(columns, ratio);
     for point in &mut mesh.points {
@@ -130,15 +130,15 @@ pub fn layered(columns: usize, ratio: f64) -> Mesh {
     mesh
 }
 
-/// Triangles inside the outline with no angle below [`ANGLE_LIMIT`] but at its own sharper corners,
-/// of a size that makes the number of vertices `vertices` within 1 %. The corners of the outline come
-/// first, in its order. The same for the same version of spade, wherever it runs.
+/// Triangulates the inside of the outline. No angle is below [`ANGLE_LIMIT`], but at sharper corners of the outline. The
+/// size of the triangles is chosen such that there are `vertices` vertices to within 1 %. The corners of the outline come
+/// first, in its order. The result depends only on the version of spade, not on the machine.
 pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
     let mesh = triangulate_within(outline, vertices, false)?;
     if min_angle(&mesh) > ANGLE_LIMIT - 1e-6 {
         return Ok(mesh);
     }
-    // spade splits no edge that makes a sharp angle with the convex hull, and leaves bad triangles at it.
+    // spade splits no edge that makes a sharp angle with the convex hull, and leaves bad triangles there.
     let boxed = triangulate_within(outline, vertices, true)?;
     Ok(if min_angle(&boxed) > min_angle(&mesh) { boxed } else { mesh })
 }
@@ -147,7 +147,7 @@ pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
 /// it.
 fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result<Mesh, String> {
     let (domain, target) = (outline.area(), vertices as f64);
-    // As many as a typical mesh has; then by what came out, between sizes that were too small and too large.
+    // Starts with the size of a typical mesh; then searches between sizes that gave too many and too few vertices.
     let (mut size, mut low, mut high) = (domain / (1.2 * target), 0.0, f64::INFINITY);
     let mut closest: Option<(f64, Mesh)> = None;
     for _ in 0..24 {
@@ -182,7 +182,7 @@ fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result
     }
 }
 
-/// Triangles of at most this area; nothing if it takes more than `limit` vertices.
+/// Refines to triangles of at most the area `size`; `None` if that takes more than `limit` vertices.
 fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Option<Mesh>, String> {
     let mut cdt = Cdt::new();
     let closed = outline.loops.iter().map(|ring| (ring, true));
@@ -199,8 +199,8 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
     }
     let lone =
         outline.vertices.iter().map(|&p| insert(&mut cdt, p)).collect::<Result<Vec<_>, _>>()?;
-    // spade takes every constraint edge for a border between inside and outside. With lines inside it
-    // must refine everything; a box around keeps the outline from making sharp angles with the hull.
+    // spade takes every constraint edge for a border between inside and outside. If there are lines inside, it must refine
+    // everything; then a box around the outline keeps it from making sharp angles with the convex hull.
     let borders_only = outline.lines.is_empty();
     if !borders_only || boxed {
         for p in surrounding_box(outline) {
@@ -256,7 +256,7 @@ fn surrounding_box(outline: &Outline) -> [[f64; 2]; 4] {
     [[left, bottom], [right, bottom], [right, top], [left, top]]
 }
 
-/// The mesh without vertices of no triangle, with only those fixed that are not on the boundary.
+/// The mesh without vertices that no triangle uses. Vertices on the boundary are left out of `fixed`.
 fn compacted(mesh: Mesh) -> Mesh {
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.points.len()];

@@ -1,4 +1,4 @@
-//! Seeded meshes, and checks on meshes written independently of the library they test.
+//! Seeded meshes, and checks of meshes that are independent of the library.
 //!
 //! Each user of this module (a test, an example, a bench) is a crate of its own that needs only part of it.
 #![allow(dead_code, unreachable_pub, unused_imports)]

@@ -21,7 +21,7 @@ type Point = [f64; 2];
 /// A domain: the part of the plane that an odd number of loops encloses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// Closed polygons; the last point joins the first, which is not repeated. In any winding.
+    /// Closed polygons in either winding. The last point joins the first, which is not repeated.
     pub loops: Vec<Vec<Point>>,
     /// Open lines inside the domain, kept as edges.
     pub lines: Vec<Vec<Point>>,
@@ -86,7 +86,7 @@ impl Outline {
     /// Area of the domain, if no two loops cross.
     pub fn area(&self) -> f64 {
         let areas = self.loops.iter().enumerate().map(|(i, ring)| {
-            // A loop inside an odd number of others takes away.
+            // A loop inside an odd number of others is subtracted.
             let others = self.loops.iter().enumerate().filter(|(j, _)| *j != i);
             let depth = others.filter(|(_, other)| encloses(other, ring[0])).count();
             let area = edges(ring).map(|[p, q]| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs() / 2.0;
@@ -95,7 +95,7 @@ impl Outline {
         areas.sum()
     }
 
-    /// Whether the point is in the domain; either way where it is on a loop.
+    /// Whether the point is in the domain. For a point on a loop the answer may be either.
     pub fn contains(&self, point: Point) -> bool {
         self.loops.iter().filter(|ring| encloses(ring, point)).count() % 2 == 1
     }
@@ -126,13 +126,13 @@ fn chords(n: f64) -> Result<usize, String> {
     }
 }
 
-/// A loop or line being read. The piece from each point to the next belongs to a section: straight,
-/// or a curve that is smooth within its section.
+/// A loop or line that is being read. Each piece, from one point to the next, belongs to a section: either straight, or a
+/// curve that is smooth within its section.
 struct Path {
     closed: bool,
     points: Vec<Point>,
     section_of: Vec<usize>,
-    /// Chords of a piece of each section.
+    /// How many chords a piece of each section has.
     chords: Vec<usize>,
 }
 
@@ -171,7 +171,7 @@ impl Path {
         Ok(())
     }
 
-    /// The corners of the polygon: the points, and those between them on curves.
+    /// The points of the polygon: those given, and those sampled between them on curves.
     fn sampled(&self) -> Vec<Point> {
         let n = self.points.len();
         let pieces = if self.closed { n } else { n - 1 };
@@ -181,7 +181,7 @@ impl Path {
             let (p, q) = (self.points[i], self.points[next]);
             let mirrored =
                 |about: Point, point: Point| [2.0 * about[0] - point[0], 2.0 * about[1] - point[1]];
-            // Where the section ends, the curve goes on as if it met its own mirror image.
+            // At the end of a section, the curve goes on as if mirrored there.
             let smooth_with = |piece: usize| piece < pieces && self.section_of[piece] == section;
             let last = (i + n - 1) % n;
             let before = if smooth_with(last) { self.points[last] } else { mirrored(p, q) };
@@ -200,7 +200,7 @@ impl Path {
     }
 }
 
-/// The curve through the middle two of four points that is smooth with those of the neighbors.
+/// The point at `t` on the Catmull-Rom curve from the second to the third of four points.
 fn catmull_rom([a, b, c, d]: [Point; 4], t: f64) -> Point {
     [0, 1].map(|x| {
         let (first, second) = (c[x] - a[x], 2.0 * a[x] - 5.0 * b[x] + 4.0 * c[x] - d[x]);

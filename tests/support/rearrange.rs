@@ -3,7 +3,7 @@
 use super::rng::SplitMix64;
 use gpu_smooth::Mesh;
 
-/// Turns about half of the triangles over, and starts each at a random corner.
+/// Reverses the winding of about half of the triangles, and starts each at a random corner.
 pub fn shuffled_windings(mesh: &Mesh, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let mut shuffled = mesh.clone();
@@ -32,7 +32,7 @@ pub fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<u32>) {
     (Mesh { points, triangles, fixed }, new_index)
 }
 
-/// Scaled about the origin, then moved.
+/// The mesh scaled about the origin, then shifted.
 pub fn transformed(mesh: &Mesh, scale: f64, [dx, dy]: [f64; 2]) -> Mesh {
     let points = mesh.points.iter().map(|[x, y]| [x * scale + dx, y * scale + dy]).collect();
     Mesh { points, ..mesh.clone() }

@@ -1,4 +1,4 @@
-//! The command line of `examples/make_mesh.rs`, here so that a test can run what a mesh says made it.
+//! The command line of `examples/make_mesh.rs`, here so that a test can run the command that a mesh names as its origin.
 
 use super::{Outline, distort_smooth, perturb_random, tangle, triangle_text, triangulate};
 use gpu_smooth::Mesh;

@@ -1,6 +1,6 @@
-//! Random numbers of our own: a crate's generator may change with its version, and the meshes with it.
+//! Random numbers that never change: a crate's generator may change with its version, and the meshes with it.
 
-/// Steele, Lea and Flood's SplitMix64.
+/// The SplitMix64 generator of Steele, Lea and Flood.
 #[derive(Clone, Debug)]
 pub struct SplitMix64(u64);
 

@@ -1,4 +1,4 @@
-//! Meshes tangled in the ways that the literature on untangling tries. Boundary and fixed vertices stay.
+//! Tangles meshes in the ways of the literature on untangling. Boundary and fixed vertices stay.
 
 use super::check::{area, held};
 use super::generate::graded;
@@ -6,7 +6,7 @@ use super::rng::SplitMix64;
 use super::trig::on_circle;
 use gpu_smooth::Mesh;
 
-/// A mesh with its movers moved.
+/// The mesh with the map `to` applied to all vertices that may move.
 pub fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut moved = mesh.clone();
     for (point, held) in moved.points.iter_mut().zip(held(mesh)) {
@@ -23,21 +23,21 @@ fn bounds(mesh: &Mesh) -> [[f64; 2]; 2] {
         .map(|pick| [0, 1].map(|i| mesh.points.iter().map(|p| p[i]).reduce(pick).unwrap_or(0.0)))
 }
 
-/// All movers at random places of the bounding box.
+/// Puts all vertices that may move at random places of the bounding box.
 pub fn scattered(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let mut rng = SplitMix64::new(seed);
     moved(mesh, |_| [0, 1].map(|i| rng.range(low[i], high[i])))
 }
 
-/// All movers moved at random, up to some edge lengths along each axis.
+/// Moves all vertices that may move at random, by up to `edges` edge lengths along each axis.
 pub fn noisy(mesh: &Mesh, edges: f64, seed: u64) -> Mesh {
     let far = edges * (area(mesh) / mesh.triangles.len() as f64 * 4.0 / 3f64.sqrt()).sqrt();
     let mut rng = SplitMix64::new(seed);
     moved(mesh, |p| p.map(|x| x + rng.range(-far, far)))
 }
 
-/// All movers at one random place of the bounding box.
+/// Puts all vertices that may move at one random place of the bounding box.
 pub fn collapsed(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let mut rng = SplitMix64::new(seed);
@@ -45,7 +45,7 @@ pub fn collapsed(mesh: &Mesh, seed: u64) -> Mesh {
     moved(mesh, |_| place)
 }
 
-/// The movers of a strip across the mesh mirrored at its middle. The strip is a random half.
+/// Takes a random half of the mesh, a strip across it, and mirrors the vertices that may move there at its middle line.
 pub fn folded(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let width = high[0] - low[0];
@@ -54,7 +54,7 @@ pub fn folded(mesh: &Mesh, seed: u64) -> Mesh {
     moved(mesh, |[x, y]| [if strip.contains(&x) { 2.0 * left + width / 2.0 - x } else { x }, y])
 }
 
-/// All movers turned by a share of a full turn about the center of the bounding box.
+/// Turns all vertices that may move about the center of the bounding box, by `turn` full turns.
 pub fn turned(mesh: &Mesh, turn: f64) -> Mesh {
     let [low, high] = bounds(mesh);
     let center = [0, 1].map(|i| (low[i] + high[i]) / 2.0);
@@ -65,7 +65,7 @@ pub fn turned(mesh: &Mesh, turn: f64) -> Mesh {
     })
 }
 
-/// Rings between the unit circle and a hole, which alone is turned by a share of a full turn.
+/// Rings between the unit circle and a hole, with the vertices of the hole turned by `turn` full turns.
 pub fn turned_hole(around: usize, turn: f64) -> Mesh {
     let mut mesh = graded(around, 0.3);
     let first = mesh.points.len() - around;

@@ -1,11 +1,11 @@
-//! Sine and cosine of our own: those of the platform differ in the last bit, and the meshes with them.
+//! Sine and cosine that are the same everywhere: those of platforms differ in the last bit, and the meshes with them.
 
 use std::f64::consts::TAU;
 
 /// The point of the unit circle at a number of turns: `[cos, sin]` of `turns * 2 pi`.
 pub fn on_circle(turns: f64) -> [f64; 2] {
     let quarters = (turns * 4.0).round();
-    // At most pi / 4 either way, where the series below are exact to rounding.
+    // At most pi / 4 in size, where the series below are exact up to rounding.
     let x = (turns - quarters / 4.0) * TAU;
     let x2 = x * x;
     let (mut sin, mut cos) = (1.0, 1.0);

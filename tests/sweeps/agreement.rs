@@ -1,11 +1,10 @@
-//! The same sweeps on both engines, and the same sweeps however they are asked for.
+//! Both engines do the same sweeps, however these are grouped.
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
 use gpu_smooth::internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu};
 use gpu_smooth::{Backend, Derivatives, Metric, Sharpness, Smoother, Stop};
 
-/// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU in units of how
-/// far it went.
+/// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU, as a share of the distance it moved.
 struct OneSweep {
     f: [f64; 2],
     moved_apart: f64,
@@ -22,7 +21,7 @@ fn one_sweep(problem: &Problem, plans: [Plan; 2]) -> OneSweep {
     }
     let moves = problem.positions().iter().zip(&positions[0]).zip(&positions[1]);
     let apart = moves.map(|((was, cpu), gpu)| {
-        // Mean triangles have edges near 1.5: a thousandth of that is where moves begin to count.
+        // Edges are about 1.5 long. Moves below a thousandth count as a thousandth.
         cpu.distance(*gpu) / was.distance(*cpu).max(1e-3)
     });
     OneSweep { f, moved_apart: apart.fold(0.0, f64::max) }
@@ -39,8 +38,8 @@ fn one_sweep_is_the_same_on_both_engines() {
         for plain_sweeps in [0, 4] {
             let plan = Plan { plain_sweeps, ..plan(metric.into(), 1) };
             let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan.clone(), plan]);
-            // Single precision leaves a step right to 1e-6 of its length, times what bad shapes and the
-            // p-norm of EDGE make of that; f is a mean in which most of it cancels.
+            // In single precision a step is right to 1e-6 of its length; bad shapes and the p-norm of EDGE enlarge the error.
+            // f is a mean, in which most of it cancels.
             assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
             assert!(moved_apart < 1e-3, "{metric}: {moved_apart:e}");
         }
@@ -83,7 +82,7 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
         });
         assert_eq!((cpu.len(), gpu.len()), (13, 13));
         for (sweep, (cpu, gpu)) in cpu.iter().zip(gpu).enumerate() {
-            // One sweep is the same to 1e-7 of f; a wrong metric, relaxation or exponent is off by 1e-4.
+            // One sweep agrees to 1e-7 of f. A wrong metric, relaxation or exponent would be off by 1e-4.
             let scheme = &plan.scheme;
             assert!((gpu / cpu - 1.0).abs() < 1e-5, "{scheme}, sweep {sweep}: {gpu} for {cpu}");
         }
@@ -150,7 +149,7 @@ fn runs_are_identical_whatever_the_batch() {
             let stop = StopRule { target: None, tolerance: 1e-4, max_sweeps: 90 };
             let plan = Plan { stop, ..plan(scheme(name_of_scheme), 0) };
             let mut runs = Vec::new();
-            // The last is the same again.
+            // The batch size 50 is tried twice: the result must repeat.
             for batch in [1, 3, 50, 300, 50] {
                 let mut engine = engine(backend, &problem, plan.clone());
                 let mut log = Vec::new();
@@ -196,7 +195,7 @@ fn a_target_ends_a_run_at_the_first_sweep_below_it() {
     }
 }
 
-/// The rule stands twice: in Rust, and in `shaders/finish.wgsl` for batches that end on the device.
+/// The stop rule is written twice: in Rust, and in `shaders/finish.wgsl` for batches that end on the device.
 #[test]
 fn the_device_ends_a_run_where_the_rule_in_rust_does() {
     let problem = problem(perturbed());

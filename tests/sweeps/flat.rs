@@ -10,12 +10,12 @@ use std::task::{Context, Poll, Wake, Waker};
 use crate::{backends, history, name, run, scheme, support, with_points};
 use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Stop};
 
-/// A lattice of which some vertices lie this far from an edge opposite.
+/// A lattice in which some vertices are at this distance from an opposite edge.
 fn flattened(height: f64) -> Mesh {
     let mut mesh = support::lattice(24, 20);
     let held = support::check::held(&mesh);
     for v in (0..mesh.points.len()).filter(|v| !held[*v] && v % 37 == 5) {
-        // To the middle of the edge between the two neighbors on the right, nearly.
+        // Moves the vertex nearly to the middle of the edge between its two neighbors on the right.
         mesh.points[v][0] += 0.75 - height;
         mesh.points[v][1] += 3f64.sqrt() / 4.0;
     }
@@ -28,7 +28,7 @@ fn they_are_opened_in_double_precision() {
         let mesh = flattened(height);
         assert!(support::is_ccw(&mesh) && support::worst_imr(&mesh) > 0.1 / height);
         let smoother = Smoother::new(&mesh).unwrap();
-        // At an optimum of 1, EDGE on a device has the digits of single precision: it stays away from there by sweeps alone.
+        // Near its optimum of 1, EDGE on a device has only the digits of single precision. Sweeps alone do not get that far.
         for (scheme, method) in [
             (Metric::Imr.into(), Method::Auto),
             (Metric::Rms.into(), Method::Auto),
@@ -122,7 +122,7 @@ impl Wake for Wakes {
 
 #[test]
 fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
-    // All of these sweeps were done inside one poll.
+    // All of these sweeps were once done inside one poll.
     let mesh = flattened(1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
@@ -139,7 +139,7 @@ fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
         let before = wakes.0.load(Ordering::SeqCst);
         let polled = future.as_mut().poll(&mut Context::from_waker(&waker));
         assert!(matches!(polled, Poll::Pending), "nobody polls the device, and the run ended");
-        // What did not wake itself waits for the device.
+        // A future that did not wake itself waits for the device.
         if wakes.0.load(Ordering::SeqCst) == before {
             break;
         }

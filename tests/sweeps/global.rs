@@ -1,11 +1,11 @@
-//! Optima by other means: global methods on all free vertices at once, sharing nothing with the library.
+//! Finds optima by other means: global methods on all free vertices at once, without code of the library.
 
 use crate::support::check;
 use gpu_smooth::Mesh;
 
 /// The free vertices' coordinates, x and y in turn.
 struct Unknowns {
-    /// Place of a vertex in the vector of unknowns, if it is free.
+    /// The index of each vertex in the vector of unknowns, if it is free.
     place: Vec<Option<usize>>,
     count: usize,
 }
@@ -53,7 +53,7 @@ fn plus(y: &[f64], t: f64, x: &[f64]) -> Vec<f64> {
     y.iter().zip(x).map(|(y, x)| y + t * x).collect()
 }
 
-/// Mean of the squared RMS edge length over that of the equilateral triangle of mean area.
+/// f by RMS: the mean of the squared RMS edge length over that of the equilateral triangle of mean area.
 pub(crate) fn f_rms(mesh: &Mesh) -> f64 {
     let count = mesh.triangles.len() as f64;
     let ideal = 4.0 * (check::area(mesh) / count) / 3f64.sqrt();
@@ -64,12 +64,11 @@ pub(crate) fn f_rms(mesh: &Mesh) -> f64 {
     squares.sum::<f64>() / (3.0 * ideal * count)
 }
 
-/// The mesh of least f by RMS: each free vertex the mean of its neighbors, solved for by conjugate
-/// gradients.
+/// The mesh of least f by RMS: each free vertex is at the mean of its neighbors. Solved by conjugate gradients.
 pub(crate) fn rms_optimum(mesh: &Mesh) -> Mesh {
     let unknowns = Unknowns::of(mesh);
     let edges: Vec<[u32; 2]> = check::edge_uses(mesh).into_keys().collect();
-    // The gradient of half the sum of squared lengths, as the free coordinates are `x`.
+    // The gradient of half the sum of squared lengths by the free coordinates `x`.
     let gradient = |x: &[f64]| {
         let at = unknowns.put(mesh, x);
         let mut g = vec![0.0; unknowns.count];
@@ -99,7 +98,7 @@ pub(crate) fn rms_optimum(mesh: &Mesh) -> Mesh {
     unknowns.put(mesh, &x)
 }
 
-/// Mean of squared inverse mean ratios and its gradient; infinite if a triangle is not positive.
+/// f by IMR and its gradient; infinite if a triangle is not positive.
 fn imr_and_gradient(mesh: &Mesh, unknowns: &Unknowns) -> (f64, Vec<f64>) {
     let count = mesh.triangles.len() as f64;
     let mut f = 0.0;
@@ -128,8 +127,8 @@ fn imr_and_gradient(mesh: &Mesh, unknowns: &Unknowns) -> (f64, Vec<f64>) {
     (f, g)
 }
 
-/// The mesh of least f by IMR that descent from `mesh` leads to, by L-BFGS on all free vertices, down to
-/// a gradient whose largest entry could not change f by 1e-12 over an edge.
+/// The mesh that descent from `mesh` leads to, of least f by IMR, and that f. Uses L-BFGS on all free vertices, until the
+/// largest entry of the gradient could not change f by 1e-12 over an edge.
 pub(crate) fn imr_optimum(mesh: &Mesh) -> (f64, Mesh) {
     const MEMORY: usize = 30;
     let unknowns = Unknowns::of(mesh);
@@ -143,7 +142,7 @@ pub(crate) fn imr_optimum(mesh: &Mesh) -> (f64, Mesh) {
         if steepest * edge < 1e-12 {
             break;
         }
-        // Two loops over the memory (Nocedal 1980).
+        // The two-loop recursion of L-BFGS (Nocedal 1980).
         let mut d = g.clone();
         let mut weights = Vec::new();
         for (s, y) in pairs.iter().rev() {
@@ -164,7 +163,7 @@ pub(crate) fn imr_optimum(mesh: &Mesh) -> (f64, Mesh) {
         let (mut to, mut there) = (plus(&x, -step, &d), (f64::INFINITY, Vec::new()));
         for _ in 0..40 {
             there = evaluate(&to);
-            // Near the end f has no digits left to fall by; then the gradient decides.
+            // Near the end f falls by less than its rounding; then the gradient decides.
             if there.0 <= f + 1e-4 * step * slope + 1e-14 * f {
                 break;
             }

@@ -1,10 +1,10 @@
-//! Goals: the paper's test of convergence, on all its schemes.
+//! Goals: the paper's test of convergence, with all its schemes.
 
 use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
 use gpu_smooth::{Backend, Desired, Goal, Metric, Options, Sharpness, Smoother, Stop};
 use std::sync::OnceLock;
 
-/// The optimum of a metric on the perturbed plate, or nearly: found by over-relaxed sweeps on the CPU.
+/// The optimum of a metric on the perturbed plate, nearly: as over-relaxed sweeps on the CPU find it.
 fn desired(metric: Metric) -> f64 {
     static FOUND: OnceLock<Vec<(Metric, f64)>> = OnceLock::new();
     let found = FOUND.get_or_init(|| {
@@ -36,7 +36,7 @@ fn both_engines_reach_goals_at_the_same_sweep() {
             let label = format!("{name_of_scheme} to {fraction}");
             assert_eq!((cpu.stop, cpu.sweeps), (gpu.stop, gpu.sweeps), "{label}");
             assert_eq!(cpu.best_sweep, gpu.best_sweep, "{label}");
-            // From slivers EDGE takes some steps or leaves them by the last digits of a comparison.
+            // Near slivers, the last digits of a comparison decide whether EDGE takes a step.
             let bound = if base == Metric::Edge { 1e-4 } else { 1e-6 };
             assert!((f_gpu / f_cpu - 1.0).abs() < bound, "{label}: {f_gpu} for {f_cpu}");
         }
@@ -59,11 +59,11 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");
             let history = history(&outcome, base);
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
-            // Of a scheme of one metric the last state is the best, but for a device's rounding.
+            // In a scheme of one metric the last state is the best, but for the rounding of a device.
             let returned = history[outcome.best_sweep as usize];
             assert!(returned <= best * (1.0 + 1e-9), "{label}: {returned} for {best}");
             let f = smoother.quality(&outcome.points).unwrap().f(base);
-            // The device sums what single precision makes of each triangle.
+            // The device sums terms that it evaluates in single precision.
             let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };
             let rounding = digits * (best - base.ideal_squared());
             assert!((f - best).abs() <= rounding + 1e-14, "{label}: {f} returned, {best} seen");

@@ -1,10 +1,10 @@
-//! The guard of the worst element, on both engines.
+//! The guard of the worst element, `--guard worst`, on both engines.
 
 use crate::support::{self, check};
 use crate::{backends, history, name, run, with_points};
 use gpu_smooth::{Guard, Metric, Options, Smoother, Stop};
 
-/// Sizes fall to a point, and vertices are a little out of place: even sizes could be had for bad shapes.
+/// A mesh graded to a point and slightly perturbed: even sizes could be had at the cost of bad shapes.
 #[test]
 fn the_worst_element_does_not_get_worse_by_any_metric() {
     let mesh = support::perturb_random(&support::graded(12, 0.1), 0.2, 4);
@@ -36,6 +36,6 @@ fn the_worst_element_does_not_get_worse_by_any_metric() {
             }
         }
     }
-    // Without the guard it does.
+    // Without the guard, the worst element gets worse.
     assert!(risen >= 2, "{risen}");
 }

@@ -1,16 +1,16 @@
-//! Legal meshes at the limits of double precision, each a case that once went wrong.
+//! Valid meshes at the limits of double precision. Each is a case that once failed.
 
 use crate::{backends, history, name, plate, run, support, with_points};
 use gpu_smooth::{Mesh, MeshError, Metric, Options, SmoothError, Smoother, Stop};
 use std::f64::consts::TAU;
 
-/// One vertex in a triangle of three.
+/// A triangle of three vertices around a free one.
 fn star_of_three(points: [[f64; 2]; 4]) -> Mesh {
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
     Mesh { points: points.to_vec(), triangles, fixed: vec![] }
 }
 
-/// A fan of `around` triangles on the unit circle about a vertex out of its center, winding `turns` times.
+/// A fan of `around` triangles on the unit circle, which winds `turns` times. The vertex in its middle is off the center.
 fn fan(around: u32, turns: u32) -> Mesh {
     let on_circle = |k: u32| {
         let (y, x) = (TAU * f64::from(k * turns) / f64::from(around)).sin_cos();
@@ -21,8 +21,8 @@ fn fan(around: u32, turns: u32) -> Mesh {
     Mesh { points, triangles, fixed: vec![] }
 }
 
-/// A square halved `times` times toward its corner `at`, into three quadrilaterals with a vertex inside each time. All
-/// coordinates are exact if `at` is a multiple of the least size.
+/// A square that is halved `times` times toward its corner `at`. Each halving leaves three quadrilaterals, with a vertex
+/// inside them. All coordinates are exact if `at` is a multiple of the smallest size.
 fn halved(times: i32, at: [f64; 2]) -> Mesh {
     let mut mesh = Mesh::default();
     let mut corner = |size: f64, x: f64, y: f64| {
@@ -32,7 +32,7 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
     let shells: Vec<[u32; 4]> = (0..=times)
         .map(|k| {
             let size = (-f64::from(k)).exp2();
-            // The last is moved off the middle, so that there is something to gain.
+            // The vertex inside is moved off the middle, so that there is something to gain.
             [
                 corner(size, 1.0, 0.0),
                 corner(size, 1.0, 1.0),
@@ -45,7 +45,7 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
     for pair in shells.windows(2) {
         let ([a, b, c, _], [d, e, f, _]) = (pair[0], pair[1]);
         let inside = pair[0][3];
-        // The six corners between two shells, around the vertex between their diagonal corners.
+        // The six corners between two squares, around the vertex inside.
         for [from, to] in [[a, b], [b, c], [c, f], [f, e], [e, d], [d, a]] {
             mesh.triangles.push([from, to, inside]);
         }
@@ -58,9 +58,9 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
 #[test]
 fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
     let stars = [
-        // The sum of the rounded areas is not positive: the scale was NaN, and so was the output.
+        // The sum of the rounded areas is not positive. This once made the scale NaN, and all points with it.
         [[0.3, 0.030000000000000006], [-1.0, -0.1], [-0.9, -0.09000000000000001], [-0.2, -0.02]],
-        // The sum of the rounded areas has the wrong sign: all triangles were called inverted.
+        // The sum of the rounded areas has the wrong sign. All triangles were once called inverted.
         [
             [0.4, 0.4000000000000001],
             [-0.8, -0.8000000000000002],
@@ -83,7 +83,7 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
                         let after = with_points(&mesh, &outcome.points);
                         assert!(support::is_ccw(&after), "{label}");
                     }
-                    // By these the objective is not a number where an area is rounded to zero.
+                    // Metrics with a barrier have no finite objective if an area is rounded to zero.
                     Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {
                         assert!(metric.properties().barrier, "{label}");
                     }
@@ -112,7 +112,7 @@ fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
 
 #[test]
 fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
-    // At the corner of the box, 60 halvings are exact. Elsewhere coordinates have 52 bits, and 38 halvings leave some.
+    // At the origin, 60 halvings are exact. Elsewhere coordinates have 52 bits; after 38 halvings some are left.
     for (times, at) in [(60, [0.0, 0.0]), (38, [0.75, 0.25]), (44, [-1.0, 3.0])] {
         let mesh = halved(times, at);
         assert!(support::is_ccw(&mesh), "{times} halvings toward {at:?}");
@@ -126,7 +126,7 @@ fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
             assert!((f[0] / before - 1.0).abs() < 1e-7, "{label}: {} for {before}", f[0]);
             let after = smoother.quality(&outcome.points).unwrap().f(Metric::Imr);
             let least = f.iter().copied().fold(f64::INFINITY, f64::min);
-            // Positions are rounded to 2^-52 of 1, and smallest edges are of 2^-44 at most where that matters.
+            // Positions are rounded to 2^-52 of 1. Where that matters, the smallest edges are 2^-44 at most.
             assert!((after / least - 1.0).abs() < 1e-4, "{label}: {after} for {least}");
             assert!(after < 0.95 * before, "{label}: {after} from {before}");
             assert_eq!(outcome.stop, Stop::Converged, "{label}, {} sweeps", outcome.sweeps);
@@ -136,7 +136,7 @@ fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
 
 #[test]
 fn a_run_with_one_free_vertex_ends_soon_and_both_engines_say_so_in_one_word() {
-    // On a device f jitters in its last digits. Runs with corrections went on to the last sweep.
+    // On a device the last digits of f vary from sweep to sweep. Runs with corrections once went on to the last sweep.
     let mesh = fan(12, 1);
     let smoother = Smoother::new(&mesh).unwrap();
     for metric in
@@ -162,14 +162,14 @@ fn a_star_that_winds_twice_is_refused() {
 
 #[test]
 fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
-    // Products of its coordinates are below the least number.
+    // Products of its coordinates underflow.
     let s = 1e-165;
     let points = vec![[0.0, 0.0], [3.0 * s, 0.0], [0.0, 3.0 * s], [s, s], [1.0, 0.0]];
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 4, 2]];
     let mesh = Mesh { points, triangles, fixed: vec![] };
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
-        // Its quality cannot be computed beside a triangle of size 1.
+        // Beside a triangle of size 1, its quality cannot be computed.
         let run = smoother.run(&Options::default(), backend);
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
@@ -179,8 +179,8 @@ fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
 
 #[test]
 fn what_the_shape_guard_ends_is_not_called_converged() {
-    // Evening out areas that differ a millionfold flattens triangles up to the guard. There f does not decay geometrically,
-    // and what was left to gain was estimated at a thousandth of what it was.
+    // Areas differ a millionfold, and evening them out flattens triangles up to the guard. f then does not decay
+    // geometrically. What was left to gain was once estimated at a thousandth of the truth.
     let mut mesh = support::perturb_random(&plate(700), 0.2, 3);
     mesh.points.iter_mut().for_each(|p| {
         let r = p[0].hypot(p[1]).max(1e-3);

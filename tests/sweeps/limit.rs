@@ -1,4 +1,4 @@
-//! A bound on how far vertices move, on both engines.
+//! `max_move`, a bound on how far vertices move, on both engines.
 
 use std::collections::BTreeSet;
 
@@ -38,7 +38,7 @@ fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
     assert!((least / free - 1.0).abs() < 1e-5, "{least} {free}");
 }
 
-/// At the end no vertex by itself can lower the objective by more than little within its bound.
+/// At the end no single vertex can lower the objective much without leaving its bound.
 #[test]
 fn the_end_of_a_bounded_run_is_an_optimum() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -113,7 +113,7 @@ fn vertices_that_slide_have_a_bound_as_well() {
         let label = format!("{most} on the {}", name(backend));
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         assert!(most < 0.2 || f < 0.99 * still, "{label}: {f} {still}");
-        // How far vertices of the boundary went, as a share of what they may.
+        // The distance that a vertex moved, as a share of its bound.
         let share = |v: u32| {
             let ([x, y], [a, b]) = (mesh.points[v as usize], outcome.points[v as usize]);
             (x - a).hypot(y - b) / (most * mean_edge(&mesh, v))
@@ -125,7 +125,7 @@ fn vertices_that_slide_have_a_bound_as_well() {
         assert!(at_bound > 5, "{label}: {at_bound}");
         assert!(outcome.slid.unwrap().moved > at_bound, "{label}");
     }
-    // A bound beyond all moves changes nothing to speak of.
+    // A bound that no vertex reaches does not change the end.
     let (_, far) = ends(&smoother, 50.0, &Backend::Cpu);
     let free = history(&run(&smoother, &Options::default(), &Backend::Cpu), Metric::Imr);
     assert!((far / free[free.len() - 1] - 1.0).abs() < 1e-5, "{far} {free:?}");

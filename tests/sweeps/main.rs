@@ -1,5 +1,4 @@
-//! Whole sweeps and runs of both engines: where they end, what they must not depend on, and what they
-//! must never do.
+//! Sweeps and runs on both engines: where they end, what they must not depend on, and what they must never do.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -59,7 +58,7 @@ fn all_schemes() -> Vec<Scheme> {
     alone.chain(SCHEMES.map(scheme)).collect()
 }
 
-/// The CPU and the GPU. Without an adapter these tests fail: they have nothing to say about the GPU.
+/// The CPU and the GPU. Panics without an adapter, as the tests would then say nothing about the GPU.
 fn backends() -> &'static [Backend; 2] {
     static BACKENDS: OnceLock<[Backend; 2]> = OnceLock::new();
     BACKENDS.get_or_init(|| {
@@ -80,13 +79,13 @@ fn plate(vertices: usize) -> Mesh {
     support::triangulate(&outline, vertices).unwrap()
 }
 
-/// Two thousand vertices, a few of their triangles nearly flat.
+/// A plate of two thousand vertices, with a few triangles that are nearly flat.
 fn perturbed() -> &'static Mesh {
     static MESH: OnceLock<Mesh> = OnceLock::new();
     MESH.get_or_init(|| support::perturb_random(&plate(2000), 1.0, 1))
 }
 
-/// The same, displaced by long waves: what takes a local method the most sweeps.
+/// A plate of two thousand vertices, displaced by long waves: a local method takes the most sweeps for these.
 fn distorted() -> &'static Mesh {
     static MESH: OnceLock<Mesh> = OnceLock::new();
     MESH.get_or_init(|| support::distort_smooth(&plate(2000), 0.9))
@@ -100,7 +99,7 @@ fn with_points(mesh: &Mesh, points: &[[f64; 2]]) -> Mesh {
     Mesh { points: points.to_vec(), ..mesh.clone() }
 }
 
-/// The base objective before the first sweep and after each.
+/// The objective by `metric` before the first sweep and after each.
 fn history(outcome: &Outcome, metric: Metric) -> Vec<f64> {
     outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
 }
@@ -110,7 +109,7 @@ fn problem(mesh: &Mesh) -> Problem {
     Problem::new(mesh, &topology, &Coloring::new(&topology))
 }
 
-/// A run of `sweeps` that nothing ends before.
+/// A plan of `sweeps` sweeps without a stop before.
 fn plan(scheme: Scheme, sweeps: u32) -> Plan {
     Plan {
         scheme,

@@ -1,11 +1,11 @@
-//! Numbers that are not finite: none goes unseen, whatever brought it in.
+//! Numbers that are not finite: each shows in f, wherever it is.
 
 use gpu_smooth::internal::{Stepwise, run_on_cpu, run_on_gpu};
 use gpu_smooth::{Backend, Metric};
 
 use super::{backends, name, plan, plate, problem};
 
-/// f of positions of which one is no number, by each metric on each engine.
+/// Evaluates f of positions with one coordinate that is NaN or infinite, by each metric on each engine.
 #[test]
 fn a_position_that_is_no_number_shows_in_f() {
     let mesh = plate(300);

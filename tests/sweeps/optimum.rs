@@ -1,4 +1,4 @@
-//! Where runs end: at optima known beforehand or found by other means.
+//! Where runs end: at optima that are known beforehand or found by other means.
 
 use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
@@ -48,7 +48,7 @@ fn imr_ends_at_the_optimum_of_a_global_method() {
             let f = support::f_imr(&after);
             assert!(f / best - 1.0 < 1e-6, "on the {}: {:e}", name(backend), f / best - 1.0);
         }
-        // Descent from where the run ended finds no more either.
+        // A global descent from where the run ended finds nothing lower.
         let outcome = run(&smoother, &Options::default(), &backends()[1]);
         let (further, _) = global::imr_optimum(&with_points(mesh, &outcome.points));
         assert!((further / best - 1.0).abs() < 1e-9, "{further} {best}");
@@ -69,7 +69,7 @@ fn edge_ends_at_the_best_known() {
     let f = |outcome: &gpu_smooth::Outcome| {
         history(outcome, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min)
     };
-    // The best of some hundreds of sweeps alone; thousands more gain another 3e-5.
+    // The best of some hundreds of sweeps alone. Thousands more would gain another 3e-5.
     let alone = |sharpness| edge(Method::Sweeps, Some(sharpness));
     let continued = Options { max_sweeps: 700, ..alone(Sharpness::CONTINUED) };
     let best = [&smoother, &after_imr].map(|s| f(&run(s, &continued, &backends()[0])));

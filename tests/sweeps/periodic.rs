@@ -1,4 +1,4 @@
-//! Vertices of periodic pairs, which slide together on both engines.
+//! Periodic pairs of vertices, which slide together on both engines.
 
 use crate::support::{SplitMix64, check, trig};
 use crate::{backends, name, run};
@@ -14,8 +14,8 @@ fn at(row: u32, column: u32) -> u32 {
     row * (COLUMNS + 1) + column
 }
 
-/// A lattice of fields of two triangles each, brought to its place by `to` from coordinates 0 to 1. Vertices are off their places, on the
-/// first and the last column by as much along them, and on the first and the last row too.
+/// A lattice of fields of two triangles each, mapped by `to` from the unit square. Its vertices are perturbed. Those of the
+/// first and the last column are moved along these alike, and so are those of the first and the last row.
 fn lattice(to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut random = SplitMix64::new(11);
     let mut places = vec![[0.0; 2]; at(ROWS, COLUMNS) as usize + 1];
@@ -50,7 +50,7 @@ fn ends() -> Vec<[u32; 2]> {
     (0..=COLUMNS).map(|column| [at(0, column), at(ROWS, column)]).collect()
 }
 
-/// A part of a ring between two sides that bend in and out, of which a turn by a ninth takes one to the other.
+/// Maps the unit square to a part of a ring with bent sides. A ninth of a turn takes one side to the other.
 fn sector([u, v]: [f64; 2]) -> [f64; 2] {
     let bend = 0.008 * trig::on_circle(0.8 * v)[1];
     trig::on_circle(u / 9.0 + bend).map(|x| (1.0 + 0.6 * v) * x)
@@ -72,7 +72,7 @@ fn periodic(pairs: Vec<[u32; 2]>) -> Slide {
     Slide { periodic, ..Slide::default() }
 }
 
-/// How far the second of each pair is from where a motion takes the first, at most.
+/// The largest distance between the second of a pair and the place where the motion takes the first.
 fn apart(points: &[[f64; 2]], pairs: &[[u32; 2]], [x, y]: Motion) -> f64 {
     let off = |&[a, b]: &[u32; 2]| {
         let [from, to] = [a, b].map(|v| points[v as usize]);
@@ -111,13 +111,13 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
         let astray =
             |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
         assert!(astray(&outcome.points).is_empty(), "{label}");
-        // One of a pair that has gone on alone, and one that has gone back.
+        // One vertex of a pair has moved on alone; then one has moved back alone.
         let mut spoiled = outcome.points.clone();
         spoiled[at(2, 0) as usize][1] += 1e-4;
         assert_eq!(astray(&spoiled), [at(2, 0), at(2, COLUMNS)], "{label}");
         spoiled[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
         assert_eq!(astray(&spoiled), [at(2, COLUMNS)], "{label}");
-        // Set back, one takes its partner with it.
+        // If one vertex of a pair is sent back, its partner goes back with it.
         let mut points = outcome.points.clone();
         points[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
         smoother.certify(&mut points).unwrap();
@@ -125,7 +125,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
     }
 }
 
-/// A minimum along both sides at once is one of the sum of f over both: away from it along the sides, in whichever direction, f rises.
+/// At a minimum over both sides, the sum of f over both patches is least: if the pair moves along the sides, f rises.
 #[test]
 fn a_pair_rests_where_both_patches_together_are_best() {
     let mesh = lattice(|[u, v]| [2.0 * u, v]);
@@ -148,7 +148,7 @@ fn partners_of_a_rotation_slide_together_along_curved_sides() {
     let mesh = lattice(sector);
     let topology = Topology::new(&mesh).unwrap();
     let inner = ROWS as usize - 1;
-    // As pairs, by the motion that takes one to the other, and as two sides.
+    // Pairs may be given by the motion between them, or as two sides.
     let mut by_motion = Slide::default();
     assert_eq!(by_motion.pair_by(&topology, &mesh.points, turn()), inner + 2);
     let mut by_sides = Slide::default();
@@ -229,10 +229,10 @@ fn pairs_that_are_not_alike_stay_and_nonsense_is_told() {
     let mut mesh = lattice(|[u, v]| [2.0 * u, v]);
     mesh.points[at(3, COLUMNS) as usize][1] += 0.01;
     let (smoother, count) = sliding(&mesh, &periodic(sides()));
-    // It, and its neighbors, whose curves are not alike.
+    // The moved pair stays, and so do its neighbors, as the curves through it differ.
     assert_eq!(count, 2 * (inner[0] - 3 + inner[1]));
     assert_eq!(smoother.pairs(), [inner[0] - 3, 1]);
-    // A chain of which each is the partner of the next, and a vertex that is its own.
+    // A chain of vertices in which each is paired with the next, and a vertex paired with itself.
     let row: Vec<[u32; 2]> = (1..COLUMNS - 1).map(|c| [at(0, c), at(0, c + 1)]).collect();
     let own = vec![[at(2, 0); 2]];
     for (pairs, still) in [(row, inner[1]), (own, 1)] {
@@ -255,8 +255,8 @@ fn pairs_that_are_not_alike_stay_and_nonsense_is_told() {
     assert_eq!(slide, Slide::default());
 }
 
-/// A strip that is two fields wide up to the third row and one above: a triangle there has both vertices of a pair, so that a move of both
-/// is not one of either by itself.
+/// A strip that is two fields wide up to the third row, and one field wide above. There a triangle has both vertices of a
+/// pair, so the effect of moving both is not the sum of moving each.
 #[test]
 fn partners_of_one_triangle_stay() {
     let row =
@@ -274,7 +274,7 @@ fn partners_of_one_triangle_stay() {
     let mut slide = Slide::default();
     assert_eq!(slide.pair_by(&topology, &mesh.points, translation(1.0, 0.0)), 6);
     let (smoother, count) = sliding(&mesh, &slide);
-    // Two pairs, and one vertex of the lower end.
+    // Two pairs slide, and one vertex of the lower end.
     assert_eq!((count, smoother.pairs()), (5, [2, 0]));
     run(&smoother, &Options::default(), &Backend::Cpu);
 }

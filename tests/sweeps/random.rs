@@ -1,10 +1,11 @@
-//! Random planar meshes of all kinds through both engines, with random options: what must hold for every one of them.
+//! Random planar meshes of many kinds and random options, on both engines: what must hold for each of them.
 //!
-//! `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few, `GPU_SMOOTH_RANDOM_SEED=K` the meshes from K on,
-//! `GPU_SMOOTH_RANDOM_VERTICES=V` lets each part of a mesh have up to V vertices. A failure names the seed of its mesh.
+//! - `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few.
+//! - `GPU_SMOOTH_RANDOM_SEED=K` takes the meshes from seed K on.
+//! - `GPU_SMOOTH_RANDOM_VERTICES=V` lets each part of a mesh have up to V vertices.
 //!
-//! Meshes come from seeds, not from a library that shrinks what fails (proptest): a mesh with a triangle, a point or a map less is
-//! most often another mesh that does not fail, and most of these are small.
+//! A failure names the seed of its mesh. No library shrinks a mesh that fails (as proptest would): a mesh with one triangle,
+//! point or map less mostly does not fail, and most meshes are small anyway.
 
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
@@ -14,17 +15,18 @@ use gpu_smooth::{
 };
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-/// A number from 10^low to 10^high, each decade equally likely.
+/// A random number from 10^low to 10^high, uniform in its logarithm.
 fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {
     10f64.powf(rng.range(low, high))
 }
 
-/// How many vertices a part of a mesh may have.
+/// The most vertices of a part of a mesh.
 fn most_vertices() -> usize {
     setting("GPU_SMOOTH_RANDOM_VERTICES", 65) as usize
 }
 
-/// A Delaunay mesh of random points, in a square, a disk, or in clusters: from one vertex on, few as often as many.
+/// A Delaunay mesh of random points in a square, in a disk, or in clusters. It has one vertex or more; few are as likely as
+/// many.
 fn scattered(rng: &mut SplitMix64) -> Mesh {
     let most = most_vertices() as f64;
     let count = decades(rng, 0.0, most.log10()).ceil() as usize;
@@ -49,7 +51,7 @@ fn scattered(rng: &mut SplitMix64) -> Mesh {
     }
 }
 
-/// A hub: triangles between one vertex and up to a hundred around it, in one or several rings.
+/// A mesh of triangles between one vertex and up to a hundred around it, in one ring or several.
 fn hub(rng: &mut SplitMix64) -> Mesh {
     let around = 3 + rng.below(100) as u32;
     let rings = 1 + rng.below(3) as u32;
@@ -91,7 +93,7 @@ fn plain(rng: &mut SplitMix64) -> Mesh {
     }
 }
 
-/// Two meshes as one of two components, the second to the right of the first.
+/// Joins two meshes as two components, the second to the right of the first.
 fn beside(mut left: Mesh, right: &Mesh) -> Mesh {
     let end = |mesh: &Mesh, sign: f64| {
         mesh.points.iter().fold(f64::NEG_INFINITY, |end, point| end.max(sign * point[0]))
@@ -102,13 +104,13 @@ fn beside(mut left: Mesh, right: &Mesh) -> Mesh {
     left
 }
 
-/// Applies a map to all points, unless it inverts a triangle.
+/// Applies a map to all points; leaves the mesh as it is if that inverts a triangle.
 fn mapped(mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     let after = with_points(&mesh, &mesh.points.iter().map(|&p| map(p)).collect::<Vec<_>>());
     if support::is_ccw(&after) { after } else { mesh }
 }
 
-/// A random planar mesh: all triangles are counter-clockwise.
+/// A random planar mesh, with all triangles counterclockwise.
 fn random_mesh(rng: &mut SplitMix64) -> Mesh {
     let mut mesh = plain(rng);
     if rng.below(5) == 0 {
@@ -120,7 +122,7 @@ fn random_mesh(rng: &mut SplitMix64) -> Mesh {
     if rng.below(2) == 0 {
         mesh = support::perturb_random(&mesh, rng.range(0.2, 1.0), rng.next_u64());
     }
-    // Slivers: a vertex moved almost onto the opposite edge.
+    // Makes slivers: moves a vertex almost onto the opposite edge.
     if rng.below(3) == 0 {
         let held = support::check::held(&mesh);
         let [t, corner] = [rng.below(mesh.triangles.len()), rng.below(3)];
@@ -138,7 +140,7 @@ fn random_mesh(rng: &mut SplitMix64) -> Mesh {
             }
         }
     }
-    // Graded toward a random point, stretched, turned, scaled, moved far away.
+    // Grades the mesh toward a random point, stretches, turns, scales and shifts it.
     if rng.below(3) == 0 {
         let power = rng.range(1.0, 12.0);
         let about = [rng.range(-1.0, 1.0), rng.range(-1.0, 1.0)];
@@ -164,7 +166,7 @@ fn random_mesh(rng: &mut SplitMix64) -> Mesh {
         let scale = decades(rng, -80.0, 80.0);
         mesh = mapped(mesh, |[x, y]| [x * scale, y * scale]);
     }
-    // Holes, fixed vertices, vertices of no triangle.
+    // Adds holes, fixed vertices, and vertices that no triangle uses.
     if rng.below(3) == 0 {
         let keep = rng.range(0.7, 1.0);
         mesh.triangles.retain(|_| rng.unit() < keep);
@@ -203,8 +205,8 @@ fn random_options(rng: &mut SplitMix64) -> Options {
     options
 }
 
-/// The length of the shortest edge in units of the rounding of the largest coordinate in single precision, which options may
-/// ask for.
+/// The length of the shortest edge, over the rounding of the largest coordinate in single precision. Options may ask for
+/// results in that precision.
 fn digits(mesh: &Mesh) -> f64 {
     let size = mesh.points.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
     let edges = mesh.triangles.iter().flat_map(|&t| support::check::edges(t));
@@ -214,7 +216,7 @@ fn digits(mesh: &Mesh) -> f64 {
     edges.map(squared).fold(f64::INFINITY, f64::min).sqrt() / (size * f64::from(f32::EPSILON))
 }
 
-/// What must hold for every outcome.
+/// Checks what must hold for every outcome. `near` is the relative error that f may have on this engine.
 fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outcome, near: f64) {
     let base = options.scheme.base();
     let after = with_points(mesh, &outcome.points);
@@ -235,7 +237,7 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
     assert_eq!(history.len() as u32, outcome.sweeps + 1);
     assert!(outcome.sweeps <= options.max_sweeps);
     assert!(history.iter().all(|f| f.is_finite()), "{history:?}");
-    // By area f may be 0.
+    // f by AREA may be 0, so small values are compared absolutely.
     assert!(
         (history[0] - before).abs() <= near * before.max(1e-3),
         "f begins at {} for {before}",
@@ -271,7 +273,7 @@ fn setting(name: &str, default: u64) -> u64 {
     }
 }
 
-/// Smooths the meshes of these seeds on each engine and checks what must hold. Returns how many runs there were.
+/// Smooths the meshes of these seeds on each engine, and checks the outcomes. Returns the number of runs.
 fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
     let mut smoothed = 0;
     for seed in seeds {
@@ -292,7 +294,7 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
             Err(error) => panic!("seed {seed}: {error}"),
         };
         for backend in backends() {
-            // A device rounds positions to 1e-4 of the height of a triangle at worst, and areas of flat triangles.
+            // On a device, positions are rounded to 1e-4 of the height of a triangle at worst, and areas of flat triangles too.
             let flat = 1e-6 * smoother.quality(&mesh.points).unwrap().worst_imr;
             let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 + flat };
             let label = format!("seed {seed} on the {}, {options:?}", name(backend));
@@ -326,7 +328,7 @@ fn every_mesh_comes_back_finite_feasible_and_no_worse() {
     assert!(smoothed > count, "only {smoothed} runs of {count} meshes");
 }
 
-/// By `area`, f that was 0 but for rounding came back as 1.7e-30 from 1.3e-30.
+/// f by AREA, which was 0 but for rounding, once rose from 1.3e-30 to 1.7e-30.
 #[test]
 fn what_rounding_alone_makes_of_f_is_no_gain() {
     assert!(smooth_all(10211..10212) > 0);

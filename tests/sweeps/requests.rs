@@ -1,4 +1,4 @@
-//! What a caller may ask for, and the errors for requests that make no sense.
+//! Options that a caller may set, and the errors for those that make no sense.
 
 use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
 use gpu_smooth::{
@@ -30,8 +30,8 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
             assert_eq!(history.last(), Some(&f));
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
             let after = with_points(mesh, &outcome.points);
-            // A device evaluates f in single precision. The first sweeps leave flat triangles, whose areas have fewer digits,
-            // and how many sweeps are done by then depends on the machine.
+            // A device evaluates f in single precision. After the first sweeps there are still flat triangles, whose areas have
+            // fewer digits. The number of sweeps done by then depends on the machine.
             let near = match (backend, outcome.sweeps) {
                 (Backend::Cpu, _) => 1e-9,
                 (Backend::Gpu(_), 0..4) => 2e-6,
@@ -45,7 +45,7 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
 
 #[test]
 fn a_run_cancelled_while_the_optimum_is_sought_returns_the_start() {
-    // The f of the sweeps until then was taken for the optimum, and the run was "reached".
+    // The best f until then was once taken for the optimum, and the run was "reached".
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
     let goal = Some(Goal { fraction: 0.95, desired: Desired::Auto });
@@ -79,7 +79,7 @@ fn options_out_of_range_are_named() {
         ("omega", Options { omega: Some(2.0), ..default() }),
         ("omega", Options { omega: Some(f64::NAN), ..default() }),
         ("inner", Options { inner: 0, ..default() }),
-        // No observer can end so long a sweep.
+        // So long a sweep could not be cancelled in time.
         ("inner", Options { inner: Options::MOST_INNER + 1, ..default() }),
         ("sharpness", Options { sharpness: sharpness(14, 4), ..default() }),
         ("sharpness", Options { sharpness: sharpness(1, 14), ..default() }),
@@ -103,7 +103,7 @@ fn options_out_of_range_are_named() {
             }
         }
     }
-    // The ends of the ranges are in them.
+    // The ends of the ranges are allowed.
     let edge = Options {
         omega: Some(1.99),
         sharpness: sharpness(0, 10),
@@ -141,7 +141,7 @@ fn every_metric_is_tracked_on_request() {
     for sweep in 0..=6 {
         for &metric in Metric::ALL {
             let [cpu, gpu] = outcomes.each_ref().map(|o| o.history[sweep].of(metric).unwrap());
-            // What single precision makes of triangles a thousand times longer than high.
+            // In single precision, triangles a thousand times longer than high have such errors.
             assert!((gpu / cpu - 1.0).abs() < 1e-4, "{metric}, sweep {sweep}: {gpu} for {cpu}");
         }
     }
@@ -158,7 +158,7 @@ fn an_adapter_of_no_such_name_is_told_with_those_there_are() {
     assert!(matches!(error, GpuError::NoAdapter { .. }));
     let text = error.to_string();
     assert!(text.contains("'no such adapter'") && text.contains(there.as_str()), "{text}");
-    // Part of a name will do, in any case.
+    // A part of the name is enough, in capital or small letters.
     let part = there[..there.len() / 2].to_uppercase();
     assert!(Gpu::open(Some(&part)).is_ok(), "{part}");
 }

@@ -1,4 +1,4 @@
-//! Runs that are left between two sweeps and go on later.
+//! Runs that are left between two sweeps and continued later.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use gpu_smooth::{
 
 use super::{all_schemes, backends, name, perturbed, plate, support, with_points};
 
-/// Takes a checkpoint whenever it can.
+/// A keeper that takes every checkpoint it can.
 #[derive(Default)]
 struct All(Vec<Checkpoint>);
 
@@ -35,7 +35,7 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
         outcome.points.iter().map(|point| point.map(f64::to_bits)).collect()
     };
     assert!(bits(a) == bits(b), "{what}: other positions");
-    // Values that were not evaluated are no numbers.
+    // Compared as text, as values that were not evaluated are NaN.
     assert_eq!(format!("{:?}", a.history), format!("{:?}", b.history), "{what}");
     let told = |o: &Outcome| (o.stop, o.sweeps, o.corrections, o.best_sweep, o.remaining, o.lost);
     assert_eq!(told(a), told(b), "{what}");
@@ -45,7 +45,7 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
     assert_eq!(more(a), more(b), "{what}");
 }
 
-/// Leaves a run after each of some sweeps, and goes on to the same end.
+/// Continues a run from every `every`th checkpoint: each time it must end with the same bits.
 fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
     let whole = smoother.run(options, backend).unwrap();
     let mut all = All::default();
@@ -80,7 +80,8 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
     }
 }
 
-/// Hard meshes: sweeps that open flat triangles for a device, corrections accelerated by secant pairs, levels fitted again.
+/// A hard mesh: sweeps on the CPU open flat triangles for the device, secant pairs accelerate corrections, and levels are
+/// fitted again.
 #[test]
 fn a_hard_run_goes_on_to_the_same_bits() {
     let stretched = |mesh: &Mesh| -> Vec<[f64; 2]> {
@@ -95,7 +96,7 @@ fn a_hard_run_goes_on_to_the_same_bits() {
             let mut all = All::default();
             let kept = smoother.run_kept(&options, backend, None, &mut all, &mut go_on).unwrap();
             assert!(kept.corrections > 2, "{} corrections", kept.corrections);
-            // Secant pairs take as much again as the rest.
+            // Secant pairs make a checkpoint twice as large.
             let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
             let per_vertex = sizes.iter().max().unwrap() / mesh.points.len();
             assert!(
@@ -158,7 +159,7 @@ fn a_run_that_was_cancelled_goes_on() {
     assert_same(&whole, &end, "cancelled");
 }
 
-/// A run left on a GPU goes on on the CPU, and one left on the CPU goes on there whatever the backend.
+/// A run left on a GPU can go on on the CPU. One left on the CPU goes on there, whatever the backend.
 #[test]
 fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
@@ -208,7 +209,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     assert!(error.contains("of another mesh"), "{error}");
 }
 
-/// The moments at which positions are kept in memory change nothing.
+/// When positions are kept in memory, and how often, does not change the result.
 #[test]
 fn keeping_positions_changes_no_bit() {
     struct Often;

@@ -1,9 +1,9 @@
-//! What a run must never do: invert a triangle, move what is held, or leave a sliver behind.
+//! What a run must never do: invert a triangle, move a fixed vertex, or leave a sliver.
 
 use crate::{all_schemes, backends, name, perturbed, plate, run, support, with_points};
 use gpu_smooth::{Mesh, Metric, Options, Smoother};
 
-/// Strongly perturbed, with some interior vertices fixed and some that no triangle uses.
+/// A strongly perturbed plate with some fixed vertices inside, and some vertices that no triangle uses.
 fn held() -> Mesh {
     let mut mesh = plate(700);
     let interior: Vec<u32> = support::check::held(&mesh)
@@ -49,7 +49,7 @@ fn no_scheme_inverts_a_triangle_or_moves_what_is_held() {
 
 #[test]
 fn metrics_without_a_barrier_leave_no_slivers() {
-    // Mildly disturbed there is none above the guard; strongly, some are far above, and must go.
+    // In the mild mesh no triangle is above the guard. In the strongly perturbed one some are far above, and must go.
     let mild = support::perturb_random(&plate(2000), 0.5, 3);
     assert!(support::worst_imr(&mild) < 30.0 && support::worst_imr(perturbed()) > 100.0);
     for mesh in [&mild, perturbed()] {
@@ -61,7 +61,7 @@ fn metrics_without_a_barrier_leave_no_slivers() {
                     Options { scheme: metric.into(), max_sweeps: 150, ..Options::default() };
                 let outcome = run(&smoother, &options, backend);
                 let worst = support::worst_imr(&with_points(mesh, &outcome.points));
-                // Rounding in single precision is all it may be exceeded by.
+                // The guard may be exceeded only by the rounding of single precision.
                 assert!(
                     worst <= guard * (1.0 + 1e-4),
                     "{metric} on the {}: {worst}",
@@ -74,8 +74,8 @@ fn metrics_without_a_barrier_leave_no_slivers() {
 
 #[test]
 fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
-    // Graded by a power: sizes differ a thousandfold, shapes are good. Evening out lengths and areas would
-    // flatten triangles up to any fixed guard.
+    // Sizes differ a thousandfold, and shapes are good. Evening out lengths and areas would flatten triangles up to any
+    // fixed guard.
     let even = support::perturb_random(&plate(2000), 0.2, 3);
     let graded = |[x, y]: [f64; 2]| {
         let r = x.hypot(y).max(1e-3);
@@ -102,7 +102,7 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
 
 #[test]
 fn an_optimal_mesh_comes_back_as_it_was() {
-    // A device's rounding moved thousands of vertices by a millionth and raised f in the eighth digit.
+    // Rounding on a device once moved thousands of vertices by a millionth, and raised f in the eighth digit.
     let smoother = Smoother::new(perturbed()).unwrap();
     let options = Options { tolerance: 1e-13, max_sweeps: 300, ..Options::default() };
     let outcome = run(&smoother, &options, &backends()[0]);
@@ -117,7 +117,7 @@ fn an_optimal_mesh_comes_back_as_it_was() {
 
 #[test]
 fn points_rounded_to_single_precision_are_feasible_once_certified() {
-    // So far from the origin that a float has steps longer than an edge.
+    // So far from the origin that neighboring floats are farther apart than an edge is long.
     let here = support::perturb_random(&plate(800), 0.6, 4);
     let mesh = support::transformed(&here, 1.0, [1.2e6, 9e5]);
     let smoother = Smoother::new(&mesh).unwrap();
@@ -138,8 +138,8 @@ fn points_rounded_to_single_precision_are_feasible_once_certified() {
 
 #[test]
 fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
-    // From 2^52 on doubles are whole numbers. Rows one unit apart in a wavy strip: where the sweeps take
-    // the vertices cannot be written down, and rounding flattens triangles that were fine.
+    // Beyond 2^52, doubles are whole numbers. Rows of a wavy strip are one unit apart. The places that sweeps find must be
+    // rounded to whole numbers, which flattens triangles that were good.
     let (columns, rows) = (36, 24);
     let far = 2f64.powi(52);
     let mut mesh = Mesh::default();
@@ -169,7 +169,7 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
 
 #[test]
 fn what_rounding_makes_worse_than_the_start_is_not_returned() {
-    // One free vertex among whole numbers: every place it can be written down at is worse than where it is.
+    // A free vertex among whole numbers: every place that it can be rounded to is worse than its own.
     let far = 2f64.powi(52);
     let at = |x: f64, y: f64| [far + x, far + y];
     let mesh = Mesh {

@@ -7,13 +7,13 @@ use gpu_smooth::{
     Smoother, Stop, Targets, Topology, validity,
 };
 
-/// A plate with two holes, vertices inside and on its lines out of place.
+/// A plate with two holes and a perturbed interior.
 fn worn() -> Mesh {
     support::perturb_random(&plate(500), 0.5, 3)
 }
 
-/// A rectangle in two halves, 12 by 6, with the line between them. All but its corners are off their places, along the lines if they are
-/// on one.
+/// A rectangle of two halves, 12 by 6 fields, and the edges of the line between them. All vertices but corners are
+/// perturbed, those on a line along it.
 fn halves() -> (Mesh, Vec<[u32; 2]>) {
     let (columns, rows) = (12_u32, 6_u32);
     let mut random = SplitMix64::new(5);
@@ -48,7 +48,7 @@ fn straight_lines_stay_straight_to_the_last_bit_and_corners_stay() {
     let (mesh, lines) = halves();
     let slide = Slide { lines, ..Slide::default() };
     let (smoother, count) = sliding(&mesh, &slide);
-    // 2 x 11 and 2 x 5 on the boundary, 5 between the halves; the ends of the line between them stay.
+    // 2 x 11 and 2 x 5 on the boundary without the ends of the line between the halves, and 5 on that line.
     assert_eq!(count, 2 * 10 + 2 * 5 + 5);
     let still = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
     for backend in backends() {
@@ -84,7 +84,7 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     for metric in [Metric::Imr, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = run(&smoother, &options, &Backend::Cpu);
-        // The shape guard of rms holds some vertices in the end.
+        // By RMS the shape guard holds some vertices back in the end.
         let stop = if metric == Metric::Rms { Stop::HeldBack } else { Stop::Converged };
         assert_eq!(outcome.stop, stop, "{metric}");
         let slid = outcome.slid.unwrap();
@@ -96,7 +96,7 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
         for &v in &held {
             assert_eq!(mesh.points[v as usize], outcome.points[v as usize]);
         }
-        // Off its line, or past its neighbor, a vertex is found.
+        // `astray` finds a vertex that is off its line or past its neighbor.
         let moved = |v: &usize| !topology.free()[*v] && mesh.points[*v] != outcome.points[*v];
         let v = (0..mesh.points.len()).find(moved).unwrap();
         let mut spoiled = outcome.points.clone();
@@ -126,7 +126,7 @@ fn vertices_slide_around_a_circle() {
         [[k, next, n + k], [next, n + next, n + k], [n + k, n + next, 2 * n]]
     };
     let triangles = (0..n).flat_map(of).collect();
-    // The inner ones stay, so that only the outer ones matter.
+    // The inner vertices are fixed, so that only the outer ones slide.
     let mesh = Mesh { points, triangles, fixed: (n..2 * n).collect() };
     let (smoother, slides) = sliding(&mesh, &Slide::default());
     assert_eq!(slides, 40);
@@ -134,9 +134,9 @@ fn vertices_slide_around_a_circle() {
     assert_eq!(outcome.stop, Stop::Converged);
     let radii = outcome.points[..40].iter().map(|[x, y]| x.hypot(*y));
     let off = radii.fold(0.0, |off: f64, radius| off.max((radius - 2.0).abs()));
-    // The cubic through four points of the circle, of edges of a sixth of the radius.
+    // The distance between the circle and a cubic through four of its points, for edges of a sixth of the radius.
     assert!(off < 1e-3, "{off}");
-    // Each between two of the inner ones.
+    // Each vertex ends in the middle between two of the inner ones.
     for (k, point) in outcome.points[..40].iter().enumerate() {
         let there = at(k as f64 / f64::from(count), 2.0);
         assert!(support::check::squared_distance(*point, there).sqrt() < 0.02, "{k}: {point:?}");
@@ -146,7 +146,7 @@ fn vertices_slide_around_a_circle() {
 #[test]
 fn targets_are_respected_by_what_slides() {
     let (mesh, lines) = halves();
-    // Twice as high as wide: squares become rectangles, two wide for one high.
+    // Targets are twice as high as wide, so that fields should become rectangles of that shape.
     let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();

@@ -18,7 +18,7 @@ fn mapped(mesh: &Mesh, matrix: Matrix) -> Mesh {
     Mesh { points, ..mesh.clone() }
 }
 
-/// The tensor under which the image of a circle is a circle: (L Lᵀ)⁻¹.
+/// The tensor under which a circle mapped by the matrix L is a unit circle: (L Lᵀ)⁻¹.
 fn tensor([[a, b], [c, d]]: Matrix) -> [f64; 3] {
     let (xx, xy, yy) = (a * a + b * b, a * c + b * d, c * c + d * d);
     let det = xx * yy - xy * xy;
@@ -38,13 +38,13 @@ fn corrected(metric: Metric) -> bool {
 #[test]
 fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_before() {
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
-    // Turned by some 20 degrees, stretched by 40 along it.
+    // Turns by some 20 degrees, and stretches by 40 in that direction.
     let matrix = [[37.6, -0.342], [13.7, 0.94]];
     let stretched = mapped(&mesh, matrix);
     let plain = Smoother::new(&mesh).unwrap();
     let targets = Targets::tensors(&vec![tensor(matrix); mesh.points.len()]).unwrap();
     let smoother = with_targets(&stretched, &targets);
-    // EDGE has many minima, and rounding decides in which a run ends.
+    // EDGE has many minima, and rounding decides in which of them a run ends.
     for &metric in Metric::ALL.iter().filter(|&&m| corrected(m) && m.is_smooth()) {
         let options = Options { scheme: metric.into(), ..Options::default() };
         for backend in backends() {
@@ -53,10 +53,10 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
             let f = [&one, &other].map(|outcome| *history(outcome, metric).last().unwrap());
             assert!((f[1] / f[0] - 1.0).abs() < 3e-6, "{label}: {f:?}");
             assert_eq!(other.stop, Stop::Converged, "{label}");
-            // In single precision the stretching enlarges rounding, in which the end of a run is found late.
+            // In single precision, stretching enlarges rounding, so that a run notices its end later.
             let more = if matches!(backend, Backend::Cpu) { 3 } else { 60 };
             assert!(other.sweeps <= one.sweeps + more, "{label}: {} {}", one.sweeps, other.sweeps);
-            // In edges, which are a thirtieth of the plate.
+            // Distances, divided by the stretching. An edge is about a thirtieth of the plate.
             let apart = one.points.iter().zip(&other.points).map(|(&p, &q)| {
                 let p = times(matrix, p);
                 support::check::squared_distance(p, q).sqrt() / 40.0
@@ -124,7 +124,7 @@ fn both_engines_end_at_the_same_minimum_and_hold_the_certificate() {
     }
 }
 
-/// Half the logarithm of the mean area of the triangles at each vertex.
+/// Half the logarithm of the mean area of the triangles at each vertex: the logarithm of a size.
 fn sizes(mesh: &Mesh) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     for &t in &mesh.triangles {
@@ -137,7 +137,7 @@ fn sizes(mesh: &Mesh) -> Vec<f64> {
     sums.iter().map(|(sum, count): &(f64, f64)| 0.5 * (sum / count).ln()).collect()
 }
 
-/// By how much the sizes at vertices differ, as a factor: the largest but for one vertex in twenty.
+/// The factor by which sizes at vertices change, up or down, that 19 of 20 vertices do not exceed.
 fn size_change(before: &Mesh, points: &[[f64; 2]]) -> f64 {
     let after = Mesh { points: points.to_vec(), ..before.clone() };
     let (before, after) = (sizes(before), sizes(&after));
@@ -149,7 +149,7 @@ fn size_change(before: &Mesh, points: &[[f64; 2]]) -> f64 {
 
 #[test]
 fn keep_size_keeps_sizes_that_equilateral_elements_would_not() {
-    // Rows of a lattice at heights that jump to a third: a refined strip.
+    // A refined strip: a lattice in which the distance between some rows falls to a third.
     let lattice = support::lattice(40, 40);
     let squeezed = |[x, y]: [f64; 2]| {
         let inside = (y - 0.4).clamp(0.0, 0.2);
@@ -167,13 +167,13 @@ fn keep_size_keeps_sizes_that_equilateral_elements_would_not() {
         let options = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
         let kept = run(&keeping, &options, backend);
         let change = [&free, &kept].map(|outcome| size_change(&mesh, &outcome.points));
-        // The strip is pressed together in one direction, so sizes and shapes cannot both be had.
+        // The strip is compressed in one direction only, so sizes and shapes cannot both be kept.
         assert!(change[0] > 1.5 && change[1] < 1.35, "{change:?}");
     }
 }
 
-/// The heights of the rows of a lattice, and how far vertices are from their row's: the mean over rows, in gaps to the
-/// nearest row of `at`. Without the ragged ends of rows.
+/// The mean height of each row of a lattice, and the noise in rows: the mean distance of vertices from that height, in
+/// gaps to the nearest row of `at`. Leaves out the ragged ends of rows.
 fn rows(points: &[[f64; 2]], columns: usize, at: &[f64]) -> (Vec<f64>, f64) {
     let inner = |row: &[[f64; 2]]| row[5..columns - 4].iter().map(|p| p[1]).collect::<Vec<_>>();
     let rows: Vec<Vec<f64>> = points.chunks(columns + 1).map(inner).collect();
@@ -193,7 +193,7 @@ fn gap(heights: &[f64], row: usize) -> f64 {
 
 #[test]
 fn keep_shape_keeps_the_spacing_of_a_layer_and_takes_its_noise() {
-    // Rows that are pressed together in the middle, where triangles are stretched by 50.
+    // Rows are pressed together in the middle, where triangles are stretched by 50.
     let columns = 40;
     let layer = support::layered(columns, 50.0);
     let heights: Vec<f64> = layer.points.chunks(columns + 1).map(|row| row[0][1]).collect();
@@ -223,7 +223,7 @@ fn keep_shape_keeps_the_spacing_of_a_layer_and_takes_its_noise() {
             assert!((0.9..1.1).contains(&ratio), "{ratio}");
         }
     }
-    // Equilateral elements leave nothing of it.
+    // Without targets, elements become equilateral and the layer is lost.
     let plain = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &backends()[0]);
     let (after, _) = rows(&plain.points, columns, &heights);
     let middle = heights.len() / 2;
@@ -248,7 +248,7 @@ fn equal_targets_are_no_targets() {
 
 #[test]
 fn degrees_are_seen_as_lengths_on_the_sphere() {
-    // A lattice of equilateral triangles around 60 degrees north, where a degree east is half a degree north.
+    // A lattice of equilateral triangles around 60 degrees north, where a degree east is half as long as a degree north.
     let lattice = support::lattice(30, 30);
     let [width, height] = [0, 1].map(|i| lattice.points.iter().map(|p| p[i]).fold(0.0, f64::max));
     let to_degrees = |&[x, y]: &[f64; 2]| {

@@ -1,9 +1,9 @@
-//! A tolerance speaks of the distance to the limit, not of the last change.
+//! The tolerance bounds the distance to the limit, not the change in the last sweep.
 
 use crate::{backends, distorted, global, history, name, perturbed, plate, run, support};
 use gpu_smooth::{Backend, Method, Metric, Options, Smoother, Stop, TargetField, Targets};
 
-/// The estimate is one from the last sweeps: it may be this much too small.
+/// The distance to the limit is estimated from the last sweeps, and may be up to this many times the estimate.
 const TRUST: f64 = 1.5;
 
 fn check(smoother: &Smoother, options: &Options, limit: f64) {
@@ -16,8 +16,7 @@ fn check(smoother: &Smoother, options: &Options, limit: f64) {
             let f = *history(&outcome, options.scheme.base()).last().unwrap();
             let left = (f - limit) / limit;
             assert!(left <= TRUST * tolerance, "{label}: {left:e} left");
-            // Nor is it kept by sweeping ten times as long as needed. One corrected sweep gains a factor
-            // of up to ten.
+            // The tolerance must not be kept by far too many sweeps either. One corrected sweep gains a factor of up to ten.
             let room = if options.is_multilevel() { 100.0 } else { 20.0 };
             assert!(left >= tolerance / room, "{label}: {left:e} left");
         }
@@ -45,8 +44,8 @@ fn what_is_left_is_within_the_tolerance() {
 
 #[test]
 fn what_is_left_of_edge_is_within_the_tolerance() {
-    // To the limit of its own sweeps: where the p-norm leads, not the best there is. With corrections, which of the many minima
-    // a run ends in is settled by rounding.
+    // The limit is that of the run's own sweeps, where the p-norm leads, and not the best there is. There are no
+    // corrections, as with them rounding decides in which of many minima a run ends.
     let smoother = Smoother::new(perturbed()).unwrap();
     let (scheme, method) = (Metric::Edge.into(), Method::Sweeps);
     let options = Options { scheme, method, ..Options::default() };

@@ -1,4 +1,4 @@
-//! Untangling: meshes with inverted triangles, of the kinds that the literature tries.
+//! Untangling: meshes tangled in the ways of the literature.
 
 use crate::{plate, support, with_points};
 use gpu_smooth::{Mesh, MeshError, Precision, Topology, Untangled, Untangling, untangle};
@@ -9,7 +9,7 @@ fn mend(mesh: &Mesh) -> Untangled {
     untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
-/// Checks that a mesh is untangled, and that only free vertices have moved.
+/// Checks that a mesh gets untangled, and that only free vertices have moved.
 fn check(label: &str, mesh: &Mesh) -> Untangled {
     let result = mend(mesh);
     let (left, sweeps) = (result.left.len(), result.sweeps);
@@ -84,7 +84,7 @@ fn random_places_do_not_pass_for_sizes() {
 
 #[test]
 fn the_sizes_of_a_graded_mesh_do_not_matter() {
-    // Edges from 1 to 1e-6. Vertices near the hole are tangled, where edges are shortest.
+    // Edges from 1 to 1e-6 long. The vertices near the hole, where edges are shortest, are tangled.
     let mut mesh = support::graded(24, 1e-6);
     let held = support::check::held(&mesh);
     let small = |p: [f64; 2]| p[0].hypot(p[1]) < 1e-5;
@@ -112,7 +112,7 @@ fn one_vertex_outside_its_ring_moves_only_its_surroundings() {
 
 #[test]
 fn what_no_move_can_mend_is_listed_and_the_rest_is_mended() {
-    // The second corner of a square is pushed in beyond the diagonal that a triangle without free vertices has there.
+    // In a triangle without a free vertex, moves one corner beyond the opposite edge.
     let mut mesh = support::lattice(8, 6);
     let held = support::check::held(&mesh);
     let fixed = mesh.triangles.iter().position(|t| t.iter().all(|&v| held[v as usize])).unwrap();
@@ -133,7 +133,7 @@ fn what_no_move_can_mend_is_listed_and_the_rest_is_mended() {
 
 #[test]
 fn a_tangle_that_cannot_be_undone_ends() {
-    // A fixed vertex in the middle of a square lies outside of it.
+    // A fixed vertex in the middle of a square is moved out of it.
     let mut mesh = support::lattice(6, 6);
     let middle = (0..mesh.points.len())
         .find(|&v| mesh.points[v][0] > 2.9 && mesh.points[v][1] > 2.0)

@@ -1,4 +1,4 @@
-//! The worst triangles improved after a run.
+//! `improve_worst`: the worst triangles are improved after a run.
 
 use crate::support::{self, check};
 use crate::{backends, distorted, name, plate, run, with_points};
@@ -16,7 +16,7 @@ fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
     angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b)).to_degrees()
 }
 
-/// The worst triangle with a free vertex, in the words of [`gpu_smooth::Improved::worst`].
+/// The worst value among triangles with a free vertex, as [`gpu_smooth::Improved::worst`] defines it.
 fn worst(smoother: &Smoother, points: &[[f64; 2]], by: WorstBy) -> f64 {
     let topology = smoother.topology();
     let can_move = |t: &&[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
@@ -61,18 +61,18 @@ fn the_worst_triangle_is_better_by_each_measure_at_a_small_cost_in_f() {
         let f = |points| smoother.f(Metric::Imr, points).unwrap();
         assert!(near(told.f[0], f(&usual.points)), "{label}");
         assert!((told.f[1] / f(&outcome.points) - 1.0).abs() < 1e-9, "{label}");
-        // Larger altitudes take room from other triangles.
+        // Larger altitudes take space from other triangles.
         let most = if by == WorstBy::Altitude { 1.3 } else { 1.06 };
         assert!(told.f[0] < told.f[1] && told.f[1] < most * told.f[0], "{label}");
         assert!(told.vertices > 0 && told.vertices <= smoother.topology().free_count(), "{label}");
         assert!(check::is_valid(&with_points(&mesh, &outcome.points)), "{label}");
-        // No other shape may become worse than the worst was.
+        // No other triangle may get a worse shape than the worst had.
         let shapes = [&usual, &outcome].map(|o| worst(&smoother, &o.points, WorstBy::Imr));
         assert!(shapes[1] <= shapes[0] * (1.0 + 1e-6), "{label}: {shapes:?}");
     }
 }
 
-/// Not even where f is higher than before is the mesh given back as it was.
+/// The result is kept although f is higher than before.
 #[test]
 fn a_smooth_mesh_is_improved_without_a_sweep() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -103,7 +103,7 @@ fn bounds_and_altitudes_hold_while_the_worst_is_improved() {
     assert!(after >= before && outcome.improved.unwrap().vertices > 0);
 }
 
-/// A mesh and its image under a linear map, of which the target undoes that map, end in the same shapes.
+/// A mesh, and its image under a linear map with targets that undo the map: both end with the same shapes.
 #[test]
 fn the_worst_is_what_targets_show() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -126,7 +126,7 @@ fn the_worst_is_what_targets_show() {
 
 #[test]
 fn what_cannot_be_improved_stays() {
-    // Equilateral triangles around a free vertex, and a worse one that no vertex of can move.
+    // Equilateral triangles around a free vertex, and a worse triangle without a free vertex.
     let mut points: Vec<[f64; 2]> =
         (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
     points.extend([[0.0, 0.0], [3.0, 0.4]]);
@@ -139,7 +139,7 @@ fn what_cannot_be_improved_stays() {
     assert_eq!((told.vertices, told.stuck), (0, 1), "{told:?}");
     assert_eq!(told.worst[0], told.worst[1]);
     assert_eq!(outcome.points, mesh.points);
-    // Nor is anything done after a run that was left.
+    // After a run that was cancelled, nothing is improved.
     let mesh = distorted();
     let smoother = Smoother::new(mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
@@ -173,7 +173,7 @@ fn the_stage_ends_where_the_observer_says_so() {
     let told = outcome.improved.unwrap();
     assert_eq!((outcome.stop, told.vertices), (Stop::Cancelled, 0));
     assert_eq!(told.worst[0], told.worst[1]);
-    // What a pass has gained is kept.
+    // What the passes until then have gained is kept.
     let (outcome, _) = passes_before_it_ends(1);
     let told = outcome.improved.unwrap();
     assert_eq!(outcome.stop, Stop::Cancelled);
@@ -183,12 +183,12 @@ fn the_stage_ends_where_the_observer_says_so() {
 /// A triangle on the boundary without a free vertex is stuck only if none of its corners may slide.
 #[test]
 fn a_triangle_whose_corners_may_slide_is_not_stuck() {
-    // Six fields in two rows around a free vertex, and a flat triangle on top of one side, in whose straight outline one vertex slides.
+    // Six triangles around a free vertex, and two outside of one side. One vertex of theirs can slide along a straight line.
     let mut points: Vec<[f64; 2]> =
         (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
     points.push([0.0, 0.0]);
     let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
-    // Beyond the side from 0 to 1, whose far corner is halfway along an outline from 0 on.
+    // Outside of the side from vertex 0 to 1: `out` is halfway on the straight line from vertex 0 to `far`.
     let [a, b] = [points[0], points[1]];
     let out = [a[0] + 0.5, a[1]];
     let far = [a[0] + 1.0, a[1]];

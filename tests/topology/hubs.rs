@@ -1,5 +1,5 @@
-//! Vertices of very many triangles. Nothing is timed here: steps whose time grows with the square of their number would
-//! take minutes to hours.
+//! Vertices with very many triangles. Nothing is timed: work that grows with the square of their number would take minutes
+//! to hours.
 
 use crate::boundary::assert_loops_are_the_boundary;
 use crate::support::{self, trig};
@@ -9,8 +9,8 @@ use gpu_smooth::{Mesh, Topology};
 /// Triangles around the hub.
 const MANY: u32 = 200_000;
 
-/// A fan of triangles around the first vertex, between two radii another strip of them. The fan closes if it goes all
-/// the way around; else the hub is on the boundary.
+/// A fan of triangles around the first vertex, and another strip of triangles outside of it. If the fan does not go all
+/// the way around, the hub is on the boundary.
 fn fan(count: u32, is_closed: bool) -> Mesh {
     let mut mesh = Mesh { points: vec![[0.0, 0.0]], ..Mesh::default() };
     let rim = if is_closed { count } else { count + 1 };
@@ -33,7 +33,7 @@ fn fan(count: u32, is_closed: bool) -> Mesh {
 #[test]
 fn a_hub_inside_takes_no_more_than_its_triangles_are_worth() {
     let mesh = fan(MANY, true);
-    // As it is, and with windings that must be found from neighbor to neighbor.
+    // As it is, and with shuffled windings, which must be made consistent from neighbor to neighbor.
     for mesh in [mesh.clone(), support::shuffled_windings(&mesh, 1)] {
         let (topology, problem) = prepare(&mesh).unwrap();
         assert!(topology.free()[..=MANY as usize].iter().all(|&free| free));
@@ -63,7 +63,7 @@ fn a_hub_on_the_boundary_takes_no_more_than_its_triangles_are_worth() {
         assert!(Coloring::new(&topology).is_proper(&topology));
         let loops = topology.boundary_loops();
         let rim = MANY + 1;
-        // From the hub out along one side, around, and back along the other.
+        // The loop goes from the hub out along one side, around the rim, and back along the other.
         let outside = [0, 1].into_iter().chain(1 + rim..=2 * rim).chain([rim]);
         assert!(loops.len() == 1 && loops[0].iter().copied().eq(outside));
     }
@@ -71,7 +71,7 @@ fn a_hub_on_the_boundary_takes_no_more_than_its_triangles_are_worth() {
 
 #[test]
 fn a_hub_of_fans_that_touch_nowhere_else_takes_no_more_than_its_triangles_are_worth() {
-    // Every other triangle of a fan: each is a part of its own, and has its own loop.
+    // Every other triangle of a fan: each is a component with a loop of its own.
     let whole = fan(MANY, true);
     let triangles = whole.triangles.iter().step_by(6).copied().collect();
     let mesh = Mesh { triangles, ..whole };
@@ -98,7 +98,7 @@ fn small_hubs_have_the_boundary_that_all_meshes_have() {
 
 #[test]
 fn a_strip_turned_once_has_loops_that_end() {
-    // A Möbius strip: its windings cannot be made consistent, and walks around its vertices must not go on forever.
+    // A Möbius strip: its windings cannot be made consistent, and walks around its vertices must end.
     let count = 9;
     let points = (0..2 * count).map(|i| [f64::from(i), f64::from(i * i % 7)]).collect();
     let mut triangles = Vec::new();

@@ -1,4 +1,4 @@
-//! How triangles hang together: windings, the boundary, drags, and what is said of meshes that are not sound.
+//! The connectivity of meshes: windings, the boundary, clamped moves, and errors for unsound meshes.
 
 #[path = "../support/mod.rs"]
 mod support;

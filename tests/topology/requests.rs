@@ -78,7 +78,7 @@ fn a_bound_or_a_point_that_is_no_number_is_an_error() {
             assert_eq!(bits(&points), bits(&before));
         }
     }
-    // Far from what moves it hinders nothing.
+    // A triangle far from the moved vertices does not hinder them.
     let mut points = mesh.points.clone();
     let far = Mesh::clone(&mesh).triangles[31].into_iter().max().unwrap();
     assert!(!topology.ring(middle).contains(&far));

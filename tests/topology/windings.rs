@@ -1,4 +1,4 @@
-//! Which triangles count as inverted: the minority of what hangs together, by exact arithmetic.
+//! Which triangles count as inverted: the minority of each edge-connected part, by exact arithmetic.
 
 use crate::support::{self, check};
 use gpu_smooth::{
@@ -6,7 +6,7 @@ use gpu_smooth::{
     Topology, smooth,
 };
 
-/// The bad triangles of a mesh, by index, and the flat ones of them.
+/// The bad triangles of a mesh, by index, and those of them that are flat.
 fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
     let found = Topology::new(mesh).unwrap().bad_triangles(&mesh.points).unwrap();
     let flat = |bad: &&BadTriangle| bad.flat;
@@ -14,7 +14,7 @@ fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
     (found.iter().map(index).collect(), found.iter().filter(flat).map(index).collect())
 }
 
-/// The triangles with these vertices are the bad ones, however the mesh is numbered and wound.
+/// Checks that exactly the triangles with these vertices are bad, however the mesh is numbered and wound.
 #[track_caller]
 fn assert_bad(mesh: &Mesh, wanted: &[[u32; 3]]) {
     let sorted = |mut triangle: [u32; 3]| {
@@ -41,7 +41,7 @@ fn assert_bad(mesh: &Mesh, wanted: &[[u32; 3]]) {
 
 #[test]
 fn one_large_mirrored_triangle_does_not_make_all_others_inverted() {
-    // At an edge of the outside, but far across the mesh rather than away from it.
+    // Adds a triangle at an edge of the boundary that lies across the mesh rather than outside of it.
     let mut mesh = support::lattice(10, 8);
     let [a, b] = [0, 1];
     let far = mesh.points.len() as u32;
@@ -67,7 +67,7 @@ fn a_mesh_of_the_globe_has_only_the_triangles_across_the_date_line_inverted() {
             let at = |row: u32, column: u32| row * columns as u32 + column;
             let [a, b] = [at(row, column), at(row, next)];
             let [c, d] = [at(row + 1, next), at(row + 1, column)];
-            // Land, where there are no triangles: so those across the date line cover the larger area.
+            // Land has no triangles, so the triangles across the date line have the larger area.
             if (5..9).contains(&column) && (3..7).contains(&row) {
                 continue;
             }
@@ -109,7 +109,7 @@ fn each_part_has_its_own_majority() {
     assert_bad(&mesh, &[]);
 }
 
-/// A triangle about a point, as thin as rounding: every naive area of it is of no use.
+/// A triangle around a point, as thin as rounding: every area of it that is computed with rounding is useless.
 fn thin() -> Mesh {
     Mesh {
         points: vec![
@@ -123,7 +123,7 @@ fn thin() -> Mesh {
     }
 }
 
-/// The sign of a triangle's area in whole numbers, of which all these coordinates are multiples.
+/// The sign of a triangle's area, computed in integers: all these coordinates are multiples of 2^-54.
 fn exact_sign(mesh: &Mesh, triangle: [u32; 3]) -> i128 {
     let whole = |x: f64| {
         let scaled = x * 2f64.powi(54);
@@ -147,7 +147,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     };
     let outcome = run(Metric::Area).unwrap();
     assert_bad(&Mesh { points: outcome.points, ..mesh.clone() }, &[]);
-    // Its area is rounded to zero or below, so by imr it cannot be judged. It is named, and not called inverted.
+    // Its area is rounded to zero or below, so imr cannot judge it. The error names it, and does not call it inverted.
     let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run(Metric::Imr)
     else {
         panic!("a mesh without a finite f was smoothed")
@@ -157,7 +157,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
 
 #[test]
 fn quality_of_a_valid_mesh_as_thin_as_rounding_is_finite() {
-    // Beside a large triangle, whose area alone tells the naive way round.
+    // With a large triangle beside it, which alone determines the orientation if areas are rounded.
     let mut mesh = thin();
     let side = exact_sign(&mesh, mesh.triangles[0]) as f64;
     mesh.points.push([-side, side]);
@@ -206,7 +206,7 @@ fn a_point_that_is_no_number_counts_as_inverted() {
 
 #[test]
 fn a_mesh_on_either_side_of_nothing_is_smoothed() {
-    // Clockwise throughout: what comes back is as good as that of the counter-clockwise one.
+    // All triangles clockwise: the result is as good as that of the counterclockwise mesh.
     let mesh = support::perturb_random(&support::lattice(6, 6), 0.6, 2);
     let clockwise: Vec<_> = mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let run = |triangles: &[[u32; 3]]| {

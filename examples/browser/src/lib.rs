@@ -1,7 +1,7 @@
-//! gpu-smooth in a browser: what the page in `index.html` calls.
+//! gpu-smooth in a browser: the functions that the page `index.html` calls.
 //!
-//! A mesh made in code is smoothed by the CPU engine, compiled to WebAssembly, and by the GPU through WebGPU. Then it lives on the
-//! device, frame after frame: a hole can be dragged, and vertices thrown about.
+//! The mesh is made in code. The CPU engine, compiled to WebAssembly, smooths it, and so does the GPU through WebGPU. Then
+//! the mesh stays on the device for frames in which a hole can be dragged and vertices thrown about.
 
 mod plate;
 mod scene;
@@ -12,28 +12,28 @@ use wasm_bindgen::prelude::*;
 use plate::Plate;
 use scene::Scene;
 
-/// A mesh, and the device if there is one.
+/// A mesh, and the device or the reason why there is none.
 #[wasm_bindgen]
 pub struct Page {
     plate: Plate,
     gpu: Result<Gpu, String>,
 }
 
-/// How a run went.
+/// The result of a run.
 #[wasm_bindgen]
 pub struct Run {
-    /// f by the inverse mean ratio before and after.
+    /// f by the inverse mean ratio before the run; `after` is f after it.
     pub before: f64,
     pub after: f64,
     pub sweeps: u32,
-    /// How many triangles are inverted or flat after it, by exact predicates.
+    /// The number of triangles that are inverted or flat after the run, by exact predicates.
     pub inverted: usize,
     points: Vec<f32>,
 }
 
 #[wasm_bindgen]
 impl Run {
-    /// x and y of all vertices after the run.
+    /// x and y of all vertices after the run, vertex by vertex.
     pub fn points(&self) -> Vec<f32> {
         self.points.clone()
     }
@@ -48,7 +48,7 @@ impl Page {
         Page { plate: Plate::new(vertices), gpu }
     }
 
-    /// What computes, or why nothing does.
+    /// The name of the adapter, or why there is no device.
     pub fn adapter(&self) -> String {
         match &self.gpu {
             Ok(gpu) => format!("{} ({})", gpu.adapter().name, gpu.adapter().backend),
@@ -60,30 +60,30 @@ impl Page {
         self.gpu.is_ok()
     }
 
-    /// x and y of all vertices of the mesh as it was made.
+    /// x and y of all vertices as the mesh was made, vertex by vertex.
     pub fn points(&self) -> Vec<f32> {
         single(&self.plate.mesh.points)
     }
 
-    /// The three vertices of all triangles.
+    /// The three vertices of each triangle, triangle by triangle.
     pub fn triangles(&self) -> Vec<u32> {
         self.plate.mesh.triangles.as_flattened().to_vec()
     }
 
-    /// Smooths the mesh on the one thread of the page, which is blocked meanwhile.
+    /// Smooths the mesh on the page's only thread, and blocks it meanwhile.
     pub fn run_on_cpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
         Ok(told(&smoother, smoother.run(&Options::default(), &Backend::Cpu)?)?)
     }
 
-    /// Smooths the mesh on the device; the page goes on.
+    /// Smooths the mesh on the device, without blocking the page.
     pub async fn run_on_gpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
         let outcome = smoother.run_async(&Options::default(), self.gpu()?).await?;
         Ok(told(&smoother, outcome)?)
     }
 
-    /// Takes the mesh as it was made to the device, to live there.
+    /// Uploads the mesh as it was made, to be smoothed in frames.
     pub async fn live(&self) -> Result<Live, JsError> {
         let plate = self.plate.clone();
         let scene = Scene::new(self.gpu()?, &plate).await?;
@@ -96,7 +96,7 @@ impl Page {
     }
 }
 
-/// The mesh on the device.
+/// A mesh on the device that is smoothed in frames.
 #[wasm_bindgen]
 pub struct Live {
     scene: Scene,
@@ -108,8 +108,8 @@ pub struct Live {
 
 #[wasm_bindgen]
 impl Live {
-    /// Takes what has arrived of the frames before, and does another one unless the device is behind: what the user does would show
-    /// later and later.
+    /// Takes the results of earlier frames that have arrived. Submits another frame, unless three are under way: with more, the
+    /// user would see the effect of a drag later and later.
     pub fn frame(&mut self) -> Result<(), JsError> {
         if let Some((values, points)) = self.scene.seen()? {
             self.numbers = [values.of(Metric::Imr), values.worst_imr, values.inverted as f32];
@@ -122,12 +122,12 @@ impl Live {
         Ok(())
     }
 
-    /// How many frames were submitted, how many of them have not arrived, and how many sweeps the next one has time for.
+    /// The number of frames submitted, of those that have not arrived, and of the sweeps that the next frame has time for.
     pub fn frames(&self) -> Vec<u32> {
         vec![self.scene.frames(), self.scene.behind(), self.scene.sweeps()]
     }
 
-    /// x and y of all vertices as they arrived last; none before the first frame has.
+    /// x and y of all vertices as they arrived last; empty before the first frame has arrived.
     pub fn points(&self) -> Vec<f32> {
         self.points.clone()
     }
@@ -137,7 +137,7 @@ impl Live {
         self.numbers.to_vec()
     }
 
-    /// Takes the hole to x, y, as far as triangles allow; it was at 0, 0.
+    /// Drags the hole's center toward x, y, as far as triangles allow. It is at 0, 0 at first.
     pub fn hold(&mut self, x: f32, y: f32) {
         self.scene.hold(Some([x, y]));
     }
@@ -146,7 +146,7 @@ impl Live {
         self.scene.hold(None);
     }
 
-    /// Throws vertices about, so that triangles are inverted.
+    /// Throws vertices about, which inverts triangles.
     pub fn tear(&mut self) {
         self.scene.tear(&self.plate);
     }

@@ -1,4 +1,4 @@
-//! A mesh made in code: a square plate with a hole in it, its vertices badly placed.
+//! A mesh made in code: a square plate with a hole, and its vertices badly placed.
 
 use gpu_smooth::Mesh;
 
@@ -10,13 +10,15 @@ pub(crate) struct Plate {
     pub(crate) hole: Vec<u32>,
 }
 
-/// How far vertices are from where they should be, in parts of the distance between them. Somewhere above a quarter triangles invert.
+/// How far vertices are from their proper places, in units of the distance between them. Above about a quarter, triangles
+/// are inverted.
 const BADLY: f64 = 0.2;
 
 impl Plate {
     /// A plate of about this many vertices.
     pub(crate) fn new(vertices: usize) -> Self {
-        // Rings from the hole to the outside, 4.5 times as many vertices around as there are rings. Some are in the corners.
+        // Rings from the hole to the outside, each with 4.5 times as many vertices as there are rings. Some of these are the
+        // corners of the square.
         let rings = ((vertices as f64 / 4.5).sqrt() as u32).max(4);
         let around = (vertices as u32 / rings).max(16) / 8 * 8;
         let mut random = Random(1);
@@ -42,14 +44,14 @@ impl Plate {
         Self { mesh: Mesh { points, triangles, fixed: Vec::new() }, hole }
     }
 
-    /// Vertices inside, one of `each`.
+    /// Every `each`th vertex inside.
     pub(crate) fn some(&self, each: usize) -> impl Iterator<Item = u32> + '_ {
         let (around, all) = (self.hole.len(), self.mesh.points.len());
         (around as u32..(all - around) as u32).step_by(each)
     }
 }
 
-/// The point at this part of the way around, and of that from the hole to the outside.
+/// The point at this share of the way around, and this share of the way from the hole to the outside.
 fn at(around: f64, outward: f64) -> [f64; 2] {
     let angle = std::f64::consts::TAU * around;
     let direction = [angle.cos(), angle.sin()];
@@ -64,7 +66,7 @@ pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     pub(crate) fn next(&mut self) -> f64 {
-        // Knuth's MMIX.
+        // The constants of Knuth's MMIX.
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }

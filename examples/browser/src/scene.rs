@@ -1,4 +1,4 @@
-//! The mesh on the device with all that is bound to it, and its frames.
+//! The mesh on the device, everything that is bound to it, and its frames.
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
@@ -8,14 +8,14 @@ use gpu_smooth::{
 
 use crate::plate::{Plate, Random};
 
-/// The microseconds that sweeps may take in each frame on the device, and how many they may be, each with its correction.
+/// The device time for sweeps in a frame, in microseconds, and the most sweeps, each with its correction.
 const BUDGET: (u64, u32) = (5000, 6);
 /// A drag makes no triangle worse than this inverse mean ratio.
 const WORST: f64 = 8.0;
-/// Where the share of a drag stands in the buffer of numbers, after the objectives.
+/// The offset of the share of a drag in the buffer of numbers, in bytes. Objectives come before it.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
 
-/// How good the mesh was when it was last heard of, and where its vertices were.
+/// The objectives and vertices of the last frame that has arrived.
 pub(crate) type Seen<'a> = (ObjectiveValues, &'a [[f32; 2]]);
 
 pub(crate) struct Scene {
@@ -26,7 +26,7 @@ pub(crate) struct Scene {
     budget: Budget,
     objective: BoundObjective,
     drag: BoundMove,
-    /// Where the user has taken the hole, while it is held.
+    /// How far the user has taken the hole, while it is held.
     held: Option<[f32; 2]>,
     home: Vec<[f32; 2]>,
     vertices: wgpu::Buffer,
@@ -37,8 +37,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Makes all that frames need, and compiles the kernels: what can fail, fails here. In a browser corrected sweeps have to
-    /// be awaited.
+    /// Makes everything that frames need, and compiles the kernels. Errors occur here, not in frames. Async, as a browser makes
+    /// corrected sweeps only so.
     pub(crate) async fn new(gpu: &Gpu, plate: &Plate) -> Result<Self, SmoothError> {
         let mesh = &plate.mesh;
         let options = Options { method: Method::Multilevel, tolerance: 1e-5, ..Options::default() };
@@ -62,7 +62,7 @@ impl Scene {
 
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
         let sweeps = Sweeps::until_converged_async(&device_mesh, &options).await?;
-        // Browsers round timestamps, to a tenth of a millisecond or so.
+        // Browsers round timestamps to a tenth of a millisecond or so.
         let budget = Budget::micros(BUDGET.0).at_most(BUDGET.1);
         let budget = match gpu.device().features().contains(Gpu::optional_features()) {
             true => budget.timed_by(gpu)?,
@@ -87,7 +87,7 @@ impl Scene {
         })
     }
 
-    /// Encodes and submits a frame; the browser does it when it can. Nothing waits.
+    /// Encodes and submits a frame without waiting; the browser executes it when it can.
     pub(crate) fn frame(&mut self) {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -108,12 +108,12 @@ impl Scene {
         self.frames += 1;
     }
 
-    /// Where the user takes the hole, from where the mesh had it; `None` when it is let go.
+    /// Sets how far the user takes the hole from its first place; `None` lets it go.
     pub(crate) fn hold(&mut self, by: Option<[f32; 2]>) {
         self.held = by;
     }
 
-    /// Throws one vertex in nine far from its place, as a kernel of the application might.
+    /// Throws every ninth vertex far from its place, as a kernel of the application might do.
     pub(crate) fn tear(&mut self, plate: &Plate) {
         let mut random = Random(2);
         for v in plate.some(9) {
@@ -124,7 +124,7 @@ impl Scene {
         }
     }
 
-    /// What the last frames that have arrived left: how good the mesh is, and its vertices. `None` until the first has arrived.
+    /// Returns the objectives and vertices of the last frame that has arrived. `None` until the first has.
     pub(crate) fn seen(&mut self) -> Result<Option<Seen<'_>>, SmoothError> {
         let values = self.values.latest()?.map(|values| values[0]);
         let positions = self.positions.latest()?;
@@ -140,7 +140,7 @@ impl Scene {
         self.frames
     }
 
-    /// How many frames are under way that have not been seen.
+    /// The number of frames that are submitted and have not arrived.
     pub(crate) fn behind(&self) -> u32 {
         self.values.age().map_or(self.frames, |age| age as u32)
     }

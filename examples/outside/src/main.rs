@@ -1,11 +1,12 @@
-//! An application that knows of gpu-smooth what docs/embedding.md says, and lives with a mesh for many frames: it drags a
-//! hole, pins vertices, tears the mesh inside out and has it recover, meshes anew on another thread, and goes on after its device was lost.
+//! An application that uses gpu-smooth as docs/embedding.md describes it, for many frames. It drags a hole, pins vertices,
+//! turns the mesh inside out and lets it recover, replaces the mesh by one prepared on another thread, and continues after
+//! the loss of its device.
 //!
 //! ```text
 //! cargo run --release --example outside -- [MESH]
 //! ```
 //!
-//! It has no window: it prints what it sees in each act.
+//! It has no window. It prints the results of each act.
 #![allow(clippy::print_stdout)]
 
 mod scene;
@@ -26,21 +27,21 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// What an act of the application came to.
+/// The result of an act: a number of frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Told {
     pub(crate) frames: u32,
     pub(crate) sweeps: u32,
-    /// The most triangles that were inverted in any frame.
+    /// The largest number of inverted triangles in any frame.
     pub(crate) inverted: u32,
-    /// At the end.
+    /// The worst inverse mean ratio after the last frame.
     pub(crate) worst_imr: f32,
     pub(crate) has_converged: bool,
-    /// The least share of the way that a drag could go in a frame.
+    /// The least share of the way that a drag went in a frame.
     pub(crate) least_share: f32,
 }
 
-/// All acts, with their names.
+/// Does all acts, and returns their results with their names.
 pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     let mut acts = Vec::new();
     let gpu = open(mesh)?;
@@ -57,14 +58,14 @@ pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     scene.device_mesh.unpin(&pinned)?;
     acts.push(("settle with them unpinned", settle(&mut scene)?));
 
-    // Kernels of the application may throw vertices anywhere; so does this.
+    // Kernels of the application may move vertices anywhere, and so does this act.
     let free = Topology::new(mesh)?.free().to_vec();
     let torn: Vec<u32> =
         (0..).zip(free).filter(|&(v, free)| free && v % 10 == 0).map(|(v, _)| v).collect();
     acts.push(("recover from being torn inside out", tear(&mut scene, &torn)?));
     acts.push(("settle what was torn", settle(&mut scene)?));
 
-    // A finer mesh is made ready on another thread while frames go on.
+    // A finer mesh is prepared on another thread, while frames go on.
     let (worker_gpu, finer) = (gpu.clone(), refined(mesh));
     let worker = std::thread::spawn(move || Scene::new(&worker_gpu, &finer));
     let mut meanwhile = Told { least_share: 1.0, ..Told::default() };
@@ -76,7 +77,7 @@ pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     let mut scene = worker.join().map_err(|_| "the worker panicked")??;
     acts.push(("settle the finer mesh", settle(&mut scene)?));
 
-    // A device that is lost: the last vertices that were read back go on another one.
+    // The device is lost: the last vertices that were read back continue on another device.
     let last = scene.last_mesh()?;
     gpu.device().destroy();
     let error = loop {
@@ -104,7 +105,7 @@ impl Told {
     }
 }
 
-/// Frames until the mesh is as good as it gets.
+/// Does frames until the sweeps have converged.
 fn settle(scene: &mut Scene) -> Result<Told> {
     let mut told = Told { least_share: 1.0, ..Told::default() };
     while told.frames < 5000 && !told.has_converged {
@@ -113,7 +114,7 @@ fn settle(scene: &mut Scene) -> Result<Told> {
     Ok(told)
 }
 
-/// Throws vertices far to one side, as a kernel of the application might. Frames until no triangle is inverted.
+/// Moves vertices far to one side, as a kernel of the application might do. Then does frames until no triangle is inverted.
 fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
     let to: Vec<[f32; 2]> = scene.places(vertices)?.iter().map(|&[x, y]| [x + 0.5, y]).collect();
     scene.write(vertices, &to);
@@ -125,7 +126,7 @@ fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
     Ok(told)
 }
 
-/// Drags vertices to where the mesh had them at first, and `by` from there, a step in each frame.
+/// Drags vertices, a step in each frame, to their first places plus `by`.
 fn drag(scene: &mut Scene, vertices: &[u32], by: [f32; 2]) -> Result<Told> {
     const FRAMES: usize = 30;
     let drag = scene.take_hold(vertices)?;
@@ -142,7 +143,7 @@ fn drag(scene: &mut Scene, vertices: &[u32], by: [f32; 2]) -> Result<Told> {
     Ok(told)
 }
 
-/// A device for the mesh and one four times as large, with timestamps where there are any.
+/// Opens a device for a mesh four times as large as this one, with timestamps if it has them.
 fn open(mesh: &Mesh) -> Result<Gpu> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -165,7 +166,7 @@ fn open(mesh: &Mesh) -> Result<Gpu> {
 /// The vertices of a hole.
 fn hole(mesh: &Mesh) -> Result<Vec<u32>> {
     let mut loops = Topology::new(mesh)?.boundary_loops();
-    // The outside goes around counter-clockwise, a hole clockwise.
+    // The outer boundary is counterclockwise, a hole clockwise.
     loops.retain(|vertices| signed_area(&mesh.points, vertices) < 0.0);
     loops.into_iter().next().ok_or("the mesh has no hole".into())
 }

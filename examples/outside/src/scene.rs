@@ -1,4 +1,4 @@
-//! A mesh on the device with all that is bound to it: made when a mesh comes, dropped when it goes.
+//! A mesh on the device and everything that is bound to it: made for a mesh, and dropped with it.
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
@@ -8,13 +8,13 @@ use gpu_smooth::{
 
 use super::Result;
 
-/// What the application keeps of each vertex: x, y and two numbers of its own.
+/// What the application stores of each vertex: x, y and two numbers of its own.
 type Vertex = [f32; 4];
 pub(crate) const STRIDE: u64 = size_of::<Vertex>() as u64;
-/// Where the share of a drag stands in the buffer of numbers, after the objectives.
+/// The offset of the share of a drag in the buffer of numbers, in bytes. Objectives come before it.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
 
-/// A triangle gets no worse than this in a drag.
+/// The largest inverse mean ratio that a drag gives a triangle.
 const WORST: f64 = 8.0;
 
 pub(crate) struct Scene {
@@ -34,21 +34,21 @@ pub(crate) struct Scene {
     positions: Readback<Vertex>,
 }
 
-/// What a frame shows of itself and of those before.
+/// What is known after a frame: its sweeps, and the results of the last frame that has arrived.
 pub(crate) struct Seen {
     pub(crate) sweeps: u32,
     pub(crate) values: ObjectiveValues,
     pub(crate) share: f32,
 }
 
-/// How the mesh is smoothed: each sweep is followed by a correction from coarser levels, so that a frame has fewer of them, but a mesh
-/// that was dragged is at rest again after a few.
+/// How the mesh is smoothed. A correction from coarser levels follows each sweep, so a frame has time for fewer sweeps, but a
+/// dragged mesh converges within a few frames.
 pub(crate) fn options() -> Options {
     Options { method: Method::Multilevel, tolerance: 1e-4, ..Options::default() }
 }
 
 impl Scene {
-    /// Makes all that frames need; what can fail, fails here. It may be called on another thread than that of the frames.
+    /// Makes everything that frames need. Errors occur here, not in frames. May be called on another thread than the frames.
     pub(crate) fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self> {
         let device_mesh = DeviceMesh::new(gpu, mesh)?;
         let buffer = |label, size, usage| {
@@ -96,7 +96,7 @@ impl Scene {
         })
     }
 
-    /// One frame: takes vertices that were written, moves what the user drags, turns triangles back that are inverted, sweeps as long as there is time, and leaves the vertices where they are drawn.
+    /// Does a frame: imports vertices, moves what the user drags, untangles, sweeps while there is time, and exports the vertices.
     pub(crate) fn frame(&mut self, drag: Option<(&BoundMove, &[[f32; 2]])>) -> Result<Seen> {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -108,7 +108,7 @@ impl Scene {
         self.untangling.encode_untangle(&mut encoder, 3);
         let sweeps = self.sweeps.encode_within(&mut encoder, &mut self.budget);
         {
-            // A pass of the application: it may have kernels of its own before and after.
+            // A pass of the application, which may have kernels of its own before and after.
             let mut pass = encoder.begin_compute_pass(&Default::default());
             self.objective.encode_objective(&mut pass);
             self.bound.encode_export(&mut pass);
@@ -120,7 +120,7 @@ impl Scene {
         }
         self.positions.encode_readback(&mut encoder);
         queue.submit([encoder.finish()]);
-        // A window has a frame in 16 milliseconds; this waits as long as the device needs.
+        // This example waits for the device. An application with a window goes on to its next frame.
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
 
         let values = self.values.latest()?.map_or_else(Default::default, |values| values[0]);
@@ -128,7 +128,7 @@ impl Scene {
         Ok(Seen { sweeps, values, share: if drag.is_some() { share } else { 1.0 } })
     }
 
-    /// How the mesh is with the vertices as the application has them, before any sweep.
+    /// Evaluates the mesh with the vertices as the application has written them, without sweeps.
     pub(crate) fn look(&mut self) -> Result<Seen> {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -141,7 +141,7 @@ impl Scene {
         Ok(Seen { sweeps: 0, values, share: 1.0 })
     }
 
-    /// Writes vertices of the application: they go there whatever becomes of the triangles.
+    /// Writes vertices into the vertex buffer, without regard to triangles.
     pub(crate) fn write(&self, vertices: &[u32], to: &[[f32; 2]]) {
         for (&v, place) in vertices.iter().zip(to) {
             let at = u64::from(v) * STRIDE;
@@ -149,18 +149,18 @@ impl Scene {
         }
     }
 
-    /// Lets the user move vertices.
+    /// Binds a move of these vertices, for a drag.
     pub(crate) fn take_hold(&self, vertices: &[u32]) -> Result<BoundMove> {
         let targets = VertexBuffer::new(&self.targets, 8);
         Ok(self.device_mesh.bind_move(vertices, &targets, WORST, (&self.numbers, SHARE))?)
     }
 
-    /// Where the mesh had these vertices at first.
+    /// The first places of these vertices, as the mesh had them.
     pub(crate) fn home(&self, vertices: &[u32]) -> Vec<[f32; 2]> {
         vertices.iter().map(|&v| self.mesh.points[v as usize].map(|x| x as f32)).collect()
     }
 
-    /// Where the last frame that was read back had them.
+    /// The places of these vertices in the last frame that was read back.
     pub(crate) fn places(&mut self, vertices: &[u32]) -> Result<Vec<[f32; 2]>> {
         let positions = self.positions.latest()?.ok_or("no frame has arrived")?;
         Ok(vertices.iter().map(|&v| positions[v as usize]).map(|[x, y, ..]| [x, y]).collect())

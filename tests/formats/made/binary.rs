@@ -1,4 +1,4 @@
-//! Binary formats, but for VTK's.
+//! Makes files of binary formats other than VTK's.
 
 use super::super::support::Binary;
 use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, fixing, region, regions, z};
@@ -30,7 +30,7 @@ struct Meshb {
 }
 
 impl Meshb {
-    /// Adds whole numbers as this version has them in lists.
+    /// Adds integers of the size that lists have in this version.
     fn integers(&self, body: &mut Binary, numbers: impl IntoIterator<Item = i64>) {
         for n in numbers {
             match self.version {
@@ -40,7 +40,7 @@ impl Meshb {
         }
     }
 
-    /// Adds a keyword, the place of the next one and what stands between. Returns where that starts.
+    /// Adds a keyword, the place of the next one, and `body`. Returns where `body` starts.
     fn chain(&mut self, keyword: i32, body: &[u8]) -> usize {
         self.file.ints(&[keyword]);
         let start = self.file.bytes.len() + if self.version < 3 { 4 } else { 8 };
@@ -53,7 +53,7 @@ impl Meshb {
         start
     }
 
-    /// Adds a list with its count. Returns where its first item starts.
+    /// Adds a list after its count. Returns where its first item starts.
     fn list(&mut self, keyword: i32, count: usize, items: &[u8]) -> usize {
         let mut body = Binary::empty(self.file.big);
         self.integers(&mut body, [count as i64]);
@@ -65,7 +65,7 @@ impl Meshb {
         start + width
     }
 
-    /// Adds a list of elements, whose vertices are counted from one.
+    /// Adds a list of elements, with their vertices numbered from one.
     fn elements(&mut self, keyword: i32, elements: &[(&[u32], Option<i32>)]) -> Range<usize> {
         let mut items = Binary::empty(self.file.big);
         for (vertices, reference) in elements {
@@ -141,7 +141,7 @@ fn record(file: &mut Binary, content: &[u8]) -> usize {
     start
 }
 
-/// A SELAFIN file of two variables and one time step, in so many planes. Those of double precision have a date.
+/// A SELAFIN file of two variables and one time step, with this number of planes. Files of double precision have a date.
 pub(crate) fn selafin(mesh: &Mesh, precision: Precision, big: bool, planes: i32) -> Made {
     let double = precision == Precision::Double;
     let (points, triangles) = (mesh.points.len(), mesh.triangles.len());

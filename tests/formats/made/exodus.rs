@@ -1,4 +1,4 @@
-//! Exodus II in the three classic forms of netCDF.
+//! Makes Exodus II files in the three classic forms of netCDF.
 
 use super::super::support::Binary;
 use super::binary::size_of;
@@ -16,7 +16,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     ]
 }
 
-/// Whether x, y and z are variables of their own.
+/// Whether x, y and z are separate variables, or one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Axes {
     Apart,
@@ -40,7 +40,7 @@ const DIMENSIONS: [&str; 14] = [
     "num_el_blk",
 ];
 
-/// A variable: its name, type, dimensions and content, which is that of one record if it is of time steps.
+/// A variable: its name, type, dimensions and content. The content is that of one record if it depends on time.
 struct Variable {
     name: String,
     number: i32,
@@ -49,7 +49,7 @@ struct Variable {
     element_type: &'static str,
 }
 
-/// A file under construction, in which counts and offsets may be wide.
+/// A file under construction. `version` tells whether counts and offsets have 64 bits.
 struct NetCdf {
     out: Binary,
     version: u8,
@@ -130,11 +130,11 @@ fn exodus(mesh: &Mesh, version: u8, precision: Precision, axes: Axes) -> Made {
     let corners: Vec<Vec<u32>> = mesh.triangles.iter().map(|t| t.to_vec()).collect();
     let [first, second] = [&corners[..SECOND_REGION], &corners[SECOND_REGION..]];
     file.connect(1, &["TRI3", "num_el_in_blk1", "three"], first);
-    // The numbers of all elements go through the blocks in their order, whatever that of the variables.
+    // Elements are numbered in the order of the blocks, whatever the order of the variables.
     file.connect(3, &["tri", "num_el_in_blk3", "three"], second);
     file.connect(2, &["SHELL4\0", "one", "four"], &[QUADRILATERAL.to_vec()]);
     file.connect(4, &["BAR2", "one", "two"], &[LINE.to_vec()]);
-    // Of the first triangle the side between its first two vertices, and of the shell its first edge and a face.
+    // The side of the first triangle between its first two vertices; of the shell its first edge and a face.
     let shell = SECOND_REGION as i32 + 1;
     file.ints("ss_prop1", &["one"], &[40]);
     file.names("ss_names", &["one", "len_name"], &["shore"]);

@@ -1,4 +1,4 @@
-//! Version 4.0 of gmsh's format, as text and in binary.
+//! Makes files of version 4.0 of gmsh's format, as text and in binary.
 
 use super::super::support::Binary;
 use super::{LINE, Made, POINT, PROBED, Text, fixing, number, region, regions, z};
@@ -18,7 +18,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
 
 /// The mesh with the vertices in this order.
 fn ordered(mesh: &Mesh, order: &[usize]) -> Mesh {
-    // One that is in no list keeps its number.
+    // A vertex that is not listed keeps its number.
     let position = |v: u32| order.iter().position(|&i| i == v as usize).map_or(v, |at| at as u32);
     let points = order.iter().map(|&i| mesh.points[i]).collect();
     let triangles = mesh.triangles.iter().map(|t| t.map(position)).collect();
@@ -26,7 +26,7 @@ fn ordered(mesh: &Mesh, order: &[usize]) -> Mesh {
     fixing(&mesh, [POINT].into_iter().chain(LINE).map(position))
 }
 
-/// A vertex inside on a point of the model, and nodes of a surface with their parameters.
+/// The mesh in binary. One inner vertex is on a point of the model, and nodes of a surface have parameters.
 fn in_binary(mesh: &Mesh, big: bool) -> Made {
     let mut file = Binary::new("4", big);
     let (mut counts, mut coordinates) = (Vec::new(), Vec::new());
@@ -96,7 +96,7 @@ fn in_binary(mesh: &Mesh, big: bool) -> Made {
 fn as_text(mesh: &Mesh) -> Made {
     let mut text = Text::new("$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n2 ");
     text.count(mesh.points.len());
-    // A vertex inside, on a point of the model; nodes of a surface with their parameters.
+    // One inner vertex is on a point of the model, and nodes of a surface have parameters.
     text.put("\n-3 0 0 1\n");
     let row = |i: usize, end: &str| {
         let [x, y] = mesh.points[i];
@@ -124,7 +124,7 @@ fn as_text(mesh: &Mesh) -> Made {
     text.rows((halves..mesh.triangles.len()).map(triangle));
     text.put("$EndElements\n");
 
-    // The vertices stand in the file in another order than in the mesh.
+    // The vertices have another order in the file than in the mesh.
     let probed = order[VERTEX];
     let row_of = others.iter().position(|&i| i == probed).unwrap();
     let probes =

@@ -1,4 +1,4 @@
-//! Grids of coastal models and of FreeFem, which are rows of numbers for the most part.
+//! Makes grids of coastal models and of FreeFem, which consist mostly of rows of numbers.
 
 use super::{
     LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, points, region, regions,
@@ -28,7 +28,7 @@ fn fort_14(mesh: &Mesh) -> Made {
     text.put("  ");
     text.count(mesh.points.len());
     text.put(" ! elements, nodes\n");
-    // As Fortran writes double precision.
+    // Double precision as Fortran writes it.
     let fortran = |x: f64| format!("{x:E}").replace('E', "D");
     let vertices = text.rows(mesh.points.iter().enumerate().map(|(i, &[x, y])| {
         format!("{:>9} {} {}  {}", 100 + 3 * i, fortran(x), fortran(y), fortran(z(i)))
@@ -59,7 +59,7 @@ fn gr3(mesh: &Mesh) -> Made {
     text.made("without boundaries", "in.gr3", Format::Adcirc, mesh.clone(), probes)
 }
 
-/// The elements before the nodes, numbers that are not consecutive, materials and node strings.
+/// A mesh with elements before nodes, numbers that are not consecutive, materials and node strings.
 fn sms(mesh: &Mesh) -> Made {
     let mut text = Text::new("MESH2D\nMESHNAME \"ND 1 bay\"\nNUM_MATERIALS_PER_ELEM 1\n");
     let mut triangle = 0;
@@ -88,7 +88,7 @@ fn sms_in_order(mesh: &Mesh) -> Made {
     let vertices = text.rows(points(mesh).map(|(i, at)| format!("ND {} {at} 0.0", i + 1)));
     let rows = mesh.triangles.iter().enumerate();
     let triangles = text.rows(rows.map(|(i, t)| format!("E3T {} {}", i + 1, joined(t, 1))));
-    // A file that ends among the elements is a smaller mesh.
+    // A file that ends among the elements is a valid smaller mesh, so this list is left out.
     text.lists.pop();
     let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
     text.made("nodes first", "in.2dm", Format::Sms2dm, mesh.clone(), probes)

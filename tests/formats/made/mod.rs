@@ -1,4 +1,4 @@
-//! Meshes in the formats of other programs, each in several legal ways of writing it, and what reading them has to give.
+//! Meshes in the formats of other programs, each written in several legal ways, and what reading them must give.
 
 pub(crate) mod binary;
 mod exodus;
@@ -15,41 +15,41 @@ use super::support::{SplitMix64, lattice};
 use gpu_smooth::{Format, Mesh, Precision};
 use std::ops::Range;
 
-/// A line inside the mesh, whose ends the file fixes.
+/// A line inside the mesh. The file fixes its ends.
 pub(crate) const LINE: [u32; 2] = [7, 8];
-/// A vertex inside the mesh that the file fixes by itself.
+/// A vertex inside the mesh that the file fixes on its own.
 pub(crate) const POINT: u32 = 9;
 /// A quadrilateral inside the mesh, whose corners stay fixed. It stands before triangle 10.
 pub(crate) const QUADRILATERAL: [u32; 4] = [15, 16, 22, 21];
-/// The vertex and the triangle whose places are known.
+/// The vertex and the triangle whose places in the file are known.
 pub(crate) const PROBED: (u32, usize) = (14, 17);
-/// From this triangle on the mesh is of another region.
+/// The first triangle of the second region.
 const SECOND_REGION: usize = 30;
 
 /// A file, and what it holds.
 pub(crate) struct Made {
-    /// What is special about it, for messages.
+    /// How this file differs from others, for messages.
     pub(crate) what: String,
     /// The name of the file.
     pub(crate) name: &'static str,
     pub(crate) format: Format,
     pub(crate) precision: Precision,
     pub(crate) bytes: Vec<u8>,
-    /// The points as they were written, all their digits. Fixed are the vertices that the file fixes by its elements,
-    /// ascending.
+    /// The mesh. Its points have all digits, also where the file rounds them. Its fixed vertices are those that the file's
+    /// elements fix, ascending.
     pub(crate) mesh: Mesh,
     pub(crate) regions: Option<Vec<u32>>,
-    /// The label of the probed vertex, and the bytes among which it stands.
+    /// The label of the probed vertex, and the range of bytes that contains it.
     pub(crate) vertex: (u64, Range<usize>),
-    /// The same of the probed triangle.
+    /// The label of the probed triangle, and the range of bytes that contains it.
     pub(crate) triangle: (u64, Range<usize>),
-    /// Bytes within lists: a file that ends within one of these is no mesh.
+    /// The byte ranges of lists: a file that ends within one of these is not a mesh.
     pub(crate) lists: Vec<Range<usize>>,
-    /// The numbers that tell how long the lists are.
+    /// The byte ranges of the numbers that tell how long lists are.
     pub(crate) counts: Vec<Range<usize>>,
-    /// Where the x and y of each vertex start, if they are in binary.
+    /// Where x and y of each vertex start, in bytes, if they are in binary.
     pub(crate) coordinates: Vec<[usize; 2]>,
-    /// Whether binary numbers start with their highest byte.
+    /// Whether binary numbers are big-endian.
     pub(crate) big: bool,
 }
 
@@ -58,12 +58,12 @@ impl Made {
         self.coordinates.is_empty()
     }
 
-    /// The points as they are read.
+    /// The points as they are read: rounded to the file's precision.
     pub(crate) fn points(&self) -> Vec<[f64; 2]> {
         self.mesh.points.iter().map(|p| p.map(|x| self.precision.rounded(x))).collect()
     }
 
-    /// The vertices held only for lying between regions.
+    /// The vertices that are fixed only because they lie between regions.
     pub(crate) fn interfaces(&self) -> Vec<u32> {
         let regions = self.regions.as_deref().unwrap_or_default();
         let mut between = interfaces(&self.mesh, regions);
@@ -72,7 +72,7 @@ impl Made {
     }
 }
 
-/// A mesh with 12 vertices inside, at places of many digits.
+/// A mesh with 12 inner vertices whose coordinates have many digits.
 pub(crate) fn base() -> Mesh {
     let mut mesh = lattice(5, 4);
     let on_boundary = super::support::boundary(&mesh);
@@ -83,7 +83,7 @@ pub(crate) fn base() -> Mesh {
     mesh
 }
 
-/// Every variant of every format. The mesh has to have the triangles of [`base`] but for their vertices.
+/// Every variant of every format. The mesh must have the triangles of [`base`]; its vertices may be elsewhere.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
     let families =
         [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all, xdmf::all];
@@ -110,22 +110,22 @@ fn cells(mesh: &Mesh) -> Vec<Vec<u32>> {
     cells
 }
 
-/// The name of the region of a triangle.
+/// The number that names the region of a triangle.
 fn region(triangle: usize) -> i32 {
     if triangle < SECOND_REGION { 5 } else { 2 }
 }
 
-/// The region of each triangle as it is read.
+/// The region of each triangle as it is read, numbered from zero.
 fn regions(mesh: &Mesh) -> Option<Vec<u32>> {
     Some((0..mesh.triangles.len()).map(|t| u32::from(t >= SECOND_REGION)).collect())
 }
 
-/// A third coordinate.
+/// The third coordinate of a vertex.
 fn z(vertex: usize) -> f64 {
     vertex as f64 * -0.75 + 1.5
 }
 
-/// A number as some program may write it.
+/// A number in one of the styles in which programs write it.
 fn number(style: usize, x: f64) -> String {
     match style % 4 {
         0 => format!("{x}"),
@@ -135,7 +135,7 @@ fn number(style: usize, x: f64) -> String {
     }
 }
 
-/// x and y in several styles, under a number of blanks.
+/// x and y in several styles, after a number of blanks.
 fn point(vertex: usize, [x, y]: [f64; 2]) -> String {
     let blank = [" ", "\t", "   "][vertex % 3];
     format!("{}{blank}{}", number(vertex, x), number(vertex + 1, y))
@@ -145,7 +145,7 @@ fn points(mesh: &Mesh) -> impl Iterator<Item = (usize, String)> {
     mesh.points.iter().enumerate().map(|(i, &at)| (i, point(i, at)))
 }
 
-/// Numbers of vertices that count from `first`.
+/// Numbers of vertices as text, counted from `first`.
 fn joined(vertices: &[u32], first: u32) -> String {
     let numbers: Vec<_> = vertices.iter().map(|v| (v + first).to_string()).collect();
     numbers.join(" ")
@@ -175,7 +175,7 @@ impl Text {
         self.counts.push(start..self.text.len());
     }
 
-    /// Adds the rows of a list, and returns where each starts.
+    /// Adds the rows of a list. Returns where each starts.
     fn rows(&mut self, rows: impl IntoIterator<Item = String>) -> Vec<usize> {
         let mut starts = Vec::new();
         for row in rows {
@@ -187,7 +187,7 @@ impl Text {
         starts
     }
 
-    /// The file, with the labels and places of the probed vertex and triangle.
+    /// Finishes the file. Takes the labels and places of the probed vertex and triangle.
     fn made(
         self,
         what: &str,

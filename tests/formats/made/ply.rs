@@ -1,4 +1,4 @@
-//! PLY, as text and in binary.
+//! Makes PLY files, as text and in binary.
 
 use super::super::support::Binary;
 use super::binary::size_of;
@@ -18,7 +18,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     all
 }
 
-/// Adds the header after its first two lines.
+/// Adds the header but for its first two lines.
 fn header(text: &mut Text, mesh: &Mesh, precision: Precision) {
     let real = if precision == Precision::Single { "float" } else { "double" };
     text.put("comment element vertex 9\nobj_info by hand\nelement vertex ");

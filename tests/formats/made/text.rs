@@ -1,4 +1,4 @@
-//! Text formats with keywords or headers, but for VTK's.
+//! Makes files of text formats with keywords or headers, other than VTK's.
 
 use super::{
     LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, point, points, region,
@@ -76,7 +76,7 @@ fn su2_elements_first(mesh: &Mesh) -> Made {
     text.made("elements first", "in.su2", Format::Su2, mesh, probes)
 }
 
-/// Twice the mesh, in two zones.
+/// The mesh twice, in two zones.
 fn su2_zones(mesh: &Mesh) -> Made {
     let mut text = Text::new("NZONE= 2\n");
     let mut both = Mesh::default();
@@ -166,7 +166,7 @@ fn obj(mesh: &Mesh) -> Made {
         let next = region(triangle) != region(triangle.saturating_sub(1)) && cell.len() == 3;
         format!("f{face}{}", if next { "\nusemtl ice" } else { "" })
     }));
-    // A file that ends among the faces is a smaller mesh.
+    // A file that ends among the faces is a valid smaller mesh, so this list is left out.
     text.lists.pop();
     text.put(&format!("l {}\np {}\n", joined(&LINE, 1), POINT + 1));
     let regions = regions(mesh);
@@ -175,7 +175,7 @@ fn obj(mesh: &Mesh) -> Made {
     Made { regions, ..text.made("of materials", "in.obj", Format::Obj, mesh, probes) }
 }
 
-/// Each face as soon as its vertices are there, with numbers counted back from the last one.
+/// Writes each face as soon as all its vertices are written, with numbers counted back from the last vertex.
 fn obj_counted_back(mesh: &Mesh) -> Made {
     let mut text = Text::default();
     let (mut before, mut probes) = (0, [(VERTEX as u64 + 1, 0), (18, 0)]);

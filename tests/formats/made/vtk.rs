@@ -1,4 +1,4 @@
-//! VTK's legacy format, as text and in binary, with lists of cells of both kinds.
+//! Makes files of VTK's legacy format, as text and in binary, with lists of cells in the old and the new layout.
 
 use super::super::support::Binary;
 use super::binary::size_of;
@@ -6,18 +6,18 @@ use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, cells, fixing, number, reg
 use gpu_smooth::{Format, Mesh, Precision};
 use std::ops::Range;
 
-/// A line of many vertices on the boundary.
+/// A line of three vertices on the boundary.
 const POLYLINE: [u32; 3] = [2, 3, 4];
 
-/// What differs between files.
+/// Properties in which the files differ.
 #[derive(Clone, Copy)]
 struct Style {
     version: &'static str,
     binary: bool,
     precision: Precision,
-    /// Polygonal data, not an unstructured grid.
+    /// Whether the file is polygonal data, and not an unstructured grid.
     polygons: bool,
-    /// The type of the numbers of cells, where offsets and points are listed apart.
+    /// The type of the integers of cells, if offsets and points are separate lists.
     offsets: Option<&'static str>,
 }
 
@@ -60,7 +60,7 @@ impl Writer {
         self.text(after);
     }
 
-    /// Adds whole numbers, of so many bytes each in binary.
+    /// Adds integers, in binary of `size` bytes each.
     fn numbers(&mut self, numbers: &[i64], size: usize) {
         for &n in numbers {
             match (self.style.binary, size) {
@@ -106,7 +106,7 @@ impl Writer {
         }
     }
 
-    /// Adds a list of rows of whole numbers, of so many bytes each in binary. Returns where each row starts.
+    /// Adds a list of rows of integers, in binary of `size` bytes each. Returns where each row starts.
     fn integers(&mut self, rows: &[Vec<usize>], size: usize) -> Vec<usize> {
         let mut starts = Vec::new();
         for row in rows {
@@ -121,14 +121,14 @@ impl Writer {
         starts
     }
 
-    /// Ends a list. As text it may lack the end of its last row.
+    /// Ends a list. A text that ends anywhere in its last row may still be read.
     fn end_list(&mut self, start: usize, last_row: usize) {
         let end = if self.style.binary { self.file.bytes.len() } else { last_row + 1 };
         self.lists.push(start..end);
         self.text("\n");
     }
 
-    /// Adds the points. Text has three of them on a line where the precision is single. Returns where each starts.
+    /// Adds the points. Returns where each starts. Text of single precision has three points on a line.
     fn points(&mut self, mesh: &Mesh) -> Vec<usize> {
         let precision = self.style.precision;
         let name = if precision == Precision::Single { "float" } else { "double" };
@@ -149,7 +149,7 @@ impl Writer {
         starts
     }
 
-    /// Adds a list of cells. Returns among which bytes each stands, for the points of all where offsets stand apart.
+    /// Adds a list of cells. Returns the byte range that contains each; where offsets are separate, that of the points of all.
     fn cells(&mut self, keyword: &str, cells: &[Vec<u32>]) -> Vec<Range<usize>> {
         let points: Vec<Vec<usize>> =
             cells.iter().map(|cell| cell.iter().map(|&v| v as usize).collect()).collect();

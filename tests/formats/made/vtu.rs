@@ -1,4 +1,4 @@
-//! VTK's XML format in all its encodings.
+//! Makes files of VTK's XML format in all its encodings.
 
 use super::super::support::Binary;
 use base64::Engine;
@@ -19,12 +19,12 @@ pub(crate) enum Place {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
     pub(crate) place: Place,
-    /// None, or the attribute of the compressor.
+    /// The attribute that names the compressor, if there is one.
     pub(crate) compressor: Option<&'static str>,
     wide_header: bool,
     big: bool,
     pub(crate) precision: Precision,
-    /// The type of whole numbers.
+    /// Whether integers have 64 bits.
     wide_integers: bool,
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn styles() -> Vec<Style> {
     styles
 }
 
-/// An array that is written: its attributes, its numbers as text, and as bytes.
+/// An array to write: its attributes, its numbers as text, and its numbers as bytes.
 struct Array {
     attributes: String,
     text: String,
@@ -61,7 +61,7 @@ impl Style {
         bytes.bytes
     }
 
-    /// The array with its header, as its place has it.
+    /// The bytes with their header, encoded as `place` requires.
     fn encoded(self, bytes: &[u8]) -> Vec<u8> {
         const BLOCK: usize = 100;
         let text = |bytes: &[u8]| STANDARD.encode(bytes).into_bytes();
@@ -88,7 +88,7 @@ impl Style {
         if raw { [header, content].concat() } else { [text(&header), text(&content)].concat() }
     }
 
-    /// Vectors of two numbers each, in the other precision than points have.
+    /// Vectors of two numbers each, of another precision than the points.
     fn vectors(self, name: &str, count: usize) -> Array {
         let single = self.precision == Precision::Double;
         let precision = if single { Precision::Single } else { Precision::Double };
@@ -125,8 +125,8 @@ pub(crate) fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
     write_pieces(&[mesh], style, false)
 }
 
-/// The same of several meshes, each with an edge before its triangles and a quadrilateral among them; as an unstructured grid or
-/// as polygonal data.
+/// A file of several pieces, as an unstructured grid or as polygonal data. Each piece has an edge before its triangles and a
+/// quadrilateral among them.
 pub(crate) fn write_pieces(meshes: &[&Mesh], style: Style, polygons: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let order = if style.big { "BigEndian" } else { "LittleEndian" };
@@ -205,7 +205,7 @@ fn cells(mesh: &Mesh) -> Vec<Cell> {
     cells
 }
 
-/// The arrays of a piece by the element they stand in.
+/// The arrays of a piece, grouped by the XML element that contains them.
 fn sections(
     mesh: &Mesh,
     cells: &[Cell],
@@ -225,7 +225,7 @@ fn sections(
         bytes: points.bytes,
     };
     let column = |of: fn(&Cell) -> u32| cells.iter().map(of).collect::<Vec<_>>();
-    // Connectivity and offsets of some cells.
+    // Connectivity and offsets of these cells.
     let lists = |cells: &[Cell]| {
         let connectivity: Vec<u32> = cells.iter().flat_map(|cell| cell.1.clone()).collect();
         let mut end = 0;
