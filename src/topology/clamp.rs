@@ -29,7 +29,7 @@ impl Topology<'_> {
     /// #     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     /// #     fixed: vec![],
     /// # };
-    /// The middle vertex of a unit square, dragged out of it.
+    /// // The middle vertex of a unit square, dragged out of it.
     /// let topology = Topology::new(&mesh)?;
     /// let mut points = mesh.points.clone();
     /// let share = topology.move_clamped(&mut points, &[(4, [2.5, 0.5])], f64::INFINITY)?;
