@@ -50,14 +50,14 @@ impl MeshFile {
             }
         }
         let vertices = self.original().points.len();
-        let is_real = |name: &str| known.iter().any(|(known, real)| known == name && *real);
         for (name, _) in known.iter().filter(|(_, is_real)| *is_real) {
             let is_wanted = names.is_none_or(|names| names.contains(name));
             if is_wanted && !fields.iter().any(|field| field.name() == name) {
                 return Err(self.damaged(name));
             }
         }
-        for field in fields.iter().filter(|field| is_real(field.name())) {
+        // Whole numbers may come first under a name that real ones have too.
+        for field in &fields {
             let (found, each) = (field.values().len(), field.components());
             if Some(found) != vertices.checked_mul(each) {
                 let name = quoted(field.name().as_bytes());

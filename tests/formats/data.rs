@@ -316,3 +316,25 @@ fn depths_and_other_numbers_need_not_be_finite() {
     let error = MeshFile::read(&folder.path("b.ply")).unwrap_err().to_string();
     assert!(error.contains("b.ply:8: a whole number of an item is not finite"), "{error}");
 }
+
+/// Real numbers are looked at even where whole ones of the same name come before them.
+#[test]
+fn damaged_data_of_a_name_that_is_there_twice_are_errors() {
+    let head = "<Xdmf Version=\"3.0\"><Domain><Grid><Geometry Type=\"XY\"><DataItem Dimensions=\"4 2\">\
+        0 0 1 0 1 1 0 1</DataItem></Geometry><Topology Type=\"Triangle\"><DataItem NumberType=\"Int\">\
+        0 1 2 0 2 3</DataItem></Topology>";
+    let data = |kind: &str, numbers: &str| {
+        format!(
+            "<Attribute Name=\"T\" Center=\"Node\"><DataItem NumberType=\"{kind}\" Dimensions=\"4\">\
+             {numbers}</DataItem></Attribute>"
+        )
+    };
+    let fields = |real: &str| {
+        let text = [head, &data("Int", "1 2 3 4"), &data("Float", real), "</Grid></Domain></Xdmf>"];
+        let file = MeshFile::from_bytes("in.xdmf".as_ref(), text.concat().into()).unwrap();
+        file.point_fields(None).map(|fields| fields.len()).map_err(|error| error.to_string())
+    };
+    assert_eq!(fields("1 2 3 4"), Ok(1));
+    let error = fields("1 2 3").unwrap_err();
+    assert!(error.contains("'T' has 3 numbers, 1 a vertex"), "{error}");
+}
