@@ -60,7 +60,15 @@ pub(crate) fn any_triangle_files(folder: &Path, bytes: &[u8]) {
         }
     }
     match MeshFile::read(&folder.join("fuzzed.node")) {
-        Ok(file) => use_file(&file),
+        Ok(file) => {
+            use_file(&file);
+            file.write(&folder.join("again.node"), &file.mesh().points).unwrap();
+            for ending in ["node", "ele"] {
+                let [own, again] = ["fuzzed", "again"]
+                    .map(|name| fs::read(folder.join(name).with_extension(ending)).unwrap());
+                assert!(own == again, "a .{ending} that has not changed is written otherwise");
+            }
+        }
         Err(error) => assert_told(&error.to_string()),
     }
 }

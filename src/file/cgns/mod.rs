@@ -36,10 +36,7 @@ impl Walk for Cgns {
     const VERTICES: &'static str = "the list of coordinates";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let hdf5 = Hdf5::open(source)?;
-        let layout = File::open(source, &hdf5)?.read(sink)?;
-        hdf5.check_apart()?;
-        Ok(layout)
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
     }
 }
 

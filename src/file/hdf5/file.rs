@@ -137,6 +137,17 @@ impl<'a> Hdf5<'a> {
         error_of(self.source, fault)
     }
 
+    /// Opens a file, reads it, and checks that no two of the parts that were read share bytes.
+    pub(in crate::file) fn read<T>(
+        source: &Source,
+        read: impl FnOnce(&Hdf5<'_>) -> Result<T, ReadError>,
+    ) -> Result<T, ReadError> {
+        let hdf5 = Hdf5::open(source)?;
+        let found = read(&hdf5)?;
+        hdf5.check_apart()?;
+        Ok(found)
+    }
+
     /// Checks that no two of the things that were read share bytes, so that what is written to one changes no other.
     pub(in crate::file) fn check_apart(&self) -> Result<(), ReadError> {
         match self.raw.shared() {

@@ -40,10 +40,7 @@ impl Walk for Med {
     const VERTICES: &'static str = "the list of nodes";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let hdf5 = Hdf5::open(source)?;
-        let layout = File::open(source, &hdf5)?.read(sink)?;
-        hdf5.check_apart()?;
-        Ok(layout)
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
     }
 }
 
