@@ -140,14 +140,19 @@ fn an_interrupted_run_leaves_the_best_mesh_so_far() {
     }
 }
 
-#[test]
-fn a_goal_not_reached_is_told_when_interrupted() {
-    // The mesh is so large, and the sweeps are so slow, that the run does not stop by itself before the signal.
-    let mesh = support::perturb_random(&support::lattice(90, 90), 1.0, 1);
+/// A folder with a square lattice in `in.off`, of so many cells along each side, its vertices at random places.
+fn perturbed_lattice(side: usize) -> Folder {
+    let mesh = support::perturb_random(&support::lattice(side, side), 1.0, 1);
     let mut text = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
     text.extend(mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n")));
     text.extend(mesh.triangles.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")));
-    let folder = Folder::new(&[("in.off", &text)]);
+    Folder::new(&[("in.off", &text)])
+}
+
+#[test]
+fn a_goal_not_reached_is_told_when_interrupted() {
+    // The mesh is so large, and the sweeps are so slow, that the run does not stop by itself before the signal.
+    let folder = perturbed_lattice(90);
     let args = ["in.off", "out.off", "-v", "--engine", "cpu", "--method", "paper"];
     let args = [&args[..], &["--desired", "1", "--fraction", "1", "--scheme", "edge+imr"]].concat();
     let args = [&args[..], &["--derivatives", "finite-difference", "--inner", "30"]].concat();
@@ -177,18 +182,17 @@ fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
 
 #[test]
 fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() {
-    let folder = Folder::new(&[]);
-    let plate = plate_path().to_str().unwrap();
-    // The optimum by `edge` takes thousands of sweeps to find.
-    let goal = ["--scheme", "edge", "--desired", "auto"];
-    let args = [&[plate, "out", "-v", "--engine", "cpu"][..], &goal].concat();
+    let folder = perturbed_lattice(200);
+    // The optimum by `area` takes thousands of sweeps to find, without corrections.
+    let goal = ["--scheme", "area", "--desired", "auto"];
+    let args = [&["in.off", "out.off", "-v", "--engine", "cpu"][..], &goal].concat();
     let mut run = Started::new(&folder, &args);
     run.first_of("gpu-smooth: finding the optimum: sweep ");
     run.signal("-TERM");
     let (code, out, err) = run.end();
     assert_eq!((code, out.as_str()), (Some(143), ""), "{err}");
     assert_holds(&err, &["gpu-smooth: interrupted: nothing was written\n"]);
-    assert!(names(&folder).is_empty());
+    assert_eq!(names(&folder), ["in.off"]);
 }
 
 /// The `.ele` of OUT is a pipe that nobody reads, so the run hangs while it writes.
