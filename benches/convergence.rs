@@ -1,16 +1,22 @@
 //! Measures how many sweeps a run takes to come within a share of its limit. Compares the time of the run, with the set-up
 //! of coarse levels, with the time of one plain sweep.
 //!
-//! `cargo bench --bench convergence -- [VERTICES...]`, 57,000 by default. Compare ratios, not times.
+//! ```text
+//! cargo bench --bench convergence -- 57000          # vertices of the plates; without any argument 57,000
+//! cargo bench --bench convergence -- MESH...        # mesh files instead of generated meshes
+//! ```
+//!
+//! Compare ratios, not times.
 
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/support/mod.rs"]
 mod support;
 
+use std::path::Path;
 use std::time::Duration;
 
-use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
+use gpu_smooth::{Backend, Gpu, Mesh, MeshFile, Method, Metric, Options, Outcome, Smoother};
 
 /// How many runs a median is taken of.
 const REPEATS: usize = 5;
@@ -18,8 +24,7 @@ const REPEATS: usize = 5;
 const PLAIN: u32 = 20;
 
 fn main() {
-    let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
-    let sizes = if sizes.is_empty() { vec![57_000] } else { sizes };
+    let (sizes, files) = arguments();
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let mut backends = vec![("cpu".to_owned(), Backend::Cpu)];
     match Gpu::open(None) {
@@ -27,7 +32,8 @@ fn main() {
         Err(error) => println!("no GPU: {error}"),
     }
     println!("sweeps to 95 %, 99 %, 1e-4 and 1e-6 of the limit; time to 1e-6 in plain sweeps");
-    for (start, mesh) in hard_meshes() {
+    let single = if files.is_empty() { hard_meshes() } else { read(&files) };
+    for (start, mesh) in single {
         for (name, backend) in &backends {
             let row = measure(&mesh, Metric::Imr, Method::Multilevel, backend);
             println!("{:>8} {start} imr on {name}: {row}", mesh.points.len());
@@ -53,10 +59,31 @@ fn main() {
     }
 }
 
+/// The numbers of vertices and the mesh files that the command line names: 57,000 vertices if it names none.
+fn arguments() -> (Vec<usize>, Vec<String>) {
+    let mut sizes = Vec::new();
+    let mut files = Vec::new();
+    for argument in std::env::args().skip(1).filter(|argument| argument != "--bench") {
+        match argument.parse() {
+            Ok(vertices) => sizes.push(vertices),
+            Err(_) => files.push(argument),
+        }
+    }
+    if sizes.is_empty() && files.is_empty() {
+        sizes.push(57_000);
+    }
+    (sizes, files)
+}
+
+fn read(files: &[String]) -> Vec<(String, Mesh)> {
+    let mesh = |file: &String| MeshFile::read(Path::new(file)).unwrap().mesh().clone();
+    files.iter().map(|file| (file.clone(), mesh(file))).collect()
+}
+
 /// Meshes on which corrections gain little unless they are accelerated by secant pairs.
-fn hard_meshes() -> Vec<(&'static str, Mesh)> {
+fn hard_meshes() -> Vec<(String, Mesh)> {
     let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
-    vec![
+    let meshes = [
         ("graded over 1e3", perturbed(&support::graded(30, 1e-3), 1.0)),
         ("graded over 1e6", perturbed(&support::graded(30, 1e-6), 1.0)),
         ("a vertex of 50", perturbed(&support::hub(50, 1e-2), 1.0)),
@@ -64,7 +91,8 @@ fn hard_meshes() -> Vec<(&'static str, Mesh)> {
         ("rings in equal distances", perturbed(&support::hub_evenly(50, 40), 1.0)),
         ("a layer of 1:30", perturbed(&support::layered(90, 30.0), 0.3)),
         ("a layer of 1:100", perturbed(&support::wavy_layer(90, 100.0, 3.0), 0.3)),
-    ]
+    ];
+    meshes.map(|(name, mesh)| (name.to_owned(), mesh)).into()
 }
 
 fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> String {
