@@ -199,11 +199,11 @@ pub enum MeshError {
         /// Number of times that the triangles wind around it.
         turns: u32,
     },
-    /// The objective of the mesh is not a finite number, because of a triangle that is too flat, or too small beside the
-    /// others.
+    /// The metric that judges the run cannot judge a triangle: its area is zero or below as computed in double precision, though
+    /// by exact predicates it is not inverted. It is too flat, or too small beside the others.
     #[error(
         "triangle {triangle} is too flat, or too small beside the others, for double precision: \
-         its quality by {metric} is not a finite number"
+         {metric} cannot judge it"
     )]
     BeyondPrecision {
         /// The worst triangle.

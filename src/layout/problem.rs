@@ -1,5 +1,6 @@
 //! The input of the engines: normalized positions and one-rings, numbered color by color.
 
+use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -234,6 +235,37 @@ impl Problem {
             }
         });
         room
+    }
+
+    /// Returns the triangles whose inverse mean ratio, or its square, is not finite as computed in double precision from one
+    /// of their corners: they are so flat, or so small beside the others, that metrics with a barrier cannot judge them.
+    pub(crate) fn beyond_precision(&self, positions: &[DVec2]) -> Vec<u32> {
+        let position = |v: u32| positions[v as usize];
+        let is_beyond = |&[p, q, r]: &[u32; 3]| {
+            [[p, q, r], [q, r, p], [r, p, q]].iter().any(|turned| {
+                let ratio = self.corner(turned, position).inverse_mean_ratio();
+                !(ratio * ratio).is_finite()
+            })
+        };
+        let found = map_parts(self.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+            let beyond = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| is_beyond(t));
+            beyond.map(|(_, t)| t as u32).collect()
+        });
+        found.concat()
+    }
+
+    /// Returns the numbers in the mesh, in ascending order, of some of the triangles. `given` are the mesh's triangles.
+    pub(crate) fn in_mesh(&self, triangles: &[u32], given: &[[u32; 3]]) -> Vec<usize> {
+        if triangles.is_empty() {
+            return Vec::new();
+        }
+        let sorted = |mut vertices: [u32; 3]| {
+            vertices.sort_unstable();
+            vertices
+        };
+        let of = |&t: &u32| sorted(self.triangles[t as usize].map(|v| self.vertices[v as usize]));
+        let sought: HashSet<[u32; 3]> = triangles.iter().map(of).collect();
+        (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
     }
 
     /// Converts normalized positions to the mesh's order and units. A vertex that is fixed or has not moved keeps

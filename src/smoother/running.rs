@@ -39,7 +39,8 @@ impl Smoother<'_> {
             .transpose()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
-        if !initial.is_finite() {
+        let is_beyond = || base.properties().barrier && self.is_beyond_precision(initial);
+        if !initial.is_finite() || is_beyond() {
             let triangle = self.quality(&self.mesh.points)?.worst_triangle;
             let metric = base.properties().name;
             return Err(MeshError::BeyondPrecision { triangle, metric }.into());
@@ -66,6 +67,16 @@ impl Smoother<'_> {
         let outcome = self.judged(options, (initial, goal), ended, ways, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
+    }
+
+    /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it, given the objective
+    /// by a metric with a barrier.
+    fn is_beyond_precision(&self, objective: f64) -> bool {
+        // Rounded areas have errors of some 1e-16 of the squared edges, so metrics of such triangles are far beyond this.
+        const LEAST: f64 = 1e13;
+        // Some metrics are negative where the rounded area is.
+        objective.abs() * self.size().triangles as f64 > LEAST
+            && !self.problem.beyond_precision(self.problem.positions()).is_empty()
     }
 
     /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If

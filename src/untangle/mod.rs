@@ -9,6 +9,7 @@ pub(crate) mod energy;
 mod pieces;
 mod state;
 
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use crate::error::{BadTriangle, MeshError};
@@ -65,10 +66,11 @@ pub struct Untangling {
 pub struct Untangled {
     /// Position of every vertex, in the mesh's order and units. Vertices that are not free are where they were.
     pub points: Vec<[f64; 2]>,
-    /// Number of triangles that were inverted or flat.
+    /// Number of triangles that were inverted or flat, or so flat that double precision cannot judge them.
     pub bad_before: usize,
     /// The triangles that still are, in ascending order, by exact predicates on the values of `points`. None if the mesh is
-    /// untangled.
+    /// untangled. Those that double precision cannot judge ([`Smoother::beyond_precision`](crate::Smoother::beyond_precision))
+    /// are listed as flat if one of their vertices is free.
     pub left: Vec<BadTriangle>,
     /// Those of `left` that no move can mend, as none of their vertices is free.
     pub hopeless: Vec<BadTriangle>,
@@ -81,7 +83,7 @@ pub struct Untangled {
 }
 
 /// Moves free vertices until no triangle is inverted or flat, if that can be done: connectivity, boundary and fixed
-/// vertices stay. Only vertices near bad triangles move unless that is not enough. On the CPU.
+/// vertices stay. Triangles so flat that double precision cannot judge them are opened as well. Only vertices near bad triangles move unless that is not enough. On the CPU.
 ///
 /// Windings are made consistent across edges, and such that the area that the boundary of each part encloses is positive.
 /// `stored` is the precision in which the points will be stored: they are rounded to it and then judged. `observe` is called
@@ -99,7 +101,9 @@ pub fn untangle(
     observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
 ) -> Result<Untangled, MeshError> {
     let topology = Topology::by_area(mesh)?;
-    let before = bad_triangles(&mesh.points, topology.triangles());
+    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
+    let mut work = Work { mesh, topology: &topology, problem: &problem, stored };
+    let before = work.bad_triangles(&mesh.points);
     let is_free = |v: &u32| topology.free()[*v as usize];
     let is_hopeless = |bad: &BadTriangle| !bad.vertices.iter().any(is_free);
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
@@ -115,8 +119,6 @@ pub fn untangle(
     if result.left.len() == result.hopeless.len() {
         return Ok(result);
     }
-    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
-    let mut work = Work { mesh, topology: &topology, problem: &problem, stored };
     work.run(&mut result, observe);
     let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
     result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
@@ -191,7 +193,27 @@ impl Work<'_> {
     /// The triangles of the problem that are inverted or flat, or so by rounding.
     fn bad(&self, state: &State<'_>) -> Vec<u32> {
         let points: Vec<[f64; 2]> = state.positions.iter().map(|p| p.to_array()).collect();
-        not_positive(&points, self.problem.triangles())
+        let mut bad = not_positive(&points, self.problem.triangles());
+        bad.extend(self.problem.beyond_precision(&state.positions));
+        bad
+    }
+
+    /// The triangles of the mesh that are inverted or flat with the vertices at `points`, and those with a free vertex that
+    /// are so flat that double precision cannot judge them. In ascending order.
+    fn bad_triangles(&self, points: &[[f64; 2]]) -> Vec<BadTriangle> {
+        let triangles = self.topology.triangles();
+        let mut bad = bad_triangles(points, triangles);
+        let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
+        let is_free = |v: &u32| self.topology.free()[*v as usize];
+        let beyond = self.problem.beyond_precision(&self.problem.normalized(points, Vec::new()));
+        for triangle in self.problem.in_mesh(&beyond, triangles) {
+            let vertices = triangles[triangle];
+            if !exact.contains(&triangle) && vertices.iter().any(is_free) {
+                bad.push(BadTriangle { triangle, vertices, flat: true });
+            }
+        }
+        bad.sort_unstable_by_key(|bad| bad.triangle);
+        bad
     }
 
     /// Takes the positions if fewer triangles are bad than in the result. Returns whether none is left that could be
@@ -202,7 +224,7 @@ impl Work<'_> {
             *x = self.stored.rounded(*x);
         }
         let triangles = self.topology.triangles();
-        let left = bad_triangles(&points, triangles);
+        let left = self.bad_triangles(&points);
         let overlapping = match left.is_empty() {
             true => overlapping_star(&points, triangles, self.topology.free()).map(|(v, _)| v),
             false => None,

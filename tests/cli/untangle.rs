@@ -55,6 +55,21 @@ fn a_sound_mesh_is_smoothed_as_without_the_option() {
 }
 
 #[test]
+fn triangles_that_double_precision_cannot_judge_are_opened_with_the_option() {
+    let folder = folder(&support::disturb::beyond_double_precision());
+    let refused = folder.line("in.node out.node --engine cpu");
+    refused.refused(&["is too flat", "for double precision", "--untangle"]);
+    let run = folder.line("in.node out.node --engine cpu --untangle").clean();
+    assert_holds(
+        &run.out,
+        &[
+            "\nuntangled 1 inverted or flat triangle in ",
+            "\ninverted                 0           0\n",
+        ],
+    );
+}
+
+#[test]
 fn what_cannot_be_untangled_is_listed_and_written_only_if_asked_for() {
     // Reverses a triangle that has no free vertex.
     let mut mesh = tangled();

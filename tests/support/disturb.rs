@@ -1,6 +1,7 @@
 //! Makes meshes worse without inverting a triangle.
 
-use super::check::{held, imr, orient, squared_distance};
+use super::check::{held, imr, is_ccw, orient, squared_distance};
+use super::generate::lattice;
 use super::rng::SplitMix64;
 use super::trig::sin_turns;
 use gpu_smooth::Mesh;
@@ -155,4 +156,32 @@ fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
         }
     }
     squared.into_iter().map(f64::sqrt).collect()
+}
+
+/// A lattice with a vertex so near to an edge opposite that the triangle of the two is counter-clockwise by exact predicates,
+/// while its area is not positive as computed in double precision.
+pub fn beyond_double_precision() -> Mesh {
+    let mut mesh = lattice(8, 8);
+    // The free vertex in row 4, column 4, and the edge between its two neighbors on the right.
+    let [v, p, q] = [4 * 9 + 4, 4 * 9 + 5, 5 * 9 + 4];
+    let middle = [0, 1].map(|i| (mesh.points[p][i] + mesh.points[q][i]) / 2.0);
+    for point in &mut mesh.points {
+        let [x, y] = [point[0] - middle[0], point[1] - middle[1]];
+        *point = [0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y];
+    }
+    // Near the origin coordinates are finer than differences to the ends of the edge.
+    for k in 1..100 {
+        mesh.points[v] = [0, 1].map(|i| mesh.points[p][i] * 1e-3 * f64::from(k));
+        while !is_ccw(&mesh) {
+            mesh.points[v][0] = mesh.points[v][0].next_down();
+        }
+        let [p, q, v] = [p, q, v].map(|v| mesh.points[v]);
+        let is_flat = |[p, q, r]: [[f64; 2]; 3]| {
+            (q[0] - p[0]) * (r[1] - p[1]) <= (q[1] - p[1]) * (r[0] - p[0])
+        };
+        if [[v, p, q], [p, q, v], [q, v, p]].into_iter().all(is_flat) {
+            return mesh;
+        }
+    }
+    panic!("every triangle has a positive area")
 }

@@ -1,7 +1,10 @@
 //! Untangling: meshes tangled in the ways of the literature.
 
 use crate::{plate, support, with_points};
-use gpu_smooth::{Mesh, MeshError, Precision, Topology, Untangled, Untangling, untangle};
+use gpu_smooth::{
+    Backend, Mesh, MeshError, Metric, Options, Precision, SmoothError, Smoother, Topology,
+    Untangled, Untangling, untangle,
+};
 use std::ops::ControlFlow;
 use support::{SplitMix64, boundaries, tangle};
 
@@ -186,4 +189,37 @@ fn a_sound_mesh_is_left_alone_and_a_broken_one_refused() {
     let broken = Mesh { triangles: vec![[0, 1, 1]], ..mesh };
     let error = untangle(&broken, Precision::Double, &mut |_| ControlFlow::Continue(())).err();
     assert_eq!(error, Some(MeshError::RepeatedVertex { triangle: 0, vertex: 1 }));
+}
+
+#[test]
+fn triangles_that_double_precision_cannot_judge_are_opened() {
+    let mesh = support::disturb::beyond_double_precision();
+    let smoother = Smoother::new(&mesh).unwrap();
+    assert_eq!(smoother.beyond_precision().len(), 1);
+    // With a rounded area below zero f is finite, 8e30. Such a mesh once came back unsmoothed and was called converged.
+    for metric in Metric::ALL.iter().filter(|metric| metric.properties().barrier) {
+        for backend in crate::backends() {
+            let options = Options { scheme: (*metric).into(), ..Options::default() };
+            let run = smoother.run(&options, backend);
+            let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run else {
+                panic!("a mesh that double precision cannot judge was smoothed by {metric}")
+            };
+            assert_eq!(triangle, smoother.beyond_precision()[0]);
+        }
+    }
+
+    // These need no area. Edge has no barrier either, but its shape guard holds the vertex where it is.
+    for metric in [Metric::Area, Metric::Rms] {
+        let options = Options { scheme: metric.into(), ..Options::default() };
+        let outcome = smoother.run(&options, &Backend::Cpu).unwrap();
+        assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.01, "{metric}");
+    }
+
+    let result = check("beyond double precision", &mesh);
+    assert_eq!(result.bad_before, 1);
+    let opened = with_points(&mesh, &result.points);
+    let smoother = Smoother::new(&opened).unwrap();
+    assert!(smoother.beyond_precision().is_empty());
+    let outcome = smoother.run(&Options::default(), &Backend::Cpu).unwrap();
+    assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.1);
 }

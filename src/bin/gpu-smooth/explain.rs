@@ -183,8 +183,9 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
         MeshError::BeyondPrecision { triangle, metric } => {
             let place = file.triangle_place(triangle);
             format!(
-                "{place}: triangle {} is too flat, or too small beside the others, for double precision: its \
-                 quality by {metric} is not a finite number. Correct it, or smooth by area or edge",
+                "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
+                 {metric} cannot judge it. Open it with --untangle if one of its vertices is free, correct it, or smooth by \
+                 area or rms first",
                 place.label
             )
         }

@@ -96,7 +96,8 @@ pub(crate) fn carry_out<T>(
     let (prepared, taken) = std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
         let prepared = match Smoother::new(mesh) {
-            Err(error) if args.untangle && untangle::can_mend(&error) => {
+            prepared if args.untangle && untangle::can_mend(&prepared) => {
+                drop(prepared);
                 follow.stage(Stage::Untangling);
                 riding
                     .check_untangled()

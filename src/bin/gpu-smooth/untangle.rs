@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Untangled, Untangling};
+use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Smoother, Untangled, Untangling};
 
 use crate::cli::OutputArgs;
 use crate::explain;
@@ -94,7 +94,14 @@ fn still_tangled(
     )
 }
 
-/// Whether a mesh was refused for inverted or flat triangles, which untangling may mend.
-pub(crate) fn can_mend(error: &MeshError) -> bool {
-    matches!(error, MeshError::Infeasible { .. })
+/// Whether a mesh was refused for inverted or flat triangles, or has some that double precision cannot judge, which
+/// untangling may mend.
+pub(crate) fn can_mend(prepared: &Result<Smoother<'_>, MeshError>) -> bool {
+    match prepared {
+        Ok(smoother) => smoother.beyond_precision().iter().any(|&t| {
+            let topology = smoother.topology();
+            topology.triangles()[t].iter().any(|&v| topology.free()[v as usize])
+        }),
+        Err(error) => matches!(error, MeshError::Infeasible { .. }),
+    }
 }

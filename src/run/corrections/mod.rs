@@ -264,7 +264,8 @@ impl<'a> Corrections<'a> {
         };
         let pays = 1.0 - (1.0 - share).powi(period as i32);
         let gain = last - (f - self.metric().ideal_squared());
-        if done >= until.max(period) && gain < pays * last {
+        // Equal where f has its ideal value.
+        if done >= until.max(period) && gain <= pays * last {
             if self.attempts == 0 {
                 self.alternated = done as u32;
             }
@@ -402,7 +403,15 @@ impl<'a> Corrections<'a> {
                 (None, false) => None,
             });
         }
+        // f cannot fall below its ideal value, so no estimate is needed where it is nearly there.
+        let f = history.last();
+        let above_ideal = (f - self.metric().ideal_squared()) / f.max(LEAST_SCALE);
+        let asked = history.rule().tolerance;
+        let bound = Some(above_ideal.max(NOISE))
+            .filter(|&most| asked > 0.0 && most <= asked && f.is_finite());
+        of_decay = of_decay.or(bound.filter(|_| target.is_none()).map(|_| Stop::Converged));
         let remaining = remaining.map(|left| left + self.above());
+        let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         let stop = match of_f {
             Some(Stop::Reached) => of_f,
             _ => of_decay.or(of_f),
