@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_are_vertices_of_no_other_triangle() {
+    fn vertices_inside_a_region_belong_to_no_triangle_outside() {
         let mesh = strip();
         let topology = Topology::new(&mesh).unwrap();
         assert_eq!(vertices_inside(&topology, &[0, 1]), [0, 6]);

@@ -62,7 +62,7 @@ fn samples() -> &'static (Vec<Vec<u8>>, Vec<u8>) {
 }
 
 #[test]
-fn files_of_any_bytes() {
+fn arbitrary_bytes_as_a_file_never_panic() {
     let mut random = SplitMix64::new(11);
     let (texts, _) = samples();
     assert!(texts.len() > 8);
@@ -90,7 +90,7 @@ const HDF5: [&[u8]; 4] = [
 ];
 
 #[test]
-fn files_of_hdf5_of_any_bytes() {
+fn arbitrary_bytes_as_an_hdf5_file_never_panic() {
     let mut random = SplitMix64::new(16);
     let folder = tempfile::tempdir().unwrap();
     for round in 0..rounds(120) {

@@ -208,7 +208,7 @@ fn rearranged_meshes_are_the_same_mesh() {
 }
 
 #[test]
-fn checks_can_fail() {
+fn the_checks_of_the_tests_can_fail() {
     let good = support::lattice(3, 3);
     assert!(support::is_valid(&good));
     let with = |change: fn(&mut Mesh)| {
@@ -250,7 +250,7 @@ fn outlines_have_arcs_curves_and_corners() {
 }
 
 #[test]
-fn loops_within_loops_take_turns() {
+fn nested_loops_alternate_between_boundary_and_hole() {
     let outline =
         Outline::parse(&format!("circle .5 .5 .2 24\n{SQUARE}circle .5 .5 .4 24")).unwrap();
     let circle = |r: f64| 12.0 * r * r * (std::f64::consts::TAU / 24.0).sin();

@@ -152,7 +152,7 @@ fn by_folder(uses: &Uses, depth: usize) -> Uses {
 }
 
 #[test]
-fn no_files_use_each_other_in_a_circle() {
+fn files_do_not_use_each_other_in_a_circle() {
     let uses = uses();
     let count: usize = uses.values().map(BTreeSet::len).sum();
     assert!(count > 200, "only {count} imports were found: the test looks in the wrong place");
@@ -160,7 +160,7 @@ fn no_files_use_each_other_in_a_circle() {
 }
 
 #[test]
-fn no_folders_use_each_other_in_a_circle() {
+fn folders_do_not_use_each_other_in_a_circle() {
     let uses = uses();
     for depth in [1, 2] {
         assert_eq!(circle(&by_folder(&uses, depth)), None, "{depth} folders deep");
@@ -168,7 +168,7 @@ fn no_folders_use_each_other_in_a_circle() {
 }
 
 #[test]
-fn the_command_has_no_circles() {
+fn files_of_the_command_do_not_use_each_other_in_a_circle() {
     let modules = modules_in(&root().join("src/bin/gpu-smooth"));
     let uses = uses_of(&modules);
     let count: usize = uses.values().map(BTreeSet::len).sum();

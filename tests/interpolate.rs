@@ -35,7 +35,7 @@ fn slotted(nx: usize, ny: usize) -> Mesh {
 }
 
 #[test]
-fn values_are_those_of_the_triangle_that_holds_the_place() {
+fn interpolated_values_are_linear_in_the_triangle_around_the_point() {
     let mut rng = SplitMix64::new(3);
     for (mesh, reach) in [(lattice(12, 9), 0.8), (lattice(12, 9), 20.0), (slotted(14, 8), 9.0)] {
         let topology = Topology::new(&mesh).unwrap();
@@ -97,7 +97,7 @@ fn nearest(mesh: &Mesh, topology: &Topology<'_>, place: [f64; 2]) -> [f64; 2] {
 
 /// A place outside of the mesh gets the value of the nearest point of the mesh.
 #[test]
-fn outside_the_nearest_place_counts() {
+fn a_point_outside_the_mesh_takes_the_value_of_the_nearest_point() {
     let mesh = lattice(8, 8);
     let topology = Topology::new(&mesh).unwrap();
     let value = |[x, y]: [f64; 2]| x + 100.0 * y;
@@ -114,7 +114,7 @@ fn outside_the_nearest_place_counts() {
 }
 
 #[test]
-fn values_that_are_the_same_stay_the_same_and_none_is_beyond_the_others() {
+fn equal_values_stay_equal_and_none_leaves_the_old_range() {
     let mut rng = SplitMix64::new(5);
     let mesh = lattice(10, 10);
     let topology = Topology::new(&mesh).unwrap();
@@ -135,7 +135,7 @@ fn values_that_are_the_same_stay_the_same_and_none_is_beyond_the_others() {
 }
 
 #[test]
-fn what_has_no_place_is_refused() {
+fn points_that_are_missing_or_not_finite_are_refused() {
     let mesh = lattice(3, 3);
     let topology = Topology::new(&mesh).unwrap();
     let (old, mut new) = (&mesh.points, mesh.points.clone());

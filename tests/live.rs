@@ -145,7 +145,7 @@ fn nothing_the_hand_does_inverts_a_triangle() {
 }
 
 #[test]
-fn what_a_free_hand_turns_inside_out_recovers() {
+fn a_mesh_turned_inside_out_by_a_free_hand_recovers() {
     let mut hand = Hand::new();
     hand.frames(30);
     hand.app.key('f').unwrap();

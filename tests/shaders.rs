@@ -67,7 +67,7 @@ fn every_kernel_is_core_webgpu() {
 }
 
 #[test]
-fn validation_refuses_what_core_webgpu_has_not() {
+fn validation_refuses_capabilities_beyond_core_webgpu() {
     let bare = "@compute @workgroup_size(1) fn f() { let x = 1.0; }";
     validated(bare).unwrap();
     validated(&bare.replace("1.0", "f64(1.0)")).unwrap_err();
@@ -185,7 +185,7 @@ fn no_invocation_leaves_before_a_barrier() {
 }
 
 #[test]
-fn a_barrier_not_met_by_all_is_seen() {
+fn a_barrier_that_not_all_invocations_reach_is_found() {
     let check = |body: &str| {
         let text = format!(
             "fn meet() {{ workgroupBarrier(); return; }}

@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_strip_across_the_line_is_continued_whole_and_written_back_to_the_bit() {
+    fn a_strip_across_the_date_line_is_continued_and_written_back_to_the_bit() {
         for (west, written) in
             [(130.0, within_half as fn(f64) -> f64), (-50.0, |x| x.rem_euclid(360.0))]
         {
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_around_the_globe_is_cut_and_only_vertices_there_stay() {
+    fn a_mesh_around_the_globe_is_cut_and_only_vertices_at_the_cut_stay() {
         let mesh = grid([18, 3], [-170.0, -20.0], within_half);
         let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
         assert_sound(&chart);

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn there_are_levels() {
+    fn a_hierarchy_has_several_shrinking_levels() {
         let problem = square();
         let rows: Vec<usize> =
             hierarchy(&problem).levels().iter().map(|level| level.operator.rows()).collect();

@@ -224,7 +224,7 @@ fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String>
 }
 
 #[test]
-fn what_is_read_on_all_threads_is_what_is_read_one_by_one() {
+fn lists_read_on_all_threads_equal_lists_read_row_by_row() {
     let mut state = 5_u64;
     let mut random = move |below: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

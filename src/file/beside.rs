@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_called_after_the_one_that_names_them() {
+    fn files_beside_a_mesh_are_named_after_it() {
         for (given, beside, out, expected) in [
             ("a/in.xdmf", &["a/in.h5"][..], "b/out.xdmf", &["b/out.h5"][..]),
             ("in.xdmf", &["in0.bin", "in1.bin"], "out.xmf", &["out0.bin", "out1.bin"]),

@@ -261,7 +261,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_stands_between_ranges_is_compared() {
+    fn bytes_outside_the_ranges_of_coordinates_are_compared() {
         let (x, y) = (vec![2..3, 4..5], vec![2..4, 5..6]);
         let find = |a: &[u8], b: &[u8]| unequal([a, b], [x.clone(), y.clone()]);
         assert_eq!(find(b"v 1 2 z", b"v 10 2 z"), None);

@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn endings_have_owners() {
+    fn a_file_ending_belongs_to_one_format() {
         let owner = |name: &str| owner_of_ending(Path::new(name));
         assert_eq!(owner("a/B.VTK"), Some("legacy VTK"));
         assert_eq!(owner("la.1.ele"), Some("Triangle .node/.ele"));

@@ -153,7 +153,7 @@ fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
 }
 
 #[test]
-fn every_request_fails_in_turn() {
+fn whichever_disk_request_fails_all_files_are_old_or_all_new() {
     let (mut failed, mut survived) = (0, 0);
     for (has_links, same) in [(true, false), (false, false), (true, true), (false, true)] {
         for old in [[true; 3], [false; 3], [true, false, true], [false, true, true]] {

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn each_group_is_spelled_as_no_other() {
+    fn each_group_has_a_spelling_of_its_own() {
         let groups = gmsh();
         let spellings = [
             "inlet",
@@ -235,7 +235,7 @@ mod tests {
 
     /// Two groups of one name are told apart by their tags, and a name that is the tag of another by what it is.
     #[test]
-    fn names_that_come_twice_are_spelled_by_more() {
+    fn groups_of_one_name_are_spelled_with_their_tag_or_kind() {
         let groups = Groups {
             groups: vec![
                 group("physical", 2, Some("part"), Some(1)),
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_found_is_answered_by_what_is_near() {
+    fn an_unknown_group_is_answered_with_similar_names() {
         let groups = gmsh();
         let Err(GroupError::Unknown { known, .. }) = groups.find("Inlt") else { panic!() };
         assert_eq!((known.len(), known[0].as_str()), (8, "inlet"));
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_by_hand() {
+    fn edit_distances_of_names_match_those_by_hand() {
         for (a, b, expected) in [
             ("", "", 0),
             ("", "ab", 2),

@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn found_places_are_those_that_were_added() {
+    fn places_of_numbers_are_kept_as_they_were_added() {
         type Run = (usize, usize, usize);
         let cases: [(&[Run], bool); 8] = [
             (&[], true),

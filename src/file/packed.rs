@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_packed_is_unpacked() {
+    fn compressed_bytes_are_decompressed_to_the_same() {
         let content: Vec<u8> =
             (0..100_000_u32).flat_map(|n| n.wrapping_mul(n).to_le_bytes()).collect();
         let text: String = (0..60_000).map(|n| format!("{n} {:?}\n", f64::from(n) * 0.1)).collect();
@@ -218,7 +218,7 @@ mod tests {
 
     /// A file that the zstd command has written, with a checksum.
     #[test]
-    fn files_of_other_programs_are_unpacked() {
+    fn files_compressed_by_other_programs_are_decompressed() {
         // printf 'mesh mesh mesh mesh mesh mesh mesh mesh\n' | zstd
         let file =
             b"\x28\xb5\x2f\xfd\x04\x58\x65\x00\x00\x30\x6d\x65\x73\x68\x20\x0a\x01\x00\x70\x8a\x16\x9f\xd2\x6b\x88";
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn little_that_unpacks_to_much_is_no_mesh() {
+    fn a_decompression_bomb_is_refused() {
         for packing in Packing::ALL {
             let bomb = packed(packing, &vec![b' '; 50 << 20]);
             assert!(bomb.len() < 100_000);
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told() {
+    fn damaged_or_cut_off_compressed_bytes_are_an_error() {
         for packing in Packing::ALL {
             let whole = packed(packing, b"a mesh of some length, and more of it, and more of it");
             for cut in 4..whole.len() {

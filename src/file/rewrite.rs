@@ -144,7 +144,7 @@ mod tests {
 
     /// The result must equal a plain replacement row by row. The rows fill several rounds of blocks.
     #[test]
-    fn blocks_join_without_a_seam() {
+    fn rewriting_in_blocks_equals_rewriting_row_by_row() {
         for vertices in [0, 1, 4000, 4001, 200_017] {
             let (mut bytes, mut expected) = (b"head\r\n".to_vec(), b"head\r\n".to_vec());
             let (mut x_at, mut old, mut new) = (Vec::new(), Vec::new(), Vec::new());

@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_the_plane_is_read() {
+    fn motions_of_the_plane_are_read_and_others_are_unknown() {
         let rows = |angle: &'static str, along: &'static str| {
             let nothing = "0.0 0.0 0.0";
             [

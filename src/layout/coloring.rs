@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_planar_takes_more_colors() {
+    fn a_mesh_that_is_not_planar_takes_more_than_six_colors() {
         // The torus with seven vertices, each a neighbor of all others.
         let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
         let triangles = around.map(|t| t.map(|v| v % 7)).collect();

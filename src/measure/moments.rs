@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_make_the_whole() {
+    fn moments_of_parts_add_up_to_those_of_the_whole() {
         // These values are far from zero, where a difference of two sums would lose all digits.
         let values: Vec<f64> = (0..1000).map(|i| 1e9 + f64::from(i * i % 37)).collect();
         let whole = Moments::of(&values, 0);

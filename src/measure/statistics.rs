@@ -236,7 +236,7 @@ mod tests {
 
     /// If a sample gave a wrong bracket, a list of all values is used instead.
     #[test]
-    fn a_wrong_sample_changes_nothing() {
+    fn a_misleading_sample_does_not_change_quantiles() {
         let points = (0..31 * 31).map(|i| {
             let (x, y) = (f64::from(i % 31), f64::from(i / 31));
             [x + 0.3 * (1.7 * x * y).sin(), y + 0.3 * (2.3 * x + y * y).cos()]

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn alternates_from_the_base() {
+    fn a_scheme_alternates_beginning_with_its_base_metric() {
         let scheme: Scheme = "EDGE+imr+ imr".parse().unwrap();
         assert_eq!(scheme.to_string(), "edge+imr+imr");
         assert_eq!(scheme.base(), Metric::Edge);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_names_are_named() {
+    fn an_unknown_metric_is_named_in_the_error() {
         let error = "edge+foo".parse::<Scheme>().unwrap_err();
         assert_eq!(
             error.to_string(),

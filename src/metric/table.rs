@@ -370,7 +370,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_metrics_at_once_are_each_metric_by_itself() {
+    fn all_metrics_evaluated_at_once_equal_each_evaluated_alone() {
         let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.8 };
         let together = Metric::every_excess(&corner);
         for (&metric, excess) in Metric::ALL.iter().zip(together) {

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_run_across_chunks() {
+    fn running_sums_continue_across_chunks() {
         let mut cells: Vec<u32> = (0..50_000).map(|i| i % 7).collect();
         let plain: Vec<u32> =
             cells.iter().scan(0, |sum, &cell| Some(std::mem::replace(sum, *sum + cell))).collect();

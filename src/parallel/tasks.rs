@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_part_is_met_once_and_in_order() {
+    fn every_part_is_visited_once_and_in_order() {
         for count in [0, 1, 7, 4096, 4097, 20_000] {
             assert_eq!(collect(count, |i| i), (0..count).collect::<Vec<_>>());
             let sums = map_ranges(count, 100, |range| range.sum::<usize>());

@@ -104,14 +104,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sharpness_doubles_k_up_to_the_last() {
+    fn sharpness_doubles_the_exponent_up_to_the_last() {
         let of = |k| Sharpness::CONTINUED.of(k);
         assert_eq!([of(1), of(5), of(6), of(40), of(41), of(1000)], [1, 1, 2, 8, 9, 9]);
         assert_eq!([Sharpness::FIXED.of(1), Sharpness::FIXED.of(99)], [4, 4]);
     }
 
     #[test]
-    fn k_goes_as_far_as_a_tolerance_asks() {
+    fn the_last_exponent_follows_from_the_tolerance() {
         let last = |tolerance| Sharpness::corrected_to(tolerance).last;
         assert_eq!([0.0, 1e-9, 1e-6, 1e-4].map(last), [13, 13, 13, 12]);
         assert_eq!([1e-3, 1e-2, 1.0, 1e9].map(last), [9, 5, 1, 1]);

@@ -182,7 +182,7 @@ impl Smoother<'_> {
         })
     }
 
-    /// Returns the outcome of a run that was canceled before its first sweep.
+    /// Returns the outcome of a run that was cancelled before its first sweep.
     fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
         let mut objectives = Objectives::untracked();
         objectives.set(base, f);

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_a_direction_of_no_or_negative_size_is_not_positive() {
+    fn a_tensor_with_a_zero_or_negative_eigenvalue_is_not_positive() {
         for tensor in [[1.0, 1.0, 1.0], [1.0, 2.0, 1.0], [-1.0, 0.0, -1.0], [1.0, 0.0, 0.0]] {
             assert!(!Tensor(tensor).is_positive(), "{tensor:?}");
         }

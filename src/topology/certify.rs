@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_infeasible_before_is_not_certified() {
+    fn a_mesh_that_was_infeasible_before_is_not_certified() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let mesh = Mesh { points, triangles, fixed: vec![] };
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_of_other_lengths_are_errors() {
+    fn lists_of_points_of_another_length_are_errors() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let mesh = Mesh { points, triangles: vec![[0, 1, 2]], fixed: vec![] };
         let topology = Topology::new(&mesh).unwrap();

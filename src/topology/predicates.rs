@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_flip_below_rounding_is_seen() {
+    fn an_inversion_smaller_than_rounding_is_found() {
         // 0.1 + 0.2 is above 0.3 by a rounding error, which a plain determinant may not see.
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
         assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_surely_positive_is_positive() {
+    fn the_fast_positivity_test_agrees_with_the_exact_one() {
         let mut state = 1_u64;
         let mut random = || {
             state = state

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_are_counted() {
+    fn turns_of_a_star_around_its_vertex_are_counted() {
         for (around, turns) in [(3, 1), (4, 1), (12, 1), (5, 2), (7, 2), (7, 3), (40, 19)] {
             for angle in [0.0, 0.3, 1.0, 2.0, 4.0] {
                 let (points, triangles) = fan(around, turns, angle);

@@ -26,7 +26,7 @@ pub(crate) struct Improving {
 
 impl Improving {
     /// Improves the worst triangles of a mesh after a run, if the options ask for it. No vertex goes farther than
-    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as canceled.
+    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as cancelled.
     pub(crate) fn after(
         ended: &mut Ended,
         options: &Options,

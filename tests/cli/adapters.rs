@@ -26,7 +26,7 @@ fn the_adapter_listed_first_is_taken_and_found_by_name() {
 }
 
 #[test]
-fn an_unknown_adapter_is_answered_with_those_there_are() {
+fn an_unknown_adapter_is_refused_with_a_list_of_those_there_are() {
     let folder = small();
     let before = folder.content();
     folder.line("in there --engine gpu --report r.json").clean();

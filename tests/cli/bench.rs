@@ -107,7 +107,7 @@ fn kernels_are_told_as_markdown() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused() {
+fn bench_refuses_missing_meshes_and_values_out_of_range() {
     let folder = small();
     folder.line("bench nowhere").refused(&["nowhere"]);
     folder.line("bench --adapter nonsense").refused(&["'nonsense'", "There are: "]);

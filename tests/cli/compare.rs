@@ -35,7 +35,7 @@ fn a_smoothed_mesh_differs_in_coordinates_only() {
 }
 
 #[test]
-fn anything_else_that_changed_is_found() {
+fn compare_finds_any_other_change() {
     let folder = small();
     let [node, ele] = ["in.node", "in.ele"].map(|name| folder.text(name));
     let changed = |node: &str, ele: &str| {
@@ -75,7 +75,7 @@ fn vertices_that_must_stay_and_inverted_triangles_are_found() {
 }
 
 #[test]
-fn interfaces_may_move_if_that_is_said() {
+fn compare_lets_interfaces_move_with_the_option_for_it() {
     let mesh = disturbed();
     let half = mesh.triangles.len() / 2;
     let regions: Vec<_> = (0..mesh.triangles.len()).map(|t| [i32::from(t < half), 7]).collect();

@@ -7,7 +7,7 @@ const SMS: &str = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 
                    E3T 3 3 4 5 2\nE3T 4 4 1 5 2\nNS 1 2 -3 \"shore\"\nMAT 2 \"mud\"\n";
 
 #[test]
-fn what_is_lost_is_told_before_it_is() {
+fn content_that_a_conversion_would_lose_is_listed_before_writing() {
     let folder = Folder::new(&[("in.2dm", SMS)]);
     let refused = folder.line("convert in.2dm out.mesh").refused(&[
         "in.2dm: Medit ASCII does not hold all of this mesh; --lossy writes it without\n",
@@ -52,7 +52,7 @@ fn a_mesh_is_converted_by_the_ending_or_by_name() {
 }
 
 #[test]
-fn what_cannot_be_converted_is_refused() {
+fn conversions_that_cannot_work_are_refused() {
     let folder = Folder::new(&[("in.2dm", SMS), ("word", "1 2 x\n")]);
     folder.line("convert in.2dm in.2dm").refused(&["in.2dm is the mesh that is read"]);
     folder

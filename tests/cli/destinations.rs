@@ -36,7 +36,7 @@ fn a_triangle_mesh_goes_by_any_of_its_names() {
 }
 
 #[test]
-fn no_sweep_gives_back_the_bytes() {
+fn zero_sweeps_give_back_the_same_bytes() {
     let files = triangle_files(&disturbed(), 1);
     let folder = triangle_folder(&files);
     let run = folder.line("in out --max-sweeps 0 --engine cpu").clean();

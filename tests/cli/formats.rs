@@ -73,7 +73,7 @@ fn meshb(mesh: &Mesh) -> Vec<u8> {
 }
 
 #[test]
-fn what_a_file_holds_after_a_run_is_what_its_report_tells() {
+fn the_file_written_by_a_run_holds_what_its_report_says() {
     let mesh = far();
     let single = Precision::Single;
     for (name, bytes, format, precision) in [

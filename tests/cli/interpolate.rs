@@ -84,7 +84,7 @@ fn data_that_are_not_as_they_should_be_are_told_by_compare() {
 }
 
 #[test]
-fn what_cannot_be_interpolated_is_refused() {
+fn data_that_cannot_be_interpolated_are_refused() {
     let folder = Folder::new(&[("in.gr3", &gr3(&disturbed()))]);
     folder
         .line("in.gr3 out.gr3 --interpolate deep")

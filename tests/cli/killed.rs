@@ -146,7 +146,7 @@ fn a_killed_process_leaves_no_mixture_of_two_meshes() {
 
 /// A limit on the size of files stands in for a full disk, which only root can make: see `tests/full-disk`.
 #[test]
-fn a_mesh_that_does_not_fit_leaves_the_old_one() {
+fn a_mesh_that_does_not_fit_on_the_disk_leaves_the_old_one() {
     let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
     let old = [("out.node", "old node\n"), ("out.ele", "old ele\n")];
     let folder = Folder::new(&[&[("in.node", &*node), ("in.ele", &*ele)][..], &old].concat());

@@ -109,7 +109,7 @@ fn strict_makes_it_an_error_that_a_run_falls_short() {
 }
 
 #[test]
-fn a_call_is_taken_up_again() {
+fn a_call_of_many_meshes_is_resumed() {
     let folder = several();
     let line = "a.1.node b.msh c.msh --out-dir out --engine cpu --resume";
     assert_holds(&folder.line(line).clean().out, &["\n3 smoothed of 3 meshes"]);
@@ -126,7 +126,7 @@ fn a_call_is_taken_up_again() {
 }
 
 #[test]
-fn what_would_be_overwritten_is_told_before_any_work() {
+fn files_that_would_be_overwritten_are_listed_before_any_work() {
     let folder = several();
     fs::create_dir(folder.path("other")).unwrap();
     fs::copy(folder.path("b.msh"), folder.path("other/b.msh")).unwrap();
@@ -149,7 +149,7 @@ fn what_would_be_overwritten_is_told_before_any_work() {
 }
 
 #[test]
-fn options_of_one_mesh_are_refused() {
+fn options_for_one_mesh_are_refused_with_many() {
     let folder = several();
     for (options, part) in [
         ("--picture a.png", "--picture"),

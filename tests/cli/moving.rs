@@ -80,7 +80,7 @@ fn assert_moves(folder: &Folder, input: &str, options: &str, movers: &Set, note:
 }
 
 #[test]
-fn groups_stay_that_are_named() {
+fn named_groups_stay() {
     let (folder, mesh) = folder();
     let mud = vertices_of(&mesh, |t| !is_left(&mesh, t));
     let inside = interior(&mesh);
@@ -110,7 +110,7 @@ fn groups_stay_that_are_named() {
 }
 
 #[test]
-fn only_the_inside_of_regions_moves_that_are_named() {
+fn only_the_inside_of_named_regions_moves() {
     let (folder, mesh) = folder();
     let inside = interior(&mesh);
     let land = &inside - &vertices_of(&mesh, |t| !is_left(&mesh, t));
@@ -194,7 +194,7 @@ fn vertices_in_a_box_stay() {
 }
 
 #[test]
-fn vertices_stay_that_an_array_marks() {
+fn vertices_marked_by_an_array_stay() {
     let mesh = disturbed();
     let mut text =
         "# vtk DataFile Version 3.0\nmade for a test\nASCII\nDATASET POLYDATA\n".to_owned();
@@ -229,7 +229,7 @@ fn imr(mesh: &Mesh, triangle: usize) -> f64 {
 }
 
 #[test]
-fn only_what_is_near_bad_triangles_moves() {
+fn only_vertices_near_bad_triangles_move() {
     let (folder, mesh) = folder();
     let inside = interior(&mesh);
     let mut ratios: Vec<f64> = (0..160).map(|t| imr(&mesh, t)).collect();
@@ -289,7 +289,7 @@ fn a_mesh_without_bad_triangles_is_written_as_it_was() {
 }
 
 #[test]
-fn what_is_held_stays_while_a_mesh_is_untangled() {
+fn fixed_vertices_stay_while_a_mesh_is_untangled() {
     let mut mesh = disturbed();
     let mud = vertices_of(&mesh, |t| !is_left(&mesh, t));
     // A vertex in the left half moves far out of its patch.
@@ -323,7 +323,7 @@ fn the_report_tells_what_was_chosen() {
 }
 
 #[test]
-fn what_cannot_be_named_is_told_with_what_there_is() {
+fn unknown_groups_are_errors_that_list_the_known_ones() {
     let (folder, mesh) = folder();
     let refused = |options: &str, parts: &[&str]| {
         folder.line(&format!("in.2dm out.2dm --engine cpu {options}")).refused(parts);

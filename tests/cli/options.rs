@@ -42,7 +42,7 @@ fn max_sweeps_ends_a_run() {
 
 /// What is left is a share of f, or of 1e-6 where f is less: "1.7e-2 of itself" was told of an f of 1.2e-8.
 #[test]
-fn what_is_left_of_a_small_f_is_told_as_it_is() {
+fn the_rest_above_the_limit_is_printed_also_where_f_is_small() {
     let folder = small();
     let (report, out) = run(&folder, "--scheme area --max-sweeps 400 --tolerance 0");
     let left = number(&report["remaining"]);

@@ -51,7 +51,7 @@ fn assert_gmsh_refused(from: &str, to: &str, parts: &[&str]) {
 }
 
 #[test]
-fn the_meshes_that_the_others_spoil_are_smoothed() {
+fn meshes_of_these_tests_are_smoothed_before_they_are_spoiled() {
     let folder = Folder::new(&TRIANGULATED);
     let summary = folder.line("in.node out.node --engine cpu").clean().out;
     assert_holds(&summary, &["5 vertices (1 free, 1 color), 4 triangles\n"]);
@@ -292,7 +292,7 @@ fn files_of_other_kinds_are_told() {
 }
 
 #[test]
-fn quality_refuses_alike() {
+fn quality_refuses_broken_files_with_the_same_messages() {
     let folder = Folder::new(&[("in.node", NODE), ("in.txt", "hello\n")]);
     folder.line("quality in.node").refused(&["in.ele: not found"]);
     folder.line("quality in.txt --json").refused(&["in.txt: the format is not recognized"]);

@@ -22,7 +22,7 @@ fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
 }
 
 #[test]
-fn interfaces_between_regions_moved_silently() {
+fn interfaces_between_regions_stay_and_a_note_says_so() {
     let mesh = disturbed();
     // The regions are physical groups, or entities of one physical group.
     for regions in [[[1, 7], [2, 7]], [[-1, 7], [-1, 8]]] {
@@ -60,7 +60,7 @@ fn free_interfaces_move_as_if_all_were_one_region() {
 
 /// Attributes of an `.ele` may be anything, even another value for each triangle.
 #[test]
-fn a_mesh_of_which_every_triangle_is_a_region_says_how_to_smooth_it() {
+fn a_mesh_with_a_region_for_each_triangle_is_refused_with_the_way_to_smooth_it() {
     let mesh = disturbed();
     let regions: Vec<_> = (0..mesh.triangles.len() as i32).map(|t| [t, 0]).collect();
     for files in support::write_regions(&mesh, &regions) {

@@ -64,7 +64,7 @@ fn a_mesh_that_slid_is_reported_and_compared() {
 }
 
 #[test]
-fn what_slid_is_shown_in_the_page_and_in_pictures() {
+fn vertices_that_slid_are_shown_in_the_page_and_in_pictures() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     let shown = "--html p.html --picture p.svg";
     let run = folder.line(&format!("in.mesh out.mesh --engine cpu --slide {shown}"));

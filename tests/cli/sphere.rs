@@ -107,7 +107,7 @@ fn vertices_are_counted_as_the_file_has_them() {
 }
 
 #[test]
-fn what_is_across_the_line_is_refused_with_the_way_out_elsewhere() {
+fn a_mesh_across_the_date_line_is_refused_in_the_plane_with_a_remedy() {
     let folder = Folder::new(&[("in.gr3", &band(9, false))]);
     folder
         .line("in.gr3 out.gr3 --engine cpu -q")

@@ -70,7 +70,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened_with_the_option() {
 }
 
 #[test]
-fn what_cannot_be_untangled_is_listed_and_written_only_if_asked_for() {
+fn a_tangle_that_remains_is_listed_and_written_only_if_asked_for() {
     // Reverses a triangle that has no free vertex.
     let mut mesh = tangled();
     let held = check::held(&mesh);

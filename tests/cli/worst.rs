@@ -3,7 +3,7 @@
 use super::{Folder, assert_holds, assert_smoothed, number, support};
 
 #[test]
-fn what_became_of_the_worst_triangle_is_told_and_reported() {
+fn the_worst_triangle_before_and_after_is_printed_and_reported() {
     let outline = include_str!("../../meshes/plate.outline");
     let plate = support::triangulate(&support::Outline::parse(outline).unwrap(), 300).unwrap();
     let [node, ele] = support::triangle_text(&support::perturb_random(&plate, 0.5, 3), "");

@@ -106,7 +106,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
 }
 
 #[test]
-fn where_nothing_is_gained_every_bit_stays() {
+fn corrections_that_gain_nothing_change_no_bit() {
     // Equilateral triangles, so that neither sweeps nor corrections gain anything.
     let mesh = lattice(30, 30);
     let (f, points) = frames(&mesh, &corrected(Metric::Imr), 3);
@@ -233,7 +233,7 @@ fn meshes_without_coarser_levels_are_swept() {
 }
 
 #[test]
-fn what_cannot_be_corrected_is_refused_with_the_reason() {
+fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(102));
     let multilevel = |scheme: &str| Options {
@@ -254,7 +254,7 @@ fn what_cannot_be_corrected_is_refused_with_the_reason() {
 }
 
 #[test]
-fn made_without_blocking_they_are_the_same() {
+fn corrected_sweeps_made_without_blocking_are_the_same() {
     let mesh = distorted();
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
@@ -274,7 +274,7 @@ fn made_without_blocking_they_are_the_same() {
 }
 
 #[test]
-fn frames_take_no_memory() {
+fn encoding_frame_after_frame_allocates_nothing() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(300));
     let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();

@@ -117,7 +117,7 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
 }
 
 #[test]
-fn what_the_application_leaves_alone_keeps_its_full_precision() {
+fn vertices_that_the_application_leaves_alone_keep_their_full_precision() {
     // Far from the origin, the floats of the application's buffer resolve a 30th of an edge. The mesh is perturbed less than
     // elsewhere, as a buffer is refused if rounding inverts triangles in it.
     let mesh = perturb_random(&plate(700), 0.3, 7);

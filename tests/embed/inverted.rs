@@ -97,7 +97,7 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
 }
 
 #[test]
-fn once_the_application_mends_the_mesh_all_is_well_again() {
+fn a_mesh_that_the_application_mends_is_smoothed_again() {
     let (sound, broken) = broken(Throw::Out);
     let app = App::new();
     let device_mesh = app.mesh(&sound);

@@ -53,7 +53,7 @@ fn required_limits_name_the_limit_that_is_too_low() {
 }
 
 #[test]
-fn what_the_application_needs_for_itself_stays() {
+fn limits_that_the_application_needs_itself_are_kept() {
     let most = Limits { max_bind_groups: 8, max_buffer_size: 1 << 40, ..adapter().limits() };
     let own = Limits {
         max_bind_groups: 8,

@@ -90,7 +90,7 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
 }
 
 #[test]
-fn what_is_not_tracked_is_zero_and_the_rest_of_the_buffer_untouched() {
+fn metrics_not_tracked_are_zero_and_the_rest_of_the_buffer_untouched() {
     let mesh = bad_plate(300);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);

@@ -71,7 +71,7 @@ fn a_run_is_the_same_part_by_part() {
 }
 
 #[test]
-fn an_application_sees_no_parts() {
+fn an_application_gets_the_same_results_part_by_part() {
     let mesh = mesh();
     let found = devices(&mesh).map(|app| {
         let device_mesh = app.mesh(&mesh);
@@ -140,7 +140,7 @@ fn an_application_sees_no_parts() {
 }
 
 #[test]
-fn what_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
+fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
     // A mesh whose positions would take three bindings.
     let large = lattice(53, 53);
     let [_, app] = devices(&mesh());

@@ -67,7 +67,7 @@ fn each_single_vertex_can_be_held() {
 }
 
 #[test]
-fn nothing_lets_the_boundary_go() {
+fn unpinning_all_leaves_the_boundary_fixed() {
     let mut held = Held::new(bad_plate(600));
     held.hold(&[]);
     let free = interior(&held.mesh);
@@ -75,7 +75,7 @@ fn nothing_lets_the_boundary_go() {
 }
 
 #[test]
-fn pins_take_effect_in_what_is_submitted_after_it() {
+fn pins_take_effect_in_command_buffers_submitted_later() {
     let mut held = Held::new(bad_plate(600));
     let free = interior(&held.mesh);
     let before = held.points();

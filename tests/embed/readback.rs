@@ -100,7 +100,7 @@ fn a_lost_device_is_told() {
 }
 
 #[test]
-fn what_cannot_be_read_back_is_refused() {
+fn readbacks_of_wrong_buffers_and_ranges_are_refused() {
     let (app, other) = (App::new(), App::new());
     let usage = Usage::COPY_SRC;
     let refused = |buffer: &wgpu::Buffer, offset, count, part: &str| {

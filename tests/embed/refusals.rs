@@ -113,7 +113,7 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
 }
 
 #[test]
-fn a_place_for_objectives_is_held_to_the_same() {
+fn a_buffer_for_objectives_is_checked_like_a_vertex_buffer() {
     let storage = Usage::STORAGE;
     assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
     assert_objective_refused(24, storage, 0, "it has 24 bytes, and 56 from byte 0 are needed");
@@ -134,7 +134,7 @@ fn a_destroyed_buffer_is_refused() {
 }
 
 #[test]
-fn what_belongs_to_another_device_is_refused() {
+fn buffers_and_meshes_of_another_device_are_refused() {
     let (app, other) = (App::new(), App::new());
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
@@ -168,7 +168,7 @@ fn a_queue_of_another_device_is_refused() {
 }
 
 #[test]
-fn what_is_wrong_with_an_encoder_the_application_hears_when_it_finishes_it() {
+fn errors_of_an_encoder_reach_the_application_when_it_finishes_it() {
     let (app, other) = (App::new(), App::new());
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);

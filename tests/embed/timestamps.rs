@@ -133,7 +133,7 @@ fn two_frames_in_flight_are_each_their_own() {
 }
 
 #[test]
-fn nothing_encoded_takes_no_time() {
+fn an_empty_encoder_has_no_timed_kernels() {
     let app = App::with_timestamps();
     let mut timestamps = Timestamps::new(&app.gpu).unwrap();
     let mut encoder = app.encoder();

@@ -226,7 +226,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
 }
 
 #[test]
-fn what_is_held_stays_and_what_nothing_can_mend_moves_nothing() {
+fn held_vertices_stay_and_tangles_beyond_repair_move_nothing() {
     let mut frames = Frames::new(plate(600));
     let good = frames.as_it_is();
     let v = interior(&good)[100];
@@ -274,7 +274,7 @@ fn a_mesh_with_targets_is_untangled_as_they_show_it() {
 }
 
 #[test]
-fn frames_take_no_memory() {
+fn encoding_frame_after_frame_allocates_nothing() {
     let frames = Frames::new(plate(300));
     let v = interior(&frames.mesh)[50];
     let mut made = Vec::new();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Under another name the files beside it are called after it, and it names them so.
 #[test]
-fn another_name_is_that_of_all_files() {
+fn files_beside_a_mesh_are_renamed_with_it() {
     for sample in SAMPLES.iter().filter(|sample| !sample.beside.is_empty()) {
         let folder = sample.folder();
         let file = folder.read(sample.name);
@@ -45,7 +45,7 @@ fn another_name_is_that_of_all_files() {
 }
 
 #[test]
-fn files_that_are_not_beside_it_are_told() {
+fn missing_files_beside_a_mesh_are_errors() {
     let sample = &SAMPLES[0];
     let folder = sample.folder();
     let path = folder.path(sample.name);
@@ -133,7 +133,7 @@ fn a_file_of_the_mesh_is_not_replaced_by_another() {
 
 /// Regions, groups and data of the files of meshio and of the newest layouts.
 #[test]
-fn attributes_in_files_beside_it_are_read() {
+fn attributes_in_files_beside_a_mesh_are_read() {
     let file = MeshFile::read(&made("meshio.xdmf")).unwrap();
     assert_eq!(file.data_names(), ["T"]);
     let groups = file.groups().unwrap();

@@ -209,7 +209,7 @@ fn long_binary_files_come_back_but_for_what_moved() {
 }
 
 #[test]
-fn sections_need_no_line_end_before_their_own() {
+fn sections_may_end_without_a_line_end_before_them() {
     for bytes in [msh22(false), msh41(false)] {
         let (_folder, file) = read(&bytes);
         for end in ["\n$EndNodes\n$Elements", "\n$EndElements"] {

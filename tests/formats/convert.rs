@@ -217,7 +217,7 @@ fn boundaries_of_a_grid_are_groups() {
 }
 
 #[test]
-fn what_formats_do_not_hold_is_told() {
+fn content_that_a_format_cannot_hold_is_listed() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\nvt 0 0\nusemtl a b\no part\nf 1/1/1 2//1 5\n\
                f 2 3 5\no other\nf 3 4 5\nf 4 1 5\nf 2 6 7 3\nl 1 2 3\np 5\n";
     let of = |to| converted("in.obj", obj, to).1;

@@ -167,7 +167,7 @@ fn node_data_of_very_few_nodes_are_no_field() {
 }
 
 #[test]
-fn what_is_no_real_data_is_refused_by_name() {
+fn data_that_are_not_real_numbers_are_refused_by_name() {
     let vtk = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nCELLS 1 4\n\
                3 0 1 2\nCELL_TYPES 1\n5\nPOINT_DATA 3\nSCALARS n int\nLOOKUP_TABLE default\n1 2 3\nSCALARS depth double\n\
                LOOKUP_TABLE default\n1 nan 3\n";

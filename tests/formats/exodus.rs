@@ -67,7 +67,7 @@ fn replaced(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn other_files_are_refused_with_what_to_do() {
+fn files_that_are_no_exodus_mesh_are_refused_with_a_remedy() {
     refused(
         b"\x89HDF\r\n\x1a\n\0\0",
         &["in.exo, byte 0: the superblock of the HDF5 file is damaged"],

@@ -103,7 +103,7 @@ pub(crate) fn refused(read: Result<MeshFile, gpu_smooth::ReadError>, parts: &[&s
 
 /// What is read of each is what the plain file has.
 #[test]
-fn every_file_has_the_mesh() {
+fn every_sample_holds_the_same_mesh() {
     let plain = MeshFile::read(&made("plain.xdmf")).unwrap();
     for sample in &SAMPLES {
         let file = MeshFile::read(&made(sample.name)).unwrap();
@@ -120,7 +120,7 @@ fn every_file_has_the_mesh() {
 }
 
 #[test]
-fn what_has_not_moved_keeps_its_bytes() {
+fn an_hdf5_mesh_that_did_not_move_keeps_its_bytes() {
     for sample in &SAMPLES {
         let folder = sample.folder();
         let file = folder.read(sample.name);
@@ -168,7 +168,7 @@ fn only_coordinates_change() {
 
 /// A byte that is none of a coordinate shows, wherever it is.
 #[test]
-fn other_bytes_are_told() {
+fn compare_finds_a_changed_byte_outside_coordinates() {
     for sample in &SAMPLES {
         let folder = sample.folder();
         let first = folder.read(sample.name);
@@ -282,7 +282,7 @@ fn any_file_of_hdf5_is_known_by_its_content() {
 
 /// What netCDF-4 has is what the classic format has: groups and their names, and data in every time step.
 #[test]
-fn netcdf_gives_the_same_in_every_format() {
+fn netcdf_files_of_every_format_hold_the_same_mesh() {
     let classic = MeshFile::read(&made("classic.exo")).unwrap();
     for name in ["netcdf4.exo", "zlib.exo"] {
         let file = MeshFile::read(&made(name)).unwrap();

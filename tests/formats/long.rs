@@ -326,7 +326,7 @@ fn plain_texts() -> Vec<(&'static str, String)> {
 }
 
 #[test]
-fn a_vtk_file_of_many_points_was_refused_at_its_last_one() {
+fn a_vtk_file_of_many_points_is_read_to_the_last_one() {
     let regions: Vec<u32> = (0..triangles().len()).map(|t| u32::from(t >= 20_000)).collect();
     for (name, text) in plain_texts() {
         let folder = Folder::new(&[(name, &text)]);

@@ -130,7 +130,7 @@ fn gmsh_maps_tags_and_fixes_what_is_not_a_triangle() {
 }
 
 #[test]
-fn gmsh_parameters_are_kept_and_told_of() {
+fn gmsh_parameters_are_kept_and_noted() {
     let parametric = ("2 1 1 4\n9", "2 1 0 4\n9");
     let without = GMSH41.replace(parametric.0, parametric.1);
     assert_ne!(without, GMSH41);
@@ -175,7 +175,7 @@ fn places_name_file_line_and_label() {
 }
 
 #[test]
-fn places_of_many_are_those_of_each() {
+fn places_asked_for_together_are_those_asked_for_one_by_one() {
     let folder = triangle();
     let gmsh = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
     for file in [folder.read("la.1"), gmsh.read("a.msh"), gmsh.read("b.msh")] {

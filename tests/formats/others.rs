@@ -188,7 +188,7 @@ fn only_moved_coordinates_change_in_every_variant() {
 }
 
 #[test]
-fn places_are_where_vertices_and_triangles_stand() {
+fn places_in_the_file_are_those_of_vertices_and_triangles() {
     for_each(&base(), |made| {
         let line = |at: usize| 1 + made.bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
         for bytes in both_ends(made) {
@@ -216,7 +216,7 @@ fn places_are_where_vertices_and_triangles_stand() {
 }
 
 #[test]
-fn places_of_many_are_those_of_each_in_every_variant() {
+fn places_asked_for_together_are_the_same_in_every_variant() {
     for_each(&base(), |made| {
         let file = folder(made, &made.bytes).read(made.name);
         let (vertices, triangles) = (made.mesh.points.len(), made.mesh.triangles.len());

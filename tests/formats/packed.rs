@@ -68,7 +68,7 @@ fn a_file_compressed_under_a_plain_name_stays_compressed() {
 }
 
 #[test]
-fn places_are_those_of_the_content() {
+fn places_in_compressed_files_are_those_of_the_content() {
     let folder = Folder::new(&[]);
     fs::write(folder.path("a.msh.gz"), packed(GMSH22.as_bytes())).unwrap();
     let place = folder.read("a.msh.gz").vertex_place(0);
@@ -80,7 +80,7 @@ fn places_are_those_of_the_content() {
 }
 
 #[test]
-fn what_cannot_be_unpacked_is_told() {
+fn files_that_cannot_be_decompressed_are_errors() {
     let folder = Folder::new(&[]);
     let refused = |name: &str, bytes: &[u8], parts: &[&str]| {
         fs::write(folder.path(name), bytes).unwrap();

@@ -79,7 +79,7 @@ fn elements_of_higher_order_are_refused() {
 }
 
 #[test]
-fn what_else_a_file_of_the_formats_may_be_is_refused() {
+fn other_contents_of_known_formats_are_refused() {
     let vtk = |rest: &str, parts: &[&str]| {
         assert_refused("a.vtk", format!("# vtk DataFile Version 3.0\nt\n{rest}"), parts);
     };

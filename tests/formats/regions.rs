@@ -106,7 +106,7 @@ fn attributes_count_as_numbers_and_only_if_announced() {
 }
 
 #[test]
-fn what_is_fixed_by_other_means_is_not_counted_between_regions() {
+fn vertices_fixed_by_other_means_are_not_counted_between_regions() {
     let mesh = lattice(6, 4);
     let names: Vec<_> = (0..mesh.triangles.len() as i32).map(|t| [t / 24, 0]).collect();
     let files = &write_regions(&mesh, &names)[0];

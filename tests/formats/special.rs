@@ -168,7 +168,7 @@ fn regions_of_a_vtk_are_found_among_other_data() {
 }
 
 #[test]
-fn what_stands_between_x_and_y_is_kept() {
+fn text_between_x_and_y_is_kept() {
     let head = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n";
     for between in ["  ", "\t", "\n", " \r\n\r\n ", " # x\n", "# x\n# y\n\n"] {
         let text = format!("{head}{}", VTK.replace("\n1 0 0", &format!("\n1{between}0 0")));
@@ -184,7 +184,7 @@ fn what_stands_between_x_and_y_is_kept() {
 }
 
 #[test]
-fn words_of_a_vtk_may_be_in_small_letters() {
+fn keywords_of_vtk_may_be_lowercase() {
     let text = format!("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n{VTK}");
     assert_square("a.vtk", &text, Format::Vtk);
     let small = text.to_lowercase().replace("# vtk datafile version", "# vtk DataFile Version");

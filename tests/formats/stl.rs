@@ -165,7 +165,7 @@ fn places_are_those_of_the_first_copy() {
 }
 
 #[test]
-fn what_is_no_mesh_of_the_plane_is_refused() {
+fn an_stl_that_is_no_plane_mesh_is_refused() {
     let mesh = in_order();
     let text = ascii(&mesh, &mesh.points, "1");
     let bytes = binary(&mesh, &mesh.points, 1.0);

@@ -118,7 +118,7 @@ fn cut_off_and_damaged_files_never_panic() {
 }
 
 #[test]
-fn what_is_not_read_is_refused_by_its_name() {
+fn features_of_vtu_that_are_not_read_are_refused_by_name() {
     let mesh = base();
     let style = styles()[0];
     let text = String::from_utf8(write(&mesh, style)).unwrap();

@@ -22,7 +22,7 @@ fn within(text: &str, section: &str, change: impl Fn(&str) -> String) -> String 
 }
 
 #[test]
-fn lists_of_gmsh_are_words() {
+fn lists_of_gmsh_are_read_word_by_word_wherever_lines_end() {
     for plain in [GMSH_2, GMSH_4, GMSH_40] {
         for section in ["Nodes", "Elements"] {
             for (from, to) in
@@ -60,7 +60,7 @@ property double z\nproperty float q\nelement face 2\nproperty list uchar int ver
 0 0 0 1\n1 0 0 1\n1 1.25 0 2\n0 1 0 1\n3 0 1 2\n3 0 2 3\n";
 
 #[test]
-fn items_of_ply_are_words() {
+fn items_of_ply_are_read_word_by_word_wherever_lines_end() {
     for (from, to) in [
         ("\n", " "),
         (" ", "\n"),
@@ -114,7 +114,7 @@ fn vertices_may_have_no_third_coordinate() {
 }
 
 #[test]
-fn keywords_of_sms_may_be_small() {
+fn keywords_of_sms_may_be_lowercase() {
     for keyword in ["MESH2D", "E3T", "ND", "NS", "E2L", "MAT"] {
         assert_same("a.2dm", SMS, &SMS.replace(keyword, &keyword.to_ascii_lowercase()));
     }
@@ -128,7 +128,7 @@ fn keywords_of_sms_may_be_small() {
 }
 
 #[test]
-fn line_ends_of_old_systems_are_told() {
+fn line_ends_of_old_systems_are_refused_with_a_remedy() {
     let told = "its lines end in carriage returns alone, as on old Macintosh systems. Make them line feeds first";
     for (name, text) in
         [("a.msh", GMSH_2), ("a.ply", PLY), ("a.obj", OBJ), ("a.2dm", SMS), ("a.dat", "1 2\n3 4\n")]

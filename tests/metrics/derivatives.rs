@@ -118,7 +118,7 @@ fn compare(metric: Metric, mut check: impl FnMut(Dual, Dual, f64)) {
 }
 
 #[test]
-fn what_the_cpu_engine_takes_for_derivatives_is_what_dual_numbers_make_of_the_value() {
+fn derivatives_of_the_cpu_engine_are_those_of_dual_numbers() {
     for &metric in Metric::ALL {
         compare(metric, |found, exact, rounding| {
             let off = distance(&found, &exact);

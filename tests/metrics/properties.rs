@@ -116,7 +116,7 @@ fn excess_keeps_its_digits_near_the_ideal() {
 }
 
 #[test]
-fn every_corner_and_every_rotation_see_the_same() {
+fn quality_does_not_depend_on_the_corner_or_a_rotation() {
     all_random(|metric, t| {
         let q = metric.quality(t);
         let second = next_corner(t);
@@ -127,7 +127,7 @@ fn every_corner_and_every_rotation_see_the_same() {
 }
 
 #[test]
-fn size_matters_as_the_row_says() {
+fn metrics_depend_on_size_as_the_table_says() {
     all_random(|metric, t| {
         let q = metric.quality(t);
         for factor in [1e-6, 0.5, 3.0, 1e6] {

@@ -242,7 +242,7 @@ const MISTAKES: [(Metric, &str, &str); 18] = [
 ];
 
 #[test]
-fn a_wrong_derivative_is_seen() {
+fn a_wrong_derivative_is_detected() {
     let (device, rows) = (Device::open(), rows());
     for (metric, right, wrong) in MISTAKES {
         let source = wgsl(metric, Derivatives::Analytic);
@@ -300,7 +300,7 @@ fn differences_on_the_device_are_those_in_double_precision() {
 }
 
 #[test]
-fn differences_of_the_wrong_values_are_seen() {
+fn differences_of_the_wrong_values_are_detected() {
     let (device, rows) = (Device::open(), rows());
     for &metric in Metric::ALL {
         for (right, wrong) in [

@@ -76,7 +76,7 @@ fn the_energy_and_its_derivatives_are_those_of_the_cpu() {
 }
 
 #[test]
-fn a_wrong_derivative_of_the_energy_is_seen() {
+fn a_wrong_derivative_of_the_energy_is_detected() {
     let (device, rows) = (Device::open(), rows());
     for (right, wrong) in [
         ("inverse * (ds - s * dd)", "inverse * (ds + s * dd)"),

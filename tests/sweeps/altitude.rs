@@ -49,7 +49,7 @@ fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
 }
 
 #[test]
-fn what_does_not_go_with_kept_altitudes_is_refused() {
+fn options_that_do_not_go_with_kept_altitudes_are_refused() {
     let mesh = fields(4);
     let mut smoother = Smoother::new(&mesh).unwrap();
     let refused = |smoother: &Smoother, options: Options| {

@@ -57,7 +57,7 @@ fn sizes_are_those_wanted_where_vertices_have_moved_to() {
 }
 
 #[test]
-fn a_field_of_one_size_is_no_field() {
+fn a_field_of_one_size_changes_nothing() {
     let (mesh, [width, height]) = even();
     let (square, _) = background(width, height);
     let field = TargetField::new(&square, &Targets::equilateral(4)).unwrap();
@@ -71,7 +71,7 @@ fn a_field_of_one_size_is_no_field() {
 }
 
 #[test]
-fn what_does_not_go_with_a_field_is_refused() {
+fn options_that_do_not_go_with_a_target_field_are_refused() {
     let (mesh, [width, height]) = even();
     let (square, targets) = background(width / 2.0, height);
     assert!(TargetField::new(&mesh, &targets).is_err());

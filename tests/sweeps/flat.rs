@@ -23,7 +23,7 @@ fn flattened(height: f64) -> Mesh {
 }
 
 #[test]
-fn they_are_opened_in_double_precision() {
+fn flat_triangles_are_opened_in_double_precision() {
     for height in [1e-6, 1e-9, 1e-12] {
         let mesh = flattened(height);
         assert!(support::is_ccw(&mesh) && support::worst_imr(&mesh) > 0.1 / height);
@@ -58,7 +58,7 @@ fn they_are_opened_in_double_precision() {
 }
 
 #[test]
-fn a_run_that_ends_before_they_are_open_is_done_on_the_cpu() {
+fn a_run_that_ends_before_flat_triangles_are_open_is_done_on_the_cpu() {
     let mesh = flattened(1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
     for method in [Method::Auto, Method::Sweeps] {

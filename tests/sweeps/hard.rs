@@ -178,7 +178,7 @@ fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
 }
 
 #[test]
-fn what_the_shape_guard_ends_is_not_called_converged() {
+fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
     // Areas differ a millionfold, and evening them out flattens triangles up to the guard. f then does not decay
     // geometrically. What was left to gain was once estimated at a thousandth of the truth.
     let mut mesh = support::perturb_random(&plate(700), 0.2, 3);
@@ -200,7 +200,7 @@ fn what_the_shape_guard_ends_is_not_called_converged() {
 }
 
 #[test]
-fn what_rounding_loses_is_told() {
+fn the_gain_lost_to_rounding_is_reported() {
     let far = 2f64.powi(52);
     let at = |x: f64, y: f64| [far + x, far + y];
     let coarse = star_of_three([at(1.0, 3.0), at(0.0, 1.0), at(3.0, 0.0), at(1.0, 2.0)]);

@@ -78,7 +78,7 @@ fn hard_meshes_take_a_few_dozen_sweeps_and_the_promise_holds() {
 }
 
 #[test]
-fn it_ends_at_the_global_optimum() {
+fn corrected_runs_end_at_the_global_optimum() {
     let rms = global::rms_optimum(perturbed());
     let (imr, _) = global::imr_optimum(&rms);
     for mesh in [perturbed(), distorted()] {
@@ -193,7 +193,7 @@ fn elements_graded_over_seven_decades_converge() {
 }
 
 #[test]
-fn it_is_the_default_where_it_is_to_be_had() {
+fn corrections_are_the_default_where_they_are_possible() {
     let alone = |metric: Metric| Options { scheme: metric.into(), ..Options::default() };
     for metric in [Metric::Imr, Metric::Ar, Metric::Rms, Metric::Edge] {
         assert!(alone(metric).is_multilevel());

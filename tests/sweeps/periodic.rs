@@ -210,7 +210,7 @@ fn corners_of_a_doubly_periodic_square_stay_and_all_else_slides_in_pairs() {
 }
 
 #[test]
-fn corners_of_either_are_corners_of_both() {
+fn a_corner_on_one_periodic_side_holds_its_partner_too() {
     let mesh = lattice(|[u, v]| [2.0 * u, v]);
     let mut slide = periodic(sides());
     slide.held = vec![at(3, COLUMNS)];

@@ -330,6 +330,6 @@ fn every_mesh_comes_back_finite_feasible_and_no_worse() {
 
 /// f by AREA, which was 0 but for rounding, once rose from 1.3e-30 to 1.7e-30.
 #[test]
-fn what_rounding_alone_makes_of_f_is_no_gain() {
+fn a_change_of_f_by_rounding_alone_is_no_gain() {
     assert!(smooth_all(10211..10212) > 0);
 }

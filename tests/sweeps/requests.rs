@@ -151,7 +151,7 @@ fn every_metric_is_tracked_on_request() {
 }
 
 #[test]
-fn an_adapter_of_no_such_name_is_told_with_those_there_are() {
+fn an_unknown_adapter_is_an_error_that_lists_those_there_are() {
     let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
     let there = &gpu.adapter().name;
     let error = Gpu::open(Some("no such adapter")).expect_err("there is none of that name");

@@ -110,7 +110,7 @@ fn a_hard_run_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn the_goal_is_not_sought_again() {
+fn a_resumed_run_does_not_seek_its_goal_again() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let goal = Some(Goal { fraction: 0.999, desired: Desired::Auto });

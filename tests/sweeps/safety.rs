@@ -168,7 +168,7 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
 }
 
 #[test]
-fn what_rounding_makes_worse_than_the_start_is_not_returned() {
+fn points_that_rounding_makes_worse_than_the_start_are_not_returned() {
     // A free vertex among whole numbers: every place that it can be rounded to is worse than its own.
     let far = 2f64.powi(52);
     let at = |x: f64, y: f64| [far + x, far + y];

@@ -144,7 +144,7 @@ fn vertices_slide_around_a_circle() {
 }
 
 #[test]
-fn targets_are_respected_by_what_slides() {
+fn sliding_vertices_respect_targets() {
     let (mesh, lines) = halves();
     // Targets are twice as high as wide, so that fields should become rectangles of that shape.
     let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
@@ -160,7 +160,7 @@ fn targets_are_respected_by_what_slides() {
 }
 
 #[test]
-fn what_cannot_be_combined_is_refused() {
+fn options_that_cannot_be_combined_with_sliding_are_refused() {
     let (mesh, _) = halves();
     let mut smoother = Smoother::new(&mesh).unwrap();
     for slide in [

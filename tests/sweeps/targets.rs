@@ -231,7 +231,7 @@ fn keep_shape_keeps_the_spacing_of_a_layer_and_takes_its_noise() {
 }
 
 #[test]
-fn equal_targets_are_no_targets() {
+fn equilateral_targets_change_nothing() {
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
     let plain = Smoother::new(&mesh).unwrap();
     let smoother = with_targets(&mesh, &Targets::equilateral(mesh.points.len()));
@@ -281,7 +281,7 @@ fn degrees_are_seen_as_lengths_on_the_sphere() {
 }
 
 #[test]
-fn what_is_no_target_is_refused() {
+fn sizes_and_tensors_that_are_no_targets_are_refused() {
     let mesh = plate(2000);
     let count = mesh.points.len();
     let refused = |result: Result<Targets, MeshError>, at: usize| {

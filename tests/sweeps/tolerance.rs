@@ -24,7 +24,7 @@ fn check(smoother: &Smoother, options: &Options, limit: f64) {
 }
 
 #[test]
-fn what_is_left_is_within_the_tolerance() {
+fn the_rest_above_the_limit_is_within_the_tolerance() {
     let rms = global::rms_optimum(perturbed());
     let (imr, _) = global::imr_optimum(&rms);
     assert!(imr < support::f_imr(&rms));
@@ -43,7 +43,7 @@ fn what_is_left_is_within_the_tolerance() {
 }
 
 #[test]
-fn what_is_left_of_edge_is_within_the_tolerance() {
+fn the_rest_above_the_limit_of_edge_is_within_the_tolerance() {
     // The limit is that of the run's own sweeps, where the p-norm leads, and not the best there is. There are no
     // corrections, as with them rounding decides in which of many minima a run ends.
     let smoother = Smoother::new(perturbed()).unwrap();
@@ -56,7 +56,7 @@ fn what_is_left_of_edge_is_within_the_tolerance() {
 
 /// f cannot fall below its ideal, whatever a decay promises that has only begun.
 #[test]
-fn no_more_is_left_than_there_is_above_the_ideal() {
+fn the_rest_above_the_limit_is_at_most_that_above_the_ideal() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let mut smoother = Smoother::new(&mesh).unwrap();
     let sizes = Targets::sizes(&vec![1.0; mesh.points.len()]).unwrap();

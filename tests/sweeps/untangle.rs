@@ -73,7 +73,7 @@ fn meshes_whose_boundary_was_taken_elsewhere_are_untangled() {
 }
 
 #[test]
-fn random_places_do_not_pass_for_sizes() {
+fn random_positions_are_not_taken_for_sizes() {
     // Among vertices at random places some triangles are sound by chance, and far larger than those of the mesh.
     let layers = boundaries::layers(69);
     for seed in 1..=3 {
@@ -114,7 +114,7 @@ fn one_vertex_outside_its_ring_moves_only_its_surroundings() {
 }
 
 #[test]
-fn what_no_move_can_mend_is_listed_and_the_rest_is_mended() {
+fn triangles_that_no_move_can_untangle_are_listed_and_the_rest_untangled() {
     // In a triangle without a free vertex, moves one corner beyond the opposite edge.
     let mut mesh = support::lattice(8, 6);
     let held = support::check::held(&mesh);

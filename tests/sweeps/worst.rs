@@ -105,7 +105,7 @@ fn bounds_and_altitudes_hold_while_the_worst_is_improved() {
 
 /// A mesh, and its image under a linear map with targets that undo the map: both end with the same shapes.
 #[test]
-fn the_worst_is_what_targets_show() {
+fn the_worst_triangle_is_judged_in_the_shape_of_its_target() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let stretched: Vec<[f64; 2]> = mesh.points.iter().map(|[x, y]| [*x, 0.5 * y]).collect();
     let image = with_points(&mesh, &stretched);
@@ -125,7 +125,7 @@ fn the_worst_is_what_targets_show() {
 }
 
 #[test]
-fn what_cannot_be_improved_stays() {
+fn triangles_that_cannot_be_improved_stay() {
     // Equilateral triangles around a free vertex, and a worse triangle without a free vertex.
     let mut points: Vec<[f64; 2]> =
         (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
@@ -149,7 +149,7 @@ fn what_cannot_be_improved_stays() {
 }
 
 #[test]
-fn the_stage_ends_where_the_observer_says_so() {
+fn improving_the_worst_ends_where_the_observer_says_so() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };

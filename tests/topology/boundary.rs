@@ -230,7 +230,7 @@ fn a_move_out_of_an_inverted_triangle_is_not_hindered_by_it() {
 }
 
 #[test]
-fn a_move_of_nothing_and_one_to_nowhere() {
+fn a_move_of_no_vertex_succeeds_and_one_to_nan_is_an_error() {
     let mesh = support::lattice(3, 3);
     let topology = Topology::new(&mesh).unwrap();
     let mut points = mesh.points.clone();

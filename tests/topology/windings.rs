@@ -205,7 +205,7 @@ fn a_point_that_is_no_number_counts_as_inverted() {
 }
 
 #[test]
-fn a_mesh_on_either_side_of_nothing_is_smoothed() {
+fn a_mesh_of_clockwise_triangles_is_smoothed_as_well() {
     // All triangles clockwise: the result is as good as that of the counterclockwise mesh.
     let mesh = support::perturb_random(&support::lattice(6, 6), 0.6, 2);
     let clockwise: Vec<_> = mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_fails_is_told_once_and_one_without_room_at_the_start_is_not() {
+    fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
         let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();
         let mut remarks = Remarks::default();
         let follow: RefCell<&mut dyn Follow> = RefCell::new(&mut remarks);

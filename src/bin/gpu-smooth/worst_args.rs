@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_an_improvement_costs_is_told_or_that_it_is_next_to_nothing() {
+    fn the_cost_of_an_improvement_is_printed_also_where_it_is_next_to_nothing() {
         let report = |f| ImprovedReport {
             measure: "imr",
             vertices: 2,

@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_filtered_comes_back() {
+    fn filtered_chunks_are_unfiltered_to_the_same_bytes() {
         let bytes: Vec<u8> = (0..10_003_u32).map(|n| (n * n / 7 % 251) as u8).collect();
         let all = [Filter::Shuffle(8), Filter::Deflate(6), Filter::Fletcher];
         for filters in [&all[..], &all[..1], &all[1..2], &all[2..], &[all[2], all[0], all[1]]] {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_lengths_take_no_memory() {
+    fn wrong_lengths_in_a_file_allocate_no_memory() {
         let stored = filtered(&[Filter::Deflate(9)], 0, vec![0; 1 << 20]);
         assert!(unfiltered(&[Filter::Deflate(9)], 0, &stored, 1 << 40).is_none());
         assert!(unfiltered(&[Filter::Deflate(9)], 0, &stored, 1 << 10).is_none());

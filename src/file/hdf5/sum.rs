@@ -99,7 +99,7 @@ mod tests {
 
     /// The values that the author of the hash gives with it.
     #[test]
-    fn hashes_are_those_of_the_author() {
+    fn hashes_match_the_published_values_of_their_author() {
         assert_eq!(lookup3(b""), 0xDEAD_BEEF);
         assert_eq!(lookup3(b"Four score and seven years ago"), 0x1777_0551);
     }

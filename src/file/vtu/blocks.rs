@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_wrapped_is_unwrapped() {
+    fn wrapped_arrays_are_unwrapped_to_the_same_bytes() {
         let bytes: Vec<u8> = (0..10_007_u32).map(|n| (n * n / 7 % 251) as u8).collect();
         for order in [Order::Little, Order::Big] {
             for header in [4, 8] {
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_lengths_take_no_memory() {
+    fn wrong_lengths_in_a_file_allocate_no_memory() {
         for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
             for base64 in [false, true] {
                 let wrapping = Wrapping { order: Order::Little, header: 8, compressor, base64 };

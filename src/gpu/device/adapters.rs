@@ -95,7 +95,7 @@ mod tests {
     use crate::gpu::device::Gpu;
 
     #[test]
-    fn an_adapter_without_a_name_is_told_as_unnamed() {
+    fn an_adapter_without_a_name_is_called_unnamed() {
         let gpu = Gpu::open(None).unwrap();
         let info = gpu.device.adapter_info();
         assert_eq!(AdapterSummary::new(&info), *gpu.adapter());

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn more_triangles_are_never_fewer_invocations() {
+    fn the_number_of_invocations_never_falls_with_more_triangles() {
         let counts = [0, 1, 1 << 20, 1 << 31, (1 << 32) - 1, 1 << 32, usize::MAX];
         let invocations = counts.map(objective_invocations);
         assert!(invocations.is_sorted(), "{invocations:?}");

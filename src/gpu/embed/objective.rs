@@ -181,7 +181,7 @@ mod tests {
     use crate::gpu::kernels::uniforms::{INVERTED, SLOTS, WORST};
 
     #[test]
-    fn objective_values_are_the_slots_of_the_kernel() {
+    fn objective_values_are_laid_out_as_the_slots_of_the_kernel() {
         assert_eq!(size_of::<ObjectiveValues>(), 4 * SLOTS + 12);
         assert_eq!(offset_of!(ObjectiveValues, worst_triangle), 4 * SLOTS + 8);
         assert_eq!(offset_of!(ObjectiveValues, stop), 4 * SLOTS);

@@ -57,7 +57,7 @@ mod tests {
     use crate::{Mesh, Options};
 
     #[test]
-    fn handles_show_what_tells_them_apart() {
+    fn debug_output_of_handles_tells_them_apart() {
         let gpu = Gpu::open(None).unwrap();
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];

@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_prepared_is_not_compiled_again() {
+    fn prepared_pipelines_are_not_compiled_again() {
         use crate::gpu::{DeviceMesh, Gpu, Sweeps, VertexBuffer};
         use crate::{Mesh, Options};
 

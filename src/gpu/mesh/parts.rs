@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_a_binding_is_one_part() {
+    fn data_that_fit_one_binding_are_one_part() {
         let part = RingPart { vertices: 0..3, entries: 0..256 };
         assert_eq!(rings(&[0, 100, 200, 256], &binding(1024)).unwrap(), [part]);
         assert_eq!(low_positions(64, &binding(1024)), None);
@@ -178,13 +178,13 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_cut_after_whole_steps() {
+    fn rows_are_cut_at_multiples_of_the_step() {
         assert_eq!(ranges(170, TRIANGLE, 64, &binding(12 * 150)), [0..128, 128..170]);
         assert_eq!(ranges(128, TRIANGLE, 64, &binding(12 * 127)), [0..64, 64..128]);
     }
 
     #[test]
-    fn low_positions_are_where_a_binding_can_begin() {
+    fn low_positions_begin_at_an_aligned_offset() {
         assert_eq!(low_positions(65, &binding(1039)), Some(768));
         assert_eq!(low_positions(96, &binding(1039)), Some(768));
         assert_eq!(low_positions(97, &binding(1039)), Some(1024));

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn everybody_with_a_neighbor_is_in_a_group() {
+    fn every_vertex_with_a_neighbor_is_in_an_aggregate() {
         let groups = path(11);
         assert!(groups.of.iter().all(|&g| (g as usize) < groups.count));
         let (start, members) = groups.members();
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_is_left_over_joins_a_neighbor() {
+    fn a_left_over_vertex_joins_the_aggregate_of_a_neighbor() {
         // A path of four, and a vertex that is not in the lists of neighbors of the others.
         let neighbors = |k: usize| {
             let (before, after) = (k.checked_sub(1), Some(k + 1).filter(|&n| n < 4));
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_is_alone_stays_out() {
+    fn a_vertex_without_neighbors_is_in_no_aggregate() {
         let groups = path(1);
         assert_eq!((groups.of, groups.count), (vec![NONE], 0));
     }

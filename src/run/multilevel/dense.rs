@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_inverse_times_the_matrix_is_one() {
+    fn the_inverse_times_the_matrix_is_the_identity() {
         let n = 12;
         let matrix = Sparse::from_rows(n, |row, sum| {
             for column in 0..n {

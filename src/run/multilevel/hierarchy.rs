@@ -292,7 +292,7 @@ mod tests {
     use crate::mesh::Mesh;
 
     #[test]
-    fn a_vertex_of_many_shares_its_aggregate_with_a_few() {
+    fn a_vertex_of_high_degree_shares_its_aggregate_with_a_few() {
         let (around, rings) = (30u32, 6u32);
         let mut mesh = Mesh::default();
         for ring in 0..rings {

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_told_by_their_size() {
+    fn times_are_printed_in_units_of_their_size() {
         let cases = [(0.4, "0 s"), (99.0, "99 s"), (150.0, "2 min 30 s"), (9000.0, "2 h 30 min")];
         for (seconds, text) in cases {
             assert_eq!(told(seconds), text);
