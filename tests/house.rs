@@ -205,9 +205,9 @@ fn data_flows_one_way() {
     assert!(used_by("mesh").is_empty());
     assert!(used_by("error").is_empty());
     assert!(used_by("metric").is_empty());
-    for room in ["file", "topology", "layout", "measure", "run", "slide"] {
-        for place in ["cpu", "gpu", "smoother"] {
-            assert!(!used_by(room).contains(&place), "{room} may not use {place}");
+    for lower in ["file", "topology", "layout", "measure", "run", "slide"] {
+        for upper in ["cpu", "gpu", "smoother"] {
+            assert!(!used_by(lower).contains(&upper), "{lower}/ may not use {upper}/");
         }
     }
     assert!(!used_by("cpu").contains(&"gpu") && !used_by("gpu").contains(&"cpu"));

@@ -171,7 +171,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
         let corrections = || strategy.saved();
         keeping.after_sweeps(&mut engine, &history, corrections, is_ending).await?;
         if is_ending {
-            break Stop::Cancelled;
+            break Stop::Canceled;
         }
     };
     let positions = engine.best_positions().await?;

@@ -64,7 +64,7 @@ impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
         Self { keeper, about: None, last: None, due }
     }
 
-    /// Saves the state if that is due after some sweeps, or at the end of a run that is cancelled.
+    /// Saves the state if that is due after some sweeps, or at the end of a run that is canceled.
     pub(crate) async fn after_sweeps(
         &mut self,
         engine: &mut impl Engine,

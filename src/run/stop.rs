@@ -18,7 +18,7 @@ pub enum Stop {
     /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps were done.
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
-    Cancelled,
+    Canceled,
     /// A sweep made f infinite or NaN, which no sweep should. The run went back to the state that was last saved, so
     /// the sweeps after it are undone.
     NotFinite,
@@ -41,7 +41,7 @@ impl Stop {
             Stop::Stalled => "stalled",
             Stop::HeldBack => "held-back",
             Stop::MaxSweeps => "max-sweeps",
-            Stop::Cancelled => "cancelled",
+            Stop::Canceled => "canceled",
             Stop::NotFinite => "not-finite",
         }
     }

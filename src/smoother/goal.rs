@@ -40,7 +40,7 @@ impl Smoother<'_> {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
             let mut keeping = Keeping::new(&mut *keeper);
             let after_imr = run.sweep(&imr, None, (start, None), &mut keeping, observe).await?;
-            if after_imr.stop == Stop::Cancelled {
+            if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
             starts.push((format!("imr, then {base}"), after_imr.positions));
@@ -50,7 +50,7 @@ impl Smoother<'_> {
         for (label, start) in starts {
             let (options, mut keeping) = (full(base), Keeping::new(&mut *keeper));
             let end = run.sweep(&options, None, (&start, None), &mut keeping, observe).await?;
-            if end.stop == Stop::Cancelled {
+            if end.stop == Stop::Canceled {
                 return Ok(None);
             }
             let f = self.objective(base, &end.positions);

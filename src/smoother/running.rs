@@ -182,13 +182,13 @@ impl Smoother<'_> {
         })
     }
 
-    /// Returns the outcome of a run that was cancelled before its first sweep.
+    /// Returns the outcome of a run that was canceled before its first sweep.
     fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
         let mut objectives = Objectives::untracked();
         objectives.set(base, f);
         Outcome {
             points: self.mesh.points.clone(),
-            stop: Stop::Cancelled,
+            stop: Stop::Canceled,
             sweeps: 0,
             alternated: 0,
             corrections: 0,

@@ -178,7 +178,7 @@ pub(crate) async fn run<K: Keeper + ?Sized>(
             None => next,
             Some(before) => before.followed_by(next),
         };
-        let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left <= most;
+        let is_over = matches!(ended.stop, Stop::Canceled | Stop::NotFinite) || left <= most;
         let is_done = is_clean && new == 0 || is_all || round == ROUNDS;
         if is_over || is_done {
             let stop = match ended.stop {

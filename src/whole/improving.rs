@@ -26,7 +26,7 @@ pub(crate) struct Improving {
 
 impl Improving {
     /// Improves the worst triangles of a mesh after a run, if the options ask for it. No vertex goes farther than
-    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as cancelled.
+    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as canceled.
     pub(crate) fn after(
         ended: &mut Ended,
         options: &Options,
@@ -35,7 +35,7 @@ impl Improving {
         observe: &mut (impl Observer + ?Sized),
     ) -> Option<Self> {
         let badness = Badness(options.improve_worst?);
-        if matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) {
+        if matches!(ended.stop, Stop::Canceled | Stop::NotFinite) {
             return None;
         }
         let base = options.scheme.base();
@@ -56,7 +56,7 @@ impl Improving {
             let progress = Progress { phase: Phase::Improving, sweep, f: f(positions) };
             let is_left = observe(&progress).is_break();
             if is_left {
-                *stop = Stop::Cancelled;
+                *stop = Stop::Canceled;
             }
             !is_left
         };

@@ -114,7 +114,7 @@ impl<'s> Limit<'s> {
             let judged = rule.judge(&f[1..], f.len() - 2, 1);
             let is_settled = judged.is_some() && is_settled;
             estimates = if is_settled { estimates + 1 } else { 0 };
-            let is_over = matches!(ended.stop, Stop::Cancelled | Stop::NotFinite) || left == 0;
+            let is_over = matches!(ended.stop, Stop::Canceled | Stop::NotFinite) || left == 0;
             let is_last = left <= SWEEPS && ended.stop == Stop::MaxSweeps
                 || f.len() > options.max_sweeps as usize;
             let stop = match judged {

@@ -108,7 +108,7 @@ impl<'s> Places<'s> {
                 Some(before) => before.followed_by(next),
             };
             let stop = match ended.stop {
-                stop @ (Stop::Cancelled | Stop::NotFinite) => Some(stop),
+                stop @ (Stop::Canceled | Stop::NotFinite) => Some(stop),
                 _ if left == 0 => Some(Stop::MaxSweeps),
                 stop if settled >= SETTLED || !has_moved => Some(match stop {
                     Stop::HeldBack => stop,

@@ -117,7 +117,7 @@ impl<'s> Rounds<'s> {
                 Some(before) => before.followed_by(next),
             };
             let is_over = match ended.stop {
-                Stop::Cancelled | Stop::NotFinite => true,
+                Stop::Canceled | Stop::NotFinite => true,
                 // With bounds, this is known only at the end of the round.
                 Stop::Reached => matches!(bound, Bound::None),
                 _ => false,

@@ -135,7 +135,7 @@ fn an_interrupted_run_leaves_the_best_mesh_so_far() {
         let plate = MeshFile::read(plate_path()).unwrap();
         assert_smoothed(plate.mesh(), &folder.mesh("out"));
         assert!(support::worst_imr(&folder.mesh("out")) < 2.0);
-        assert_eq!(folder.json("r.json")["stop"], "cancelled");
+        assert_eq!(folder.json("r.json")["stop"], "canceled");
         assert_eq!(names(&folder), ["out.ele", "out.node", "r.json"]);
     }
 }

@@ -190,7 +190,7 @@ fn two_runs_at_once_on_one_device_do_as_alone() {
 }
 
 #[test]
-fn a_cancelled_run_returns_the_best_state_so_far() {
+fn a_canceled_run_returns_the_best_state_so_far() {
     let mesh = bad_plate(600);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
@@ -210,7 +210,7 @@ fn a_cancelled_run_returns_the_best_state_so_far() {
         let (outcome, _) =
             drive(app.device(), smoother.run_async_observed(&options, &app.gpu, &mut observe));
         let outcome = outcome.unwrap();
-        assert_eq!(outcome.stop, Stop::Cancelled);
+        assert_eq!(outcome.stop, Stop::Canceled);
         assert_eq!(heard.len(), 2);
         assert_eq!(outcome.sweeps, heard[1].0);
         let f: Vec<f64> = outcome.history.iter().map(|o| o.of(base).unwrap()).collect();

@@ -103,10 +103,10 @@ fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
         Metric::Edge => {
             let (k, shortest) = (f64::from(1u32 << SHARPNESS), a.min(b));
             // The third edge is the difference of the two that move with the vertex. The power k enlarges the error of the shares.
-            let cancelled = 1.0 + a.max(b) / c;
+            let canceled = 1.0 + a.max(b) / c;
             Scales {
                 sizes: [q * q, q * q / shortest, k * q * q / (shortest * shortest)],
-                conditions: [cancelled, k * cancelled, k * cancelled],
+                conditions: [canceled, k * canceled, k * canceled],
             }
         }
         Metric::Area => {

@@ -22,7 +22,7 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
                 if seen.len() == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let outcome = smoother.run_observed(&options, backend, &mut observe).unwrap();
-            assert_eq!(outcome.stop, Stop::Cancelled);
+            assert_eq!(outcome.stop, Stop::Canceled);
             let [(first, _), (last, f)] = seen[..] else { panic!("asked {} times", seen.len()) };
             assert!(first < last && last == outcome.sweeps && last < options.max_sweeps);
             let history = history(&outcome, base);
@@ -44,7 +44,7 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
 }
 
 #[test]
-fn a_run_cancelled_while_the_optimum_is_sought_returns_the_start() {
+fn a_run_canceled_while_the_optimum_is_sought_returns_the_start() {
     // The best f until then was once taken for the optimum, and the run was "reached".
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
@@ -57,7 +57,7 @@ fn a_run_cancelled_while_the_optimum_is_sought_returns_the_start() {
                 ControlFlow::Break(())
             };
             let outcome = smoother.run_observed(&options, backend, cancel).unwrap();
-            assert_eq!((outcome.stop, outcome.sweeps), (Stop::Cancelled, 0));
+            assert_eq!((outcome.stop, outcome.sweeps), (Stop::Canceled, 0));
             assert!(outcome.points == mesh.points && outcome.goal.is_none());
         }
     }
@@ -79,7 +79,7 @@ fn options_out_of_range_are_named() {
         ("omega", Options { omega: Some(2.0), ..default() }),
         ("omega", Options { omega: Some(f64::NAN), ..default() }),
         ("inner", Options { inner: 0, ..default() }),
-        // So long a sweep could not be cancelled in time.
+        // So long a sweep could not be canceled in time.
         ("inner", Options { inner: Options::MOST_INNER + 1, ..default() }),
         ("sharpness", Options { sharpness: sharpness(14, 4), ..default() }),
         ("sharpness", Options { sharpness: sharpness(1, 14), ..default() }),

@@ -131,7 +131,7 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
 }
 
 #[test]
-fn a_run_that_was_cancelled_goes_on() {
+fn a_run_that_was_canceled_goes_on() {
     struct Last(Option<Checkpoint>);
     impl Keeper for Last {
         fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
@@ -151,12 +151,12 @@ fn a_run_that_was_cancelled_goes_on() {
         _ => ControlFlow::Break(()),
     };
     let left = smoother.run_kept(&options, &Backend::Cpu, None, &mut last, &mut cancel).unwrap();
-    assert_eq!(left.stop, Stop::Cancelled);
+    assert_eq!(left.stop, Stop::Canceled);
     let from = last.0.take();
     assert_eq!(from.as_ref().map(Checkpoint::sweeps), Some(left.sweeps));
     let end =
         smoother.run_kept(&options, &Backend::Cpu, from.as_ref(), &mut last, &mut go_on).unwrap();
-    assert_same(&whole, &end, "cancelled");
+    assert_same(&whole, &end, "canceled");
 }
 
 /// A run left on a GPU can go on on the CPU. One left on the CPU goes on there, whatever the backend.

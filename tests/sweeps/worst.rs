@@ -139,7 +139,7 @@ fn triangles_that_cannot_be_improved_stay() {
     assert_eq!((told.vertices, told.stuck), (0, 1), "{told:?}");
     assert_eq!(told.worst[0], told.worst[1]);
     assert_eq!(outcome.points, mesh.points);
-    // After a run that was cancelled, nothing is improved.
+    // After a run that was canceled, nothing is improved.
     let mesh = distorted();
     let smoother = Smoother::new(mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
@@ -171,12 +171,12 @@ fn improving_the_worst_ends_where_the_observer_says_so() {
     assert!(passes > 1, "{passes}");
     let (outcome, _) = passes_before_it_ends(0);
     let told = outcome.improved.unwrap();
-    assert_eq!((outcome.stop, told.vertices), (Stop::Cancelled, 0));
+    assert_eq!((outcome.stop, told.vertices), (Stop::Canceled, 0));
     assert_eq!(told.worst[0], told.worst[1]);
     // What the passes until then have gained is kept.
     let (outcome, _) = passes_before_it_ends(1);
     let told = outcome.improved.unwrap();
-    assert_eq!(outcome.stop, Stop::Cancelled);
+    assert_eq!(outcome.stop, Stop::Canceled);
     assert!(told.vertices > 0 && told.worst[1] < told.worst[0], "{told:?}");
 }
 

@@ -137,7 +137,7 @@ impl Keeper for Kept<'_, '_> {
 /// Removes the checkpoint of a run whose mesh is written, unless the run was left before its end.
 pub(crate) fn clear(args: &SmoothArgs, stop: Stop) {
     let Some(path) = file(args) else { return };
-    if stop != Stop::Cancelled && begins(path) == Some(true) {
+    if stop != Stop::Canceled && begins(path) == Some(true) {
         // A checkpoint that is left does no harm.
         let _ = fs::remove_file(path);
     }

@@ -32,7 +32,7 @@ pub(crate) struct Report {
     pub(crate) best_sweep: u32,
     /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
     pub(crate) remaining: Option<f64>,
-    /// reached, converged, stalled, held-back, max-sweeps, cancelled, time-limit, not-finite or nothing-to-do.
+    /// reached, converged, stalled, held-back, max-sweeps, canceled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
     /// The sweep after which the run was left, if it was continued from a checkpoint.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -237,7 +237,7 @@ impl Report {
                     (false, "not-finite") => {
                         format!("{NOT_FINITE}, after {sweeps}, {went}")
                     }
-                    (false, "cancelled") => format!("interrupted after {sweeps}, {went}"),
+                    (false, "canceled") => format!("interrupted after {sweeps}, {went}"),
                     (false, _) => format!("not reached after {sweeps} (the most): {went}"),
                 }
             }
@@ -251,7 +251,7 @@ impl Report {
             }
             ("time-limit", None) => format!("ended by --time-limit after {sweeps}{}", self.left()),
             ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),
-            ("cancelled", None) => format!("interrupted after {sweeps}; more may gain more"),
+            ("canceled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => {
                 format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
             }

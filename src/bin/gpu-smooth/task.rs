@@ -319,13 +319,13 @@ fn smooth(
     if let Ok(outcome) = &outcome {
         times.retain(|time| time.0 < outcome.sweeps);
         times.push((outcome.sweeps, start.elapsed().as_secs_f64()));
-        if outcome.stop == Stop::Cancelled {
+        if outcome.stop == Stop::Canceled {
             kept.left();
         }
     }
     let ran = outcome.map(|outcome| {
         let out_of_time =
-            out_of_time && outcome.stop == Stop::Cancelled && !interrupt::is_requested();
+            out_of_time && outcome.stop == Stop::Canceled && !interrupt::is_requested();
         Ran { outcome, taken, times, out_of_time }
     });
     ran.map_err(|error: SmoothError| match &error {
