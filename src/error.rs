@@ -160,7 +160,7 @@ pub enum MeshError {
         size: f64,
     },
     /// A triangle, or a list of vertices to fix or to move, names a vertex that does not exist.
-    #[error("vertex {vertex} is used, but there are only {vertices}")]
+    #[error("vertex {vertex} does not exist: the mesh has {vertices}, counted from 0")]
     IndexOutOfRange {
         /// The triangle, or `None` if it is a list of vertices that names the vertex.
         triangle: Option<usize>,
@@ -324,7 +324,7 @@ pub enum GpuError {
         available: String,
     },
     /// The adapter refused to create a device.
-    #[error("the adapter {adapter} gave no device: {message}")]
+    #[error("the adapter {adapter} could not be opened: {message}")]
     NoDevice {
         /// The adapter.
         adapter: String,
@@ -398,7 +398,9 @@ pub enum GpuError {
     #[error("the device refused: {0}")]
     Refused(String),
     /// A sweep made the objective infinite or NaN, which no sweep should.
-    #[error("sweep {sweep} made a number that is not finite")]
+    #[error(
+        "sweep {sweep} made the objective infinite or NaN: a mistake of this program or of the driver of the GPU"
+    )]
     NotFinite {
         /// The sweep.
         sweep: u32,

@@ -206,7 +206,7 @@ impl Sink for Assembler {
         if unlisted > 0 {
             let list = self.vertices_of;
             self.note(&format!(
-                "{unlisted} periodic pairs name a node that {list} does not list: they do not slide"
+                "periodic pairs that name a node which {list} does not list do not slide: {unlisted}"
             ));
         }
     }
@@ -238,8 +238,7 @@ impl Sink for Assembler {
                 Ok(())
             }
             Err(second) => {
-                let problem =
-                    format!("these are the second coordinates of node {}", tags.of(second));
+                let problem = format!("node {} is listed a second time", tags.of(second));
                 let remedy = "Give each node a tag of its own";
                 let location = cursor.location_of(self.x_at.at(second));
                 Err(cursor.source.error_at(location, problem, remedy))

@@ -42,7 +42,7 @@ impl MeshFile {
                     return Err(self.unknown(name, real.map(|(name, _)| name.clone()).collect()));
                 }
                 Some((_, false)) => {
-                    let problem = format!("the numbers of '{shown}' are whole");
+                    let problem = format!("'{shown}' holds whole numbers");
                     let remedy = "Only real numbers can be interpolated";
                     return Err(source.error(problem, remedy));
                 }
@@ -61,7 +61,7 @@ impl MeshFile {
             let (found, each) = (field.values().len(), field.components());
             if Some(found) != vertices.checked_mul(each) {
                 let name = quoted(field.name().as_bytes());
-                let problem = format!("'{name}' has {found} numbers, {each} a vertex");
+                let problem = format!("'{name}' has {found} numbers, {each} per vertex");
                 return Err(source.error(problem, format!("There are {vertices} vertices")));
             }
         }
@@ -86,8 +86,8 @@ impl MeshFile {
                 Err(source.error(problem, format!("There are {vertices} vertices")))
             }
             Some((components, _)) => {
-                let problem = format!("the array '{shown}' has {components} numbers a point");
-                Err(source.error(problem, "Take an array of one number a point"))
+                let problem = format!("the array '{shown}' has {components} numbers per point");
+                Err(source.error(problem, "Take an array with one number per point"))
             }
             None if known.iter().any(|(known, _)| known == name) => Err(self.damaged(name)),
             None => Err(self.unknown(name, known.into_iter().map(|(name, _)| name).collect())),

@@ -139,7 +139,9 @@ impl Walk for MeditBinary {
                     cursor.pass(place - cursor.at_byte());
                 }
                 _ => {
-                    let problem = format!("the next list is said to be at byte {next}");
+                    let problem = format!(
+                        "the next list is announced at byte {next}, which is not behind this one in the file"
+                    );
                     return Err(list.error(problem, CUT_OFF));
                 }
             }

@@ -159,7 +159,7 @@ fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(
         }
         let told = decoder.get_checksum_from_data();
         if told.is_some() && told != decoder.get_calculated_checksum() {
-            return Err("the checksum is another one".into());
+            return Err("the checksum does not match".into());
         }
     }
     Ok(())
@@ -230,7 +230,7 @@ mod tests {
         }
         let mut wrong = file.to_vec();
         *wrong.last_mut().unwrap() ^= 1;
-        assert!(problem(&wrong).contains("the checksum is another one"));
+        assert!(problem(&wrong).contains("the checksum does not match"));
     }
 
     #[test]

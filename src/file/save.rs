@@ -301,7 +301,7 @@ impl MeshFile {
                     if others.any(|(_, other)| replace::same_file(own, other)) {
                         let name = own.display();
                         let problem =
-                            format!("{name} would be written, which the mesh was read from");
+                            format!("{name}, from which the mesh was read, would be overwritten");
                         return refused(problem, "Take another name".into());
                     }
                 }

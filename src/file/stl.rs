@@ -140,7 +140,7 @@ fn text<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadErr
                 return Err(cursor.error(problem, CORRECT));
             }
             Row::Solid(_) | Row::Facet(_) if is_open != matches!(row, Row::Facet(_)) => {
-                let problem = "`solid` and `endsolid` do not stand in turn";
+                let problem = "`solid` and `endsolid` do not alternate";
                 return Err(cursor.error(problem, CORRECT));
             }
             Row::Solid(name) => {

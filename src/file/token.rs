@@ -24,7 +24,7 @@ fn on_one_line(text: &[u8], most: usize) -> String {
 
 /// Words the error of the XML parser. It may quote a tag, of any length and over several lines.
 pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
-    format!("it is no XML: {}", on_one_line(error.to_string().as_bytes(), 120))
+    format!("it is not XML: {}", on_one_line(error.to_string().as_bytes(), 120))
 }
 
 /// The text that an attribute or the content of an element in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.

@@ -37,7 +37,7 @@ impl View {
                 continue;
             }
             if kind != b"ST" {
-                let problem = format!("an element of kind `{}`", quoted(kind));
+                let problem = format!("an element of kind `{}` is not read", quoted(kind));
                 return Err(parser.error(problem, SAVE));
             }
             let places = parser.list([b'(', b')'], 9)?;
@@ -133,7 +133,7 @@ impl<'s> Parser<'s> {
         let length = length.count();
         self.at += length;
         match length {
-            0 => Err(self.error(format!("`{}` is no element", quoted(&rest[..1])), SAVE)),
+            0 => Err(self.error(format!("`{}` is not an element", quoted(&rest[..1])), SAVE)),
             _ => Ok(Some(&rest[..length])),
         }
     }

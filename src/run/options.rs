@@ -144,13 +144,15 @@ impl Options {
     fn only_sweeps(&self) -> Option<&'static str> {
         let metric = self.scheme.base();
         if !metric.properties().is_corrected {
-            Some("this metric has no correction: take another, imr, say")
+            Some(
+                "runs by this metric are not corrected from coarser levels: take another metric, such as imr",
+            )
         } else if self.omega.is_some() {
-            Some("over-relaxation is its own: leave omega open")
+            Some("corrected runs choose the over-relaxation themselves: do not set omega")
         } else if self.derivatives != Derivatives::Analytic {
-            Some("it needs analytic derivatives")
+            Some("corrections from coarser levels need analytic derivatives")
         } else if self.inner != 1 {
-            Some("it needs one Newton step per visit: set inner to 1")
+            Some("corrections from coarser levels need one Newton step per visit: set inner to 1")
         } else {
             None
         }
@@ -164,7 +166,7 @@ impl Options {
             return Err(SmoothError::Option {
                 option,
                 value,
-                remedy: "targets need analytic derivatives",
+                remedy: "a mesh with targets needs analytic derivatives",
             });
         }
         Ok(())
@@ -173,7 +175,7 @@ impl Options {
     /// Checks that an application can encode sweeps with these options.
     pub(crate) fn check_encoded(&self) -> Result<(), SmoothError> {
         let refuse = |option, value| {
-            let remedy = "sweeps that are encoded have none: only whole runs do";
+            let remedy = "encoded sweeps cannot do this: leave it out, or do a whole run";
             Err(SmoothError::Option { option, value, remedy })
         };
         match (self.guard, self.max_move) {
@@ -205,10 +207,14 @@ impl Options {
         if let Some(Sharpness { first, last, .. }) = self.sharpness {
             let (first, most) = (f64::from(first), f64::from(first.max(last)));
             if most > f64::from(Sharpness::MOST) {
-                return refuse("sharpness", most, "log2 k can be 13 at most");
+                return refuse(
+                    "sharpness",
+                    most,
+                    "first and last are log2 of the exponent, and may be 13 at most",
+                );
             }
             if first > f64::from(last) {
-                let remedy = "the exponent grows: the first may not be above the last";
+                let remedy = "first may not be above last, as the exponent only grows";
                 return refuse("sharpness", first, remedy);
             }
         }

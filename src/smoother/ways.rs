@@ -52,7 +52,11 @@ impl<'s> Ways<'s> {
             return refuse("target field", "with sliding vertices", remedy);
         }
         if has_field && options.keep_altitude {
-            return refuse("keep altitude", "on", "it cannot be combined with a target field");
+            return refuse(
+                "keep altitude",
+                "on",
+                "it cannot be combined with a target field: leave out one of the two",
+            );
         }
         Ok(())
     }

@@ -22,7 +22,9 @@ pub(crate) fn check(
         return refuse("it needs analytic derivatives");
     }
     if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
-        return refuse("such a run cannot search for the desired f: give its value");
+        return refuse(
+            "such a run cannot search for the desired f: give its value as Desired::Value",
+        );
     }
     match is_continued {
         true => refuse("such a run cannot continue from a checkpoint: start it without one"),

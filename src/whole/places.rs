@@ -43,7 +43,7 @@ impl<'s> Places<'s> {
         if options.goal.is_some() {
             return refuse(
                 "with a goal",
-                "targets that change have no desired f: leave out one of the two",
+                "as targets change, there is no desired f: leave out one of the two",
             );
         }
         if options.max_move.is_some() {

@@ -17,7 +17,7 @@ fn missing_and_surplus_files_are_told() {
     let folder = small();
     assert_usage(&folder, "", &["<IN>", "<OUT>"]);
     assert_usage(&folder, "in", &["<OUT>"]);
-    assert_usage(&folder, "in out extra", &["unexpected argument 'extra'", "one mesh a run"]);
+    assert_usage(&folder, "in out extra", &["unexpected argument 'extra'", "one mesh per run"]);
     assert_usage(&folder, "quality", &["<MESH>"]);
     assert_usage(&folder, "metrics in", &["unexpected argument 'in'"]);
     assert_usage(&folder, "in out --nonsense", &["unexpected argument '--nonsense'"]);

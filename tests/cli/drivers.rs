@@ -220,5 +220,5 @@ fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     let mut command = folder.command();
     with_fault(&mut command, "vkCreateDevice", 1, "crash");
     let run = finish(command.args("in out --tolerance 0 --max-sweeps 40 --continue c".split(' ')));
-    assert_holds(&run.clean().out, &["which does not open: the driver of the GPU failed when"]);
+    assert_holds(&run.clean().out, &["which cannot be opened: the driver of the GPU failed when"]);
 }

@@ -53,7 +53,7 @@ fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     }
     let out = folder.line("compare in.gr3 out.gr3 --interpolate depth").clean().out;
     assert_holds(&out, &["depth differs only at vertices that have moved"]);
-    folder.line("compare in.gr3 out.gr3").refused(&["more than coordinates is different"]);
+    folder.line("compare in.gr3 out.gr3").refused(&["differ in more than coordinates"]);
     // Compressed output, and a run without sweeps, which changes nothing.
     fs::write(folder.path("empty"), "").unwrap();
     folder.run(["in.gr3", "again.gr3.gz", "--engine=cpu", "--interpolate=all", "--quiet"]).clean();
@@ -98,6 +98,9 @@ fn data_that_cannot_be_interpolated_are_refused() {
     let folder = small();
     let run = folder.line("in.node out.node --interpolate all --engine cpu");
     assert_eq!(run.code, Some(0));
-    assert_holds(&run.err, &["no data of vertices that differ: nothing to interpolate"]);
+    assert_holds(
+        &run.err,
+        &["no data of the mesh differ from vertex to vertex: nothing to interpolate"],
+    );
     folder.line("in.node out.node --interpolate z").refused(&["The file has no point data"]);
 }

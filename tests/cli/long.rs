@@ -109,7 +109,10 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         assert!(folder.content() == kept, "{line}: something was written");
     };
     // The checkpoint of another run would be overwritten and lost.
-    refused(&limited, &["run.ckpt: the checkpoint of another run is there", "--continue run.ckpt"]);
+    refused(
+        &limited,
+        &["run.ckpt: this file is the checkpoint of another run", "--continue run.ckpt"],
+    );
     refused(
         &format!("{LONG} --continue run.ckpt --omega 1.2"),
         &["run.ckpt: the checkpoint cannot be used: it is of a run with", "with the same options"],
@@ -118,7 +121,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         &format!("{LONG} --continue run.ckpt --fix-box 0,0,6,6 -q"),
         &["run.ckpt: the checkpoint cannot be used: it is of another mesh"],
     );
-    refused(&format!("{LONG} --continue none"), &["none: there is no such checkpoint"]);
+    refused(&format!("{LONG} --continue none"), &["none: there is no such file"]);
     refused(&format!("{LONG} --continue in.node"), &["in.node: not a checkpoint of this version"]);
     refused(&format!("{LONG} --checkpoint in.node"), &["in.node: the checkpoint would replace"]);
     refused(&format!("{LONG} --checkpoint out.node"), &["out.node: the checkpoint would replace"]);
@@ -132,7 +135,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     fs::write(folder.path("notes.txt"), "mine").unwrap();
     folder
         .line(&format!("{LONG} --checkpoint notes.txt"))
-        .refused(&["notes.txt: a file that is no checkpoint is there"]);
+        .refused(&["notes.txt: exists and is not a checkpoint"]);
     assert_eq!(folder.text("notes.txt"), "mine");
 }
 

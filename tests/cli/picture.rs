@@ -111,9 +111,9 @@ fn arrows_are_drawn_on_request_and_for_a_run_only() {
     };
     assert!(lines("--picture-arrows") > lines("") + 1000);
     assert!(folder.line("in out --engine cpu -q --picture p.svg --picture-arrows").code == Some(0));
-    assert!(folder.text("p.svg").contains("way of a vertex"));
+    assert!(folder.text("p.svg").contains("displacement"));
     let line = "quality in --picture p.svg --picture-arrows";
-    assert_holds(&folder.line(line).err, &["--picture-arrows is for a run"]);
+    assert_holds(&folder.line(line).err, &["--picture-arrows needs a run"]);
 }
 
 #[test]
@@ -192,10 +192,10 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
     let folder = small();
     let before = folder.content();
     for (line, parts) in [
-        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is .png or .svg"]),
+        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
         ("in out --engine cpu --picture none/p.png", ["the picture cannot be written: ", "none"]),
-        ("quality in --picture p", ["p: ", "is .png or .svg"]),
-        ("quality in in --picture p.png", ["p.png: ", "give one"]),
+        ("quality in --picture p", ["p: ", "is PNG or SVG"]),
+        ("quality in in --picture p.png", ["p.png: ", "give only one"]),
         (
             "in out --engine cpu --picture p.svg --report p.svg",
             ["p.svg: ", "would replace this file"],

@@ -160,8 +160,8 @@ fn a_threshold_fails_where_triangles_pass_it() {
 fn options_that_make_no_sense_are_refused() {
     let folder = small();
     for (options, part) in [
-        ("--threshold min-angle>20", "low values of min-angle are the bad ones"),
-        ("--threshold condition<2", "as in 'condition>2'"),
+        ("--threshold min-angle>20", "low values of min-angle are bad"),
+        ("--threshold condition<2", "write 'condition>2'"),
         ("--threshold min-angle", "a measure, < or >, and a number"),
         ("--threshold min-angle<<20", "a number"),
         ("--threshold min-angle<==20", "a measure, < or >, and a number"),

@@ -278,7 +278,7 @@ fn files_of_other_kinds_are_told() {
     assert_gmsh_refused(
         "2.2 0 8",
         "2.2 1 8",
-        &["in.msh, byte 20: the mark of the byte order is one in neither order. "],
+        &["in.msh, byte 20: the byte-order mark is not the number 1 in either byte order. "],
     );
     assert_gmsh_refused("2 2 0 1 10", "4 2 0 1 10", &["in.msh:14: ", "makes this a volume mesh"]);
     assert_refused(&[("in.txt", "hello\n")], "in.txt", &["in.txt: the format is not recognized. "]);

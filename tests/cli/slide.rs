@@ -89,7 +89,7 @@ fn vertices_that_slid_are_shown_in_the_page_and_in_pictures() {
 fn options_that_do_not_go_with_sliding_are_refused() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     for (options, told) in [
-        ("--slide --checkpoint c", "keeps no checkpoints"),
+        ("--slide --checkpoint c", "does not go with --checkpoint or --continue"),
         ("--slide --scheme edge+imr", "one metric other than edge"),
         ("--slide --fraction 0.95", "give its value"),
         ("--slide --corner-angle 200", "from 0 to 180"),
@@ -110,7 +110,7 @@ fn a_mesh_without_a_free_vertex_does_not_slide_and_says_so() {
         ["4 2\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n", "2 3\n1 1 2 3\n2 1 3 4\n"].map(str::to_owned);
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
     folder.line("in.node out.node --slide").refused(&[
-        "in.node: none of the 4 vertices is free to move, and vertices slide along lines only",
+        "in.node: none of the 4 vertices is free to move, and --slide needs a free vertex",
         "Refine the mesh",
     ]);
 }

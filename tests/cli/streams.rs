@@ -58,7 +58,7 @@ fn pipes_without_a_mesh_are_told() {
     assert_eq!((run.code, out.len()), (Some(1), 0));
     assert_holds(&run.err, &["error: standard input: the file is empty"]);
     let before = folder.content();
-    folder.line("in.node - --engine cpu").refused(&["of several files: name OUT"]);
+    folder.line("in.node - --engine cpu").refused(&["cannot go to standard output: name OUT"]);
     let (run, _) = piped(&folder, "- - --engine cpu", folder.text("in.node").as_bytes());
     assert_eq!(run.code, Some(1), "{}", run.err);
     assert!(folder.content() == before);

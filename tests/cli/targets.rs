@@ -137,7 +137,7 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
         files.iter().map(|(name, text)| (*name, text.as_str())).collect();
     let folder = folder(&files);
     for (target, parts) in [
-        ("size=few.mtr", &["few.mtr: there are numbers for 3 vertices"][..]),
+        ("size=few.mtr", &["few.mtr: it has numbers for 3 vertices"][..]),
         ("size=cut.mtr", &["cut.mtr:8: the file ends after 7 of"]),
         ("size=wrong.mtr", &["wrong.mtr:2", "not a number"]),
         ("size=zero.mtr", &["in.node:3: vertex 1: its size is not positive"]),
@@ -243,7 +243,10 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     folder.line("in out --engine cpu --target size=bg.pos").clean();
     assert_eq!(folder.mesh("out.node").points, ends[0]);
     for (text, told) in [
-        (view.replacen("ST", "SP", 1), "bad.pos:4: an element of kind `SP`. Save the view"),
+        (
+            view.replacen("ST", "SP", 1),
+            "bad.pos:4: an element of kind `SP` is not read. Save the view",
+        ),
         (view.replacen("{1,4,4}", "{1,x,4}", 1), "bad.pos:4: `x` is not a number"),
         (view.replacen("{1,4,4}", "{1,4}", 1), "bad.pos:4: 2 numbers where 3 are needed"),
         (view.replacen("{1,4,4}", "{1,-4,4}", 1), "its size is not positive"),
@@ -254,19 +257,25 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
         fs::write(folder.path("bad.pos"), text).unwrap();
         folder.line("in out --engine cpu --target size=bad.pos").refused(&[told]);
     }
-    folder.line("in out --engine cpu --target metric=bg.pos").refused(&["take size=bg.pos"]);
+    folder.line("in out --engine cpu --target metric=bg.pos").refused(&["give size=bg.pos"]);
     let run = folder.line("in out --engine cpu --target size=half.msh:h");
-    assert_holds(&run.err, &["vertices are outside of half.msh, by up to", "the nearest place"]);
+    assert_holds(
+        &run.err,
+        &["vertices are outside of half.msh, by up to", "the target of the nearest point"],
+    );
     // The sizes that the mesh itself has at its places.
     folder.line("in out --engine cpu --target keep-size --target-of place").clean();
     for (target, parts) in [
         ("size=bg.msh:g", &["no point data is called 'g'"][..]),
-        ("metric=bg.msh:h", &["a vertex has 1 numbers where 3 are needed"]),
+        ("metric=bg.msh:h", &["numbers per vertex: 1, needed: 3"]),
         ("size=in.node:attribute", &["no point data is called 'attribute'"]),
     ] {
         folder.line(&format!("in out --engine cpu --target {target}")).refused(parts);
     }
     let run = folder.line("in out --engine cpu --target size=bg.msh:h --slide");
     assert_eq!(run.code, Some(2));
-    assert_holds(&run.err, &["a target of places does not go with --slide", "--target-of vertex"]);
+    assert_holds(
+        &run.err,
+        &["a target that belongs to places does not go with --slide", "--target-of vertex"],
+    );
 }

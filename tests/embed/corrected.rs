@@ -242,10 +242,13 @@ fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
         ..Options::default()
     };
     for (options, reason) in [
-        (multilevel("edge"), "sweeps by edge that are encoded have none"),
-        (multilevel("imr+rms"), "metrics alternate in encoded sweeps without corrections"),
-        (multilevel("area"), "this metric has no correction"),
-        (Options { omega: Some(1.5), ..multilevel("imr") }, "over-relaxation is its own"),
+        (multilevel("edge"), "encoded sweeps by edge are not corrected"),
+        (multilevel("imr+rms"), "encoded sweeps are not corrected if metrics alternate"),
+        (multilevel("area"), "runs by this metric are not corrected"),
+        (
+            Options { omega: Some(1.5), ..multilevel("imr") },
+            "corrected runs choose the over-relaxation themselves",
+        ),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();
         assert!(matches!(error, SmoothError::Option { option: "method", .. }), "{error:?}");

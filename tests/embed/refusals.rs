@@ -240,11 +240,11 @@ fn options_out_of_range_are_refused() {
         (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
         (
             Options { max_move: Some(0.5), ..ok() },
-            "max move is 0.5: sweeps that are encoded have none: only whole runs do",
+            "max move is 0.5: encoded sweeps cannot do this: leave it out, or do a whole run",
         ),
         (
             Options { guard: Guard::Worst, ..ok() },
-            "guard is worst: sweeps that are encoded have none: only whole runs do",
+            "guard is worst: encoded sweeps cannot do this: leave it out, or do a whole run",
         ),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();

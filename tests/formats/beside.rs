@@ -64,16 +64,16 @@ fn missing_files_beside_a_mesh_are_errors() {
     refused(with("dolfin.xdmf:/a"), &["it names itself"]);
     refused(with("dolfin.h5:/Mesh/b"), &["dolfin.xdmf:10: dolfin.h5 has no dataset /Mesh/b"]);
     refused(with("dolfin.h5:/Mesh/mesh"), &["dolfin.h5 has no dataset /Mesh/mesh"]);
-    refused(with("dolfin.h5:/Mesh/mesh/topology"), &["announce 60 numbers, dolfin.h5 has 120"]);
+    refused(with("dolfin.h5:/Mesh/mesh/topology"), &["announce 60 numbers, but dolfin.h5 has 120"]);
     refused(with("dolfin.h5"), &["names no dataset"]);
-    refused(read(text.replace("30 2", "30 3")), &["announce 90 numbers, dolfin.h5 has 60"]);
+    refused(read(text.replace("30 2", "30 3")), &["announce 90 numbers, but dolfin.h5 has 60"]);
     refused(read(text.replace("40 3\" NumberType", "4 3\" NumberType")), &["announce 12 numbers"]);
     refused(
         read(text.replace("Format=\"HDF\"", "Format=\"TIFF\"")),
         &["numbers of the format TIFF"],
     );
-    fs::write(folder.path("text.h5"), "no HDF5").unwrap();
-    refused(with("text.h5:/a"), &["text.h5 is no HDF5"]);
+    fs::write(folder.path("text.h5"), "not HDF5").unwrap();
+    refused(with("text.h5:/a"), &["text.h5 is not HDF5"]);
     // The same file by another name is one of the files still.
     let file = with("./dolfin.h5:/Mesh/mesh/geometry").unwrap();
     assert_eq!(file.paths().count(), 2);
@@ -122,7 +122,7 @@ fn a_file_of_the_mesh_is_not_replaced_by_another() {
     fs::write(folder.path("raw.xdmf"), text).unwrap();
     let file = folder.read("raw.xdmf");
     let error = file.write(&folder.path("x.xdmf"), &file.mesh().points).unwrap_err().to_string();
-    assert!(error.contains("x.bin would be written, which the mesh was read from"), "{error}");
+    assert!(error.contains("x.bin, from which the mesh was read, would be overwritten"), "{error}");
     assert!(!folder.path("x.xdmf").exists());
     let error = file.write(&folder.path("y.xdmf.gz"), &file.mesh().points).unwrap_err();
     assert!(error.to_string().contains("not written compressed"), "{error}");

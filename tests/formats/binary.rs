@@ -272,12 +272,12 @@ fn errors_in_binary_files_name_byte_and_remedy() {
     );
     assert_eq!(
         error(&v2, b"\x01\0\0\0\n$End", b"\x01\0\n$End").1,
-        "a.msh, byte 20: the mark of the byte order is one in neither order. The file is damaged: copy it again as \
+        "a.msh, byte 20: the byte-order mark is not the number 1 in either byte order. The file is damaged: copy it again as \
          binary, or save the mesh again"
     );
     assert_eq!(
         error_of(&v2[..22]),
-        "a.msh, byte 20: the file ends before the mark of the byte order. The file is cut off: copy it again, or \
+        "a.msh, byte 20: the file ends before its byte-order mark. The file is cut off: copy it again, or \
          write the mesh again"
     );
     let nodes = find(&v2, b"$Nodes\n6\n") + 9;
@@ -310,7 +310,7 @@ fn errors_in_binary_files_name_byte_and_remedy() {
     assert!(message.starts_with(&wanted), "{message}");
     let node = |tag: i32| [&words(&[tag])[..], &1_f64.to_le_bytes(), &0_f64.to_le_bytes()].concat();
     let (at, message) = error(&v2, &node(4), &node(90_000));
-    let wanted = format!("a.msh, byte {}: these are the second coordinates of node 90000", at + 4);
+    let wanted = format!("a.msh, byte {}: node 90000 is listed a second time", at + 4);
     assert!(message.starts_with(&wanted), "{message}");
 }
 

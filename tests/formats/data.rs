@@ -176,7 +176,7 @@ fn data_that_are_not_real_numbers_are_refused_by_name() {
     let refused = |file: &MeshFile, name: &str| {
         file.point_fields(Some(&[name.to_owned()])).unwrap_err().to_string()
     };
-    assert!(refused(&file, "n").contains("the numbers of 'n' are whole"));
+    assert!(refused(&file, "n").contains("'n' holds whole numbers"));
     let unknown = refused(&file, "deep");
     assert!(unknown.contains("no point data is called 'deep'. There are depth, z"), "{unknown}");
     assert!(refused(&folder.read("cut.vtk"), "depth").contains("'depth' is damaged or cut off"));
@@ -336,5 +336,5 @@ fn damaged_data_of_a_name_that_is_there_twice_are_errors() {
     };
     assert_eq!(fields("1 2 3 4"), Ok(1));
     let error = fields("1 2 3").unwrap_err();
-    assert!(error.contains("'T' has 3 numbers, 1 a vertex"), "{error}");
+    assert!(error.contains("'T' has 3 numbers, 1 per vertex"), "{error}");
 }

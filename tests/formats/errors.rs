@@ -95,7 +95,11 @@ fn gmsh_errors_name_line_and_remedy() {
         assert!(GMSH22.contains(from), "{from}");
         assert_gmsh_error(&GMSH22.replacen(from, to, 1), parts);
     };
-    v2("2.2 0 8", "2.2 1 8", &["a.msh, byte 20: the mark of the byte order is one in neither"]);
+    v2(
+        "2.2 0 8",
+        "2.2 1 8",
+        &["a.msh, byte 20: the byte-order mark is not the number 1 in either"],
+    );
     v2("2.2 0 8", "2.2 2 8", &["a.msh:2: the file type is 2, neither 0 nor 1"]);
     v2("2.2 0 8", "3 0 8", &["a.msh:2: gmsh's format version 3 is not read. Save as version 4.1"]);
     v2(
@@ -108,7 +112,7 @@ fn gmsh_errors_name_line_and_remedy() {
     v2("$Nodes\n6", "$Nodes\n7", &["a.msh:16: the section ends after 6 of 7 nodes", "Correct"]);
     v2("$Nodes\n6", "$Nodes\n5", &["a.msh:15: $Nodes goes on after the 5 nodes it announces"]);
     v2("$Nodes\n6", "$Nodes\n99999999999", &["a.msh:9: 99999999999 vertices", "4294967295"]);
-    v2("3 1 1 5\n", "4 1 1 5\n", &["a.msh:12: these are the second coordinates of node 4", "own"]);
+    v2("3 1 1 5\n", "4 1 1 5\n", &["a.msh:12: node 4 is listed a second time", "own"]);
     v2("3 1 1 5\n", "3 1 inf 5\n", &["a.msh:12: y of node 3 is `inf`, not a finite number"]);
     v2("3 1 1 5\n", "3 1 1\n", &["a.msh:12: z of node 3 is missing"]);
     v2("3 70 5\n", "3 71 5\n", &["a.msh:23: triangle 5 has node 71, which $Nodes does not list"]);
@@ -140,7 +144,7 @@ fn gmsh_errors_name_line_and_remedy() {
     v4("2 1 1 4", "2 1 1 3", &["a.msh:18: y of node 9 is missing"]);
     v4("2 5 1 9", "2 6 1 9", &["a.msh:22: the blocks hold 5 of the 6 nodes"]);
     v4("2 5 1 9", "3 5 1 9", &["a.msh:23: the section ends after 2 of 3 node blocks"]);
-    v4("9\n8\n", "9\n9\n", &["a.msh:20: these are the second coordinates of node 9"]);
+    v4("9\n8\n", "9\n9\n", &["a.msh:20: node 9 is listed a second time"]);
     v4("2 1 2 4\n", "2 1 3 4\n", &["a.msh:29: a node of element 2 is missing"]);
     v4("2 1 2 4\n", "2 1 20 4\n", &["a.msh:28: element type 20 is of higher order"]);
     v4("2 1 2 4\n", "2 a 2 4\n", &["a.msh:28: the entity of an element block is `a`, not a whole"]);

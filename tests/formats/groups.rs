@@ -333,7 +333,7 @@ fn point_data_have_a_number_a_vertex() {
     for (name, text) in [("in.vtk", VTK), ("in.vtu", VTU)] {
         let folder = Folder::new(&[(name, text)]);
         let error = folder.read(name).point_array("v").unwrap_err().to_string();
-        assert!(error.contains("numbers a point. Take an array of one number"), "{error}");
+        assert!(error.contains("numbers per point. Take an array with one number"), "{error}");
         let short = text.replace("4 5.5", "4");
         let folder = Folder::new(&[(name, &short)]);
         let error = folder.read(name).point_array("weight").unwrap_err().to_string();

@@ -182,7 +182,7 @@ fn an_stl_that_is_no_plane_mesh_is_refused() {
     refused(four.as_bytes(), &["a.stl:7: a vertex beyond the three"]);
     let two = text.replacen("      vertex", "#", 1);
     refused(two.as_bytes(), &["a.stl:7: the facet has 2 vertices, not three"]);
-    refused(text.replace("endsolid left half\n", "").as_bytes(), &["do not stand in turn"]);
+    refused(text.replace("endsolid left half\n", "").as_bytes(), &["do not alternate"]);
     refused(text.replace("outer", "inner").as_bytes(), &["a.stl:3: a row starts with `inner`"]);
     let twice = "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex -0 0 0\nendfacet\nendsolid\n";
     refused(twice.as_bytes(), &["a.stl:2: triangle 1 lists node 1 twice"]);

@@ -215,7 +215,7 @@ impl Cli {
         let cli = Self::from_arg_matches(&matches)?;
         if let (None, Some(extra)) = (&cli.smooth.out_dir, cli.smooth.more.first()) {
             let text = format!(
-                "unexpected argument '{}' after IN and OUT: give one mesh a run, or --out-dir DIR for several",
+                "unexpected argument '{}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes",
                 extra.display()
             );
             return refused(ErrorKind::UnknownArgument, text);
@@ -239,11 +239,11 @@ fn misplaced(matches: &ArgMatches) -> Option<String> {
     Some(match arg.get_long() {
         Some(long) => {
             format!(
-                "'--{long}' stands before the command '{name}': options of a command go after it"
+                "'--{long}' stands before the command '{name}': put the options of a command after it"
             )
         }
         None => format!(
-            "'{name}' is a command here, and takes no mesh before it; a file of that name is ./{name}"
+            "'{name}' is a command, and no mesh may stand before it; write ./{name} for a file of that name"
         ),
     })
 }

@@ -46,10 +46,10 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
         list += &format!("\n  {place}: triangle {}", place.label);
     }
     if !args.sliding.slide && !held.is_empty() {
-        list += "\n  --slide allows those that slid along their lines";
+        list += "\n  if they slid along lines in a run with --slide, give --slide here too";
     }
     if explain::are_across(&after, bad) {
-        list += "\n  --surface sphere continues longitudes across the line where they start again";
+        list += "\n  --surface sphere continues longitudes across the line where they start again, as at 180 degrees";
     }
     if !problems.is_empty() {
         return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));

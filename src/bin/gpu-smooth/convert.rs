@@ -30,7 +30,10 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     }
     if is_standard(&args.output) {
         let Some(content) = conversion.bytes() else {
-            return Err("a Triangle mesh is of several files: name OUT".into());
+            return Err(
+                "a Triangle mesh has several files and cannot go to standard output: name OUT"
+                    .into(),
+            );
         };
         let mut out = std::io::stdout();
         let written = out.write_all(&content).and_then(|()| out.flush());
@@ -38,7 +41,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     }
     let written = conversion.destinations(&args.output);
     if let Some(same) = written.iter().find(|own| file.paths().any(|p| output::same_file(p, own))) {
-        return Err(format!("{} is the mesh that is read. Take another name", same.display()));
+        return Err(format!("{} is the mesh that is read. Give OUT another name", same.display()));
     }
     conversion.write(&args.output).map_err(|error| error.to_string())?;
     if !show.quiet {
@@ -56,7 +59,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
 fn format(args: &ConvertArgs) -> Result<Format, String> {
     let by_ending = || Conversion::target_of(&args.output);
     args.to.or_else(by_ending).ok_or_else(|| {
-        format!("{}: its ending tells no format to convert to. {}", args.output.display(), known())
+        format!("{}: its ending names no format to convert to. {}", args.output.display(), known())
     })
 }
 

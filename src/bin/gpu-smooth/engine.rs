@@ -60,7 +60,7 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     match tried_and_opened(Some(name)) {
         Ok(gpu) => Taken::new(Backend::Gpu(gpu), Some("where the run was left".into())),
         Err(error) => {
-            let reason = format!("the run was left on {name}, which does not open: {error}");
+            let reason = format!("the run was last on {name}, which cannot be opened: {error}");
             Taken::new(Backend::Cpu, Some(reason))
         }
     }

@@ -124,7 +124,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             }
             let remedy = match are_across(file, triangles) {
                 true => {
-                    "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again"
+                    "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again, as at 180 degrees"
                 }
                 false => {
                     "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
@@ -162,7 +162,7 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             )
         }
         MeshError::NotFinite { vertex } => {
-            format!("{}: {error}. Correct the line", file.vertex_place(vertex))
+            format!("{}: {error}. Correct it", file.vertex_place(vertex))
         }
         MeshError::NothingFree { .. } => format!(
             "{}: {}: all are on the boundary, on constraint lines, between regions or of other \

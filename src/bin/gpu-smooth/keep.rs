@@ -28,7 +28,7 @@ pub(crate) fn check<'p>(
     let name = path.display();
     if others.any(|other| output::same_file(other, path)) {
         return Err(format!(
-            "{name}: the checkpoint would replace this file. Give it another name"
+            "{name}: the checkpoint would replace this file. Give --checkpoint another name"
         ));
     }
     let is_continued = args.continued.as_deref().is_some_and(|from| output::same_file(from, path));
@@ -37,12 +37,12 @@ pub(crate) fn check<'p>(
         None => {}
         Some(true) => {
             return Err(format!(
-                "{name}: the checkpoint of another run is there. Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
+                "{name}: this file is the checkpoint of another run. Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
             ));
         }
         Some(false) => {
             return Err(format!(
-                "{name}: a file that is no checkpoint is there. Take another name"
+                "{name}: exists and is not a checkpoint. Give --checkpoint another name"
             ));
         }
     }
@@ -62,7 +62,7 @@ pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
-            format!("{name}: there is no such checkpoint; a run that has come to its end removes its own. Without --continue the run starts anew")
+            format!("{name}: there is no such file. A run that came to its end has removed its checkpoint. Without --continue the run starts anew")
         }
         _ => format!("{name}: {error}"),
     })?;

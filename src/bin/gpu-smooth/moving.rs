@@ -24,7 +24,7 @@ pub(crate) struct MoveArgs {
     /// Keep the vertices that FILE lists where they are, by the mesh file's own numbers; # starts a comment
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     fix_vertices: Vec<PathBuf>,
-    /// Keep the vertices where they are that have a number other than zero in this array of point data (VTK, PLY)
+    /// Keep vertices where they are if this array of point data (VTK, PLY) is not zero there
     #[arg(long, value_name = "NAME", help_heading = HEADING)]
     fix_array: Vec<String>,
     /// Keep vertices in this box where they are

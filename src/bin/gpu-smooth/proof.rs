@@ -58,7 +58,7 @@ impl Proof {
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(Difference { place, other_place, what }) = &self.difference {
             return Some(format!(
-                "{place} and {other_place}: more than coordinates is different: {what}"
+                "{place} and {other_place}: the files differ in more than coordinates: {what}"
             ));
         }
         let mut problems = Vec::new();

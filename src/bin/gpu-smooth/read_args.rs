@@ -5,7 +5,8 @@ use clap::Args;
 /// The options of reading, which all commands share.
 #[derive(Args, Clone, Copy)]
 pub(crate) struct ReadArgs {
-    /// Join corners of triangles at the same place: an STL has no vertices without. No effect on other formats
+    /// Join corners of triangles at the same place to one vertex, as an STL lists the corners of each triangle by
+    /// themselves. No effect on other formats
     #[arg(long)]
     pub(crate) weld: bool,
 }

@@ -131,7 +131,7 @@ impl Riding {
         points: &[[f64; 2]],
     ) -> Result<Option<String>, String> {
         if self.fields.is_empty() {
-            let none = "there are no data of vertices that differ: nothing to interpolate";
+            let none = "no data of the mesh differ from vertex to vertex: nothing to interpolate";
             return Ok(self.asked.then(|| none.into()));
         }
         let told = |error: gpu_smooth::MeshError| error.to_string();
@@ -153,8 +153,12 @@ impl Riding {
         };
         let kept = match left {
             0 => String::new(),
-            1 => "; 1 number stays, as none is given at a vertex around".to_owned(),
-            left => format!("; {left} numbers stay, as none is given at a vertex around"),
+            1 => {
+                "; 1 number stays as it was, as a vertex around it has no finite number".to_owned()
+            }
+            left => format!(
+                "; {left} numbers stay as they were, as a vertex around them has no finite number"
+            ),
         };
         Ok(Some(format!("interpolated where {moved} moved: {names}{kept}")))
     }
@@ -166,12 +170,12 @@ impl Riding {
     pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
-            problems.push("it does not have the same data".to_owned());
+            problems.push("it does not have the same data of vertices".to_owned());
         }
         for (old, new) in self.data().iter().zip(other.data()) {
             let (name, each) = (old.name(), old.components().max(1));
             if new.name() != name || new.values().len() != old.values().len() {
-                problems.push(format!("{name} is not the same data"));
+                problems.push(format!("{name} does not have as many numbers as before"));
                 continue;
             }
             let (mut held, mut beyond) = (0, 0);

@@ -71,7 +71,7 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
-    /// Stop after so many seconds, counted from when the mesh begins to be read, and write the best mesh so far. The time that untangling
+    /// Stop after this many seconds, counted from when the mesh begins to be read, and write the best mesh so far. The time that untangling
     /// takes counts, but does not end it
     #[arg(long, value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<Duration>,
@@ -107,13 +107,13 @@ pub(crate) struct SmoothArgs {
     /// How metrics are differentiated; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
     pub(crate) derivatives: DerivativesChoice,
-    /// Exponent of the p-norm Newton sees in place of edge: 16 throughout, or doubled from 2 on, up to 8192 (512 in sweeps alone), which
-    /// ends lower [default: continued with corrections from coarser levels, fixed without]
+    /// The exponent of the p-norm that stands for edge in Newton steps: 16 throughout (fixed), or doubled from 2 up to 8192 (continued;
+    /// 512 without corrections from coarser levels), which ends lower [default: continued with corrections, fixed without]
     #[arg(long, value_enum, help_heading = "Method")]
     pub(crate) edge_norm: Option<EdgeNorm>,
 
-    /// How bad a step may make a triangle: as bad as lowers f where the metric has a barrier (by-metric), or never worse than the worst
-    /// that can be smoothed was (worst), by the inverse mean ratio as a --target shows the triangles
+    /// How bad a step may make a triangle, by its inverse mean ratio as a --target shows it: by-metric sets a bound for metrics without
+    /// a barrier only; worst lets no triangle become worse than the worst one with a free vertex was
     #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
     pub(crate) guard: GuardChoice,
 
@@ -132,7 +132,7 @@ pub(crate) struct SmoothArgs {
     #[command(flatten)]
     pub(crate) sliding: SlideArgs,
 
-    /// Let no vertex move farther than so many lengths of an edge there
+    /// Let no vertex move farther than this many times the mean length of the edges around it before the run
     #[arg(long, value_name = "EDGES", help_heading = "What may move", value_parser = edges, allow_negative_numbers = true)]
     pub(crate) max_move: Option<f64>,
 
@@ -256,7 +256,7 @@ impl SmoothArgs {
             ];
             if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
                 return Some(format!(
-                    "a target of places does not go with {other}: drop that, or let vertices take their targets along (--target-of vertex)"
+                    "a target that belongs to places does not go with {other}: drop {other}, or let vertices take their targets along (--target-of vertex)"
                 ));
             }
         }
@@ -281,7 +281,9 @@ impl SmoothArgs {
             }
         }
         if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
-            return Some("--slide keeps no checkpoints: drop one of them".to_owned());
+            return Some(
+                "--slide does not go with --checkpoint or --continue: drop one of them".to_owned(),
+            );
         }
         let has_edge = || self.scheme().metrics().contains(&Metric::Edge);
         let idle = match self.edge_norm {
@@ -300,7 +302,7 @@ impl SmoothArgs {
         } else {
             return None;
         };
-        Some(format!("{kept} leaves nothing for {dropped} to choose: drop one of them"))
+        Some(format!("{dropped} has no effect with {kept}: drop one of them"))
     }
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
@@ -386,6 +388,5 @@ fn desired(text: &str) -> Result<Desired, String> {
 fn seconds(text: &str) -> Result<Duration, String> {
     let range = "a number of seconds above 0";
     let seconds = number(text, |s| s > 0.0, range)?;
-    Duration::try_from_secs_f64(seconds)
-        .map_err(|_| format!("it must be {range}, and not so large"))
+    Duration::try_from_secs_f64(seconds).map_err(|_| format!("it is too large; it must be {range}"))
 }

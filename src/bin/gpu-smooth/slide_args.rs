@@ -92,7 +92,7 @@ impl SlideArgs {
             if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
                 return Err(refusal(
                     "no translation or rotation takes all vertices of one to those of the other: \
-                     name two sides of the boundary with as many vertices",
+                     name two sides of the boundary that match vertex by vertex",
                 ));
             }
         }

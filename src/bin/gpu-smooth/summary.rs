@@ -11,7 +11,7 @@ use crate::report::{
 };
 
 /// The message of a run that a number which is not finite has ended.
-const NOT_FINITE: &str = "undone: a sweep made a number that is not finite, which is a mistake of this program; the mesh is of the last good state";
+const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a mistake of this program or of the driver of the GPU; the mesh is of the last good state";
 
 /// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
 /// keep-size`.

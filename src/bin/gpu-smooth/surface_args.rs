@@ -73,7 +73,7 @@ fn remarks(chart: &Chart) -> Vec<String> {
     if chart.across() > 0 {
         let triangles = count(chart.across(), "triangle that reaches", "triangles that reach");
         let mut text = format!(
-            "longitudes are continued for {triangles} across the line where they start again"
+            "longitudes are continued for {triangles} across the line where they start again, as at 180 degrees"
         );
         if let stay @ 1.. = copied(false) {
             let stay = count(stay, "vertex at that line stays", "vertices at that line stay");

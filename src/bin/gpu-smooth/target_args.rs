@@ -214,10 +214,13 @@ impl TargetArgs {
         let view = View::read(path).map_err(|error| told(error.to_string()))?;
         let name = path.display();
         if matches!(self.target, Target::Metric { .. }) {
-            return Err(told(format!("{name}: a view has sizes: take size={name}")));
+            return Err(told(format!(
+                "{name}: a view of gmsh holds sizes, not tensors: give size={name}"
+            )));
         }
-        let told_of =
-            |error: MeshError| told(format!("{name}: {error}, in the order of places in the file"));
+        let told_of = |error: MeshError| {
+            told(format!("{name}: {error} (counted from 0, in the order of the file)"))
+        };
         let chart = match self.surface() {
             Surface::Plane => None,
             Surface::Sphere => Chart::new(view.mesh(), Precision::Double).map_err(told_of)?,
@@ -278,7 +281,7 @@ fn remark(background: &Path, outside: Outside) -> Option<String> {
         n => format!("{n} vertices are"),
     };
     Some(format!(
-        "{vertices} outside of {}, by up to {}: the nearest place there has their target",
+        "{vertices} outside of {}, by up to {}: the target of the nearest point in it is taken there",
         background.display(),
         six(most)
     ))
@@ -301,12 +304,12 @@ fn given(file: &MeshFile, source: &str, components: usize) -> Result<Vec<f64>, S
     let vertices = file.original().points.len();
     if found != components {
         return Err(format!(
-            "{source}: a vertex has {found} numbers where {components} are needed: --target size= takes one, metric= three (xx, xy, yy)"
+            "{source}: numbers per vertex: {found}, needed: {components}. --target size= takes one, metric= three (xx, xy, yy)"
         ));
     }
     if values.len() != components * vertices {
         return Err(format!(
-            "{source}: there are numbers for {} vertices, and {} has {vertices}",
+            "{source}: it has numbers for {} vertices, but {} has {vertices} vertices",
             values.len() / components,
             file.path().display()
         ));

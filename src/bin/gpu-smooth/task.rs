@@ -235,7 +235,10 @@ fn certificate(
     let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
     let proof = proof.map_err(told)?;
     if let Some(problem) = proof.problem() {
-        return Err(format!("{}: it was written, and then read again: {problem}", out.display()));
+        return Err(format!(
+            "{}: the written mesh was read again, and it is wrong: {problem}",
+            out.display()
+        ));
     }
     let surface = args.target.surface();
     let quality = Quality::on(surface, &after.mesh().points, smoother.topology()).map_err(told)?;
@@ -353,7 +356,7 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
         {
             let (path, error) = (file.path().display(), explain::nothing_free(file));
             format!(
-                "{path}: {error}, and vertices slide along lines only in a mesh that has such. Refine the mesh, so that it has vertices inside"
+                "{path}: {error}, and --slide needs a free vertex too. Refine the mesh, so that it has vertices inside"
             )
         }
         _ => explain::mesh_error(file, error),

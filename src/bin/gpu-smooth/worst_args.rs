@@ -9,8 +9,9 @@ use crate::numbers::six;
 /// The option that improves the worst triangles.
 #[derive(Args)]
 pub(crate) struct WorstArgs {
-    /// Improve the worst triangles after the last sweep, at a small cost in f: move vertices around the worst
-    /// thousandth of them until the largest imr is as small, or the least angle or altitude as large, as it can be made
+    /// Improve the worst triangles after the last sweep, at a small cost in f: move the vertices around the worst
+    /// thousandth of the triangles until the largest imr is as small as it can be made, or the least angle or altitude
+    /// as large [default without =MEASURE: imr]
     #[arg(
         long,
         value_enum,

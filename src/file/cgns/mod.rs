@@ -53,13 +53,13 @@ impl<'a> File<'a> {
             })
             .collect();
         let &[(base, (_, zone))] = &zones[..] else {
-            let problem = format!("CGNS of {} zones", zones.len());
+            let problem = format!("a CGNS file of {} zones is not read", zones.len());
             return refused(problem, "Save a mesh of one unstructured zone, or as gmsh or VTK");
         };
         let file = File { source, hdf5, base, zone };
         let kind = labeled(hdf5, zone, b"ZoneType_t").first().and_then(|(_, kind)| file.text(kind));
         if kind.is_some_and(|kind| kind != b"Unstructured") {
-            return refused("a structured zone".into(), "Save an unstructured mesh");
+            return refused("a structured zone is not read".into(), "Save an unstructured mesh");
         }
         Ok(file)
     }
@@ -123,7 +123,7 @@ impl<'a> File<'a> {
         let (Some((Number::Real(precision, order), length)), 2..=3, true) =
             (first, read.len(), read.iter().all(is_same))
         else {
-            let problem = "a zone without CoordinateX and CoordinateY";
+            let problem = "the zone has no CoordinateX and CoordinateY of one type and length";
             return Err(self.cursor(self.zone).error(problem, "Save a mesh of the plane"));
         };
         let count = length / precision.bytes();

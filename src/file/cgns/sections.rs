@@ -67,7 +67,8 @@ impl<'a> File<'a> {
 
     #[cold]
     fn damaged(&self, name: &[u8], section: &'a Object) -> ReadError {
-        let problem = format!("the section {} has no such elements", quoted(name));
+        let problem =
+            format!("the section {} does not hold the elements that it announces", quoted(name));
         self.cursor(section).error(problem, CORRECT)
     }
 
@@ -148,7 +149,7 @@ impl<'a> File<'a> {
             7 => Ok(Kind::Quadrilateral),
             10..=19 | 23 => Err(volume(&cursor, &format!("elements of the type {number}"))),
             _ => {
-                let problem = format!("elements of the type {number}");
+                let problem = format!("elements of the type {number} are not read");
                 let remedy = "Save triangles of three nodes (TRI_3), beside BAR_2 and QUAD_4";
                 Err(cursor.error(problem, remedy))
             }

@@ -75,7 +75,7 @@ const ROWS: [Row; 20] = [
     ),
     row(
         &[Format::Vtu, Format::Vtp],
-        "text, base64, appended base64 and raw; as they are, zlib or LZ4; 32 and 64 bit headers, either byte order; Float32 and Float64; one piece or several",
+        "text, base64, appended base64 and raw; uncompressed, zlib or LZ4; headers of 32 and 64 bits, either byte order; Float32 and Float64; one piece or several",
         [
             "as legacy VTK",
             "the same, of whole numbers",
@@ -180,7 +180,7 @@ const ROWS: [Row; 20] = [
             "as legacy VTK",
             "cell data of the usual names, of whole numbers",
             "the same",
-            "several grids with points of their own, hyperslabs and compressed raw files are refused; of HDF5 what is said below",
+            "several grids with points of their own, hyperslabs and compressed raw files are refused; HDF5 as described below",
         ],
     ),
     row(
@@ -190,7 +190,7 @@ const ROWS: [Row; 20] = [
             "bars, quadrilaterals, spheres, sides in side sets",
             "block",
             "blocks, side sets and node sets, with their names",
-            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; of netCDF-4 what is said of HDF5 below",
+            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; netCDF-4 as described for HDF5 below",
         ],
     ),
     row(
@@ -200,7 +200,7 @@ const ROWS: [Row; 20] = [
             "PO1, SE2, QU4",
             "family",
             "groups of elements and of nodes by name, families",
-            "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; of HDF5 what is said below",
+            "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; HDF5 as described below",
         ],
     ),
     row(
@@ -210,7 +210,7 @@ const ROWS: [Row; 20] = [
             "BAR_2, QUAD_4, NODE",
             "section",
             "sections, boundary conditions and their families by name",
-            "several zones, structured zones, NGON_n and files in ADF are refused; of HDF5 what is said below",
+            "several zones, structured zones, NGON_n and files in ADF are refused; HDF5 as described below",
         ],
     ),
 ];

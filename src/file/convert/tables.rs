@@ -33,11 +33,11 @@ pub(crate) fn targets() -> String {
             names(holds),
             match (holds.vertex_groups, holds.groups) {
                 (true, Groups::Blocks) => "node sets, with names",
-                (true, _) => "one a vertex",
+                (true, _) => "one per vertex",
                 (false, _) => "–",
             },
-            numbers(holds.point_data, "a vertex"),
-            numbers(holds.cell_data, "an element"),
+            numbers(holds.point_data, "per vertex"),
+            numbers(holds.cell_data, "per element"),
         )
         .unwrap();
     }
@@ -66,11 +66,11 @@ fn elements(holds: &Holds) -> String {
 fn groups(groups: Groups) -> &'static str {
     match groups {
         Groups::None => "–",
-        Groups::One => "one an element",
-        Groups::OneOfLines => "one a line",
-        Groups::PhysicalAndEntity => "a physical group and an entity",
-        Groups::Each => "one of every kind of groups",
-        Groups::Blocks => "a block an element, side sets",
+        Groups::One => "one per element",
+        Groups::OneOfLines => "one per line",
+        Groups::PhysicalAndEntity => "a physical group and an entity per element",
+        Groups::Each => "one of every kind per element",
+        Groups::Blocks => "a block per element, side sets",
     }
 }
 

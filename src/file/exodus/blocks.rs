@@ -92,7 +92,7 @@ impl<'a> File<'a> {
         let cursor = Cursor::at_byte_of(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
         let (&[count, corners], Number::Whole(width), false) = found else {
-            let problem = format!("connect{number} is no table of nodes");
+            let problem = format!("connect{number} is not a table of whole numbers");
             return Err(cursor.error(problem, CORRECT));
         };
         let given = variable.element_type.as_deref().unwrap_or_default();
@@ -109,7 +109,7 @@ impl<'a> File<'a> {
             }
             _ => {
                 let problem = format!(
-                    "block {number} has elements of the type {} with {corners} nodes",
+                    "elements of the type {} with {corners} nodes, as in block {number}, are not read",
                     quoted(given)
                 );
                 let remedy = "Save triangles of three nodes (TRI3), beside QUAD4 and BAR2";

@@ -40,7 +40,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         Some(2) => reader.offset = 8,
         Some(5) => (reader.count, reader.offset) = (8, 8),
         _ => {
-            let problem = "netCDF of an unknown version";
+            let problem = "the version of netCDF is not known";
             let start = Cursor::at_byte_of(source, 0);
             return Err(start.error(problem, "Versions 1, 2 and 5 are read"));
         }

@@ -47,7 +47,7 @@ impl Walk for Exodus {
                 let remedy = "If it has the numbers of an XDMF, name the .xdmf";
                 return Err(start.error(problem, remedy));
             }
-            let problem = "netCDF without the dimension num_nodes, so it is no Exodus";
+            let problem = "netCDF without the dimension num_nodes, so it is not Exodus";
             return Err(start.error(problem, "Convert it to Exodus or another format that is read"));
         };
         start.check_vertex_count(nodes)?;

@@ -120,7 +120,7 @@ impl<'a> Header<'a> {
                 Ok(Items { bytes, first: begin, stride, size, array: None })
             }
             (Content::Dataset(_), None) => {
-                Err(self.source.error("it is no HDF5", "Write the mesh again"))
+                Err(self.source.error("it is not HDF5", "Write the mesh again"))
             }
         }
     }

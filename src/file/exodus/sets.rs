@@ -24,7 +24,8 @@ impl File<'_> {
                 Some((self.header.integers(elements)?, self.header.integers(sides)?))
             });
             let Some((elements, sides)) = lists.filter(|(a, b)| a.len() == b.len()) else {
-                let problem = format!("side set {number} has not as many sides as elements");
+                let problem =
+                    format!("side set {number} does not have one side for each of its elements");
                 return Err(cursor.error(problem, CORRECT));
             };
             let label = Label::Tag(self.id(&ids, number));

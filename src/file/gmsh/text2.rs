@@ -71,7 +71,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     // The tags after the second one are those of mesh partitions.
     for _ in 2..groups {
         if cursor.token().is_none() {
-            let problem = format!("element {tag} announces {groups} tags, and its line is shorter");
+            let problem = format!("element {tag} announces {groups} tags, but its line has fewer");
             return Err(cursor.error(problem, CORRECT));
         }
     }

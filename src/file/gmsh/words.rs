@@ -100,9 +100,9 @@ pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<Order, ReadError> {
         Some([1, 0, 0, 0]) => Ok(Order::Little),
         Some([0, 0, 0, 1]) => Ok(Order::Big),
         Some(_) => {
-            let problem = "the mark of the byte order is one in neither order";
+            let problem = "the byte-order mark is not the number 1 in either byte order";
             Err(cursor.error(problem, DAMAGED))
         }
-        None => Err(cursor.error("the file ends before the mark of the byte order", CUT_OFF)),
+        None => Err(cursor.error("the file ends before its byte-order mark", CUT_OFF)),
     }
 }

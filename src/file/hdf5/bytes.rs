@@ -27,7 +27,7 @@ impl Fault {
 
     #[cold]
     pub(super) fn unread(at: usize, problem: impl Into<String>) -> Fault {
-        Fault { at, problem: problem.into(), remedy: REPACK }
+        Fault { at, problem: format!("cannot read {}", problem.into()), remedy: REPACK }
     }
 }
 

@@ -50,9 +50,11 @@ impl<'a> File<'a> {
         let meshes = hdf5.find(MESHES).map(|all| hdf5.children(all).collect::<Vec<_>>());
         let (name, mesh) = match meshes.as_deref() {
             Some(&[one]) => one,
-            Some([]) | None => return Err(start().error("MED without a mesh", "Save a mesh")),
+            Some([]) | None => {
+                return Err(start().error("the file holds no mesh", "Save a mesh with it"));
+            }
             Some(several) => {
-                let problem = format!("MED of {} meshes", several.len());
+                let problem = format!("a MED file of {} meshes is not read", several.len());
                 return Err(start().error(problem, "Save each mesh to a file of its own"));
             }
         };
@@ -61,10 +63,10 @@ impl<'a> File<'a> {
             Err(Cursor::at_byte_of(source, mesh.at).error(problem.to_owned(), remedy))
         };
         if whole(b"TYP").is_some_and(|kind| kind != 0) {
-            return refused("a structured mesh", "Save an unstructured mesh");
+            return refused("a structured mesh is not read", "Save an unstructured mesh");
         }
         if whole(b"REP").is_some_and(|system| system != 0) {
-            return refused("coordinates that are not Cartesian", "Save Cartesian ones");
+            return refused("its coordinates are not Cartesian", "Save Cartesian coordinates");
         }
         let steps: Vec<_> = hdf5
             .children(mesh)
@@ -75,10 +77,13 @@ impl<'a> File<'a> {
         match steps[..] {
             [(_, step)] => Ok(File { source, hdf5, mesh, name, step }),
             [] => refused(
-                "a mesh of a MED before version 3, or none",
-                "Save it again by a newer version",
+                "the mesh has no time step, as MED has since version 3",
+                "Save it again with a newer version of MED",
             ),
-            _ => refused("a mesh of several time steps", "Save the mesh of one of them"),
+            _ => refused(
+                "a mesh of several time steps is not read",
+                "Save the mesh of one time step",
+            ),
         }
     }
 
@@ -101,7 +106,7 @@ impl<'a> File<'a> {
             }
         }
         let Some(types) = self.hdf5.child(self.step, b"MAI") else {
-            return Err(self.cursor(self.mesh).error("a mesh without elements", CORRECT));
+            return Err(self.cursor(self.mesh).error("the mesh has no elements", CORRECT));
         };
         for (name, object) in self.hdf5.children(types) {
             self.elements(name, object, &families, sink)?;
@@ -129,11 +134,11 @@ impl<'a> File<'a> {
         let (Some(object), Some(dataset)) = (object, dataset) else {
             return Err(self
                 .cursor(self.mesh)
-                .error("a mesh without nodes", "Save the mesh again"));
+                .error("the mesh has no nodes", "Save the mesh again"));
         };
         let cursor = self.cursor(object);
         let Number::Real(precision, order) = dataset.number else {
-            return Err(cursor.error("coordinates that are no real numbers", "Save the mesh again"));
+            return Err(cursor.error("the coordinates are not real numbers", "Save the mesh again"));
         };
         let axes = self.hdf5.attribute(self.mesh, b"ESP").and_then(|axes| axes.whole());
         let array = self.hdf5.array(&dataset)?;
@@ -141,7 +146,9 @@ impl<'a> File<'a> {
         let Some(axes @ 2..=3) =
             axes.map(|axes| axes as usize).filter(|axes| numbers.is_multiple_of((*axes).max(1)))
         else {
-            let problem = format!("{numbers} coordinates, not in two or three axes");
+            let problem = format!(
+                "the mesh has {numbers} coordinates, which are not two or three for each node"
+            );
             return Err(cursor.error(problem, "Save a mesh of the plane"));
         };
         let count = numbers / axes;
@@ -170,7 +177,7 @@ impl<'a> File<'a> {
                 return Err(volume(&cursor, &format!("elements of the type {}", quoted(name))));
             }
             _ => {
-                let problem = format!("elements of the type {}", quoted(name));
+                let problem = format!("elements of the type {} are not read", quoted(name));
                 let remedy = "Save triangles of three nodes (TR3), beside PO1, SE2 and QU4";
                 return Err(cursor.error(problem, remedy));
             }
@@ -190,7 +197,7 @@ impl<'a> File<'a> {
         let count = array.bytes.len() / size / kind.nodes();
         if array.bytes.len() != count * kind.nodes() * size {
             let problem =
-                format!("the type {} has a list of nodes that is not whole", quoted(name));
+                format!("the type {} has a list of nodes that is cut short", quoted(name));
             return Err(cursor.error(problem, CORRECT));
         }
         // All first corners stand before all second ones; the sink takes them side by side.

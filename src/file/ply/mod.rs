@@ -115,7 +115,11 @@ fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>>), ReadErr
                 let name = cursor.token().unwrap_or_default();
                 match lists.last_mut() {
                     Some(list) => list.properties.push(Property { name, length, number }),
-                    None => return Err(cursor.error("a property of no element", CORRECT)),
+                    None => {
+                        return Err(
+                            cursor.error("a property stands before the first element", CORRECT)
+                        );
+                    }
                 }
             }
             b"end_header" => {
@@ -152,7 +156,7 @@ fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
         b"uint64" => integer(8, false),
         b"float" | b"float32" => Ok(Number::Float),
         b"double" | b"float64" => Ok(Number::Double),
-        other => Err(cursor.error(format!("`{}` is no type of PLY", quoted(other)), CORRECT)),
+        other => Err(cursor.error(format!("`{}` is not a type of PLY", quoted(other)), CORRECT)),
     }
 }
 

@@ -160,8 +160,8 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
         b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" => Ok(8),
         b"vtktypeint32" | b"vtktypeuint32" | b"int" => Ok(4),
         other => {
-            let problem = format!("whole numbers are of the type `{}`", quoted(other));
-            Err(cursor.error(problem, "vtktypeint32 and vtktypeint64 are read"))
+            let problem = format!("whole numbers of the type `{}` are not read", quoted(other));
+            Err(cursor.error(problem, "Save them as vtktypeint32 or vtktypeint64"))
         }
     }
 }

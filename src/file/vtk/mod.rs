@@ -78,7 +78,9 @@ impl Walk for Vtk {
                     match cells.last_mut() {
                         Some(cells) if cells.count as u64 == count => cells.types = types,
                         _ => {
-                            let problem = format!("{count} types, but another number of cells");
+                            let problem = format!(
+                                "the number of cell types, {count}, is not the number of cells"
+                            );
                             return Err(cursor.error(problem, CORRECT));
                         }
                     }
@@ -94,7 +96,7 @@ impl Walk for Vtk {
                     break;
                 }
                 other => {
-                    let problem = format!("`{}` is not known here", quoted(other));
+                    let problem = format!("the keyword `{}` is not known here", quoted(other));
                     return Err(cursor.error(problem, "Save as an unstructured grid"));
                 }
             }

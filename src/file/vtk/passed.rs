@@ -22,8 +22,8 @@ pub(super) fn pass(
         (kind, true) => match size_of(kind) {
             Some(size) => take(cursor, count, size).map(|_| ()),
             None => {
-                let problem = format!("an array of the type `{}`", quoted(kind));
-                Err(cursor.error(problem, "Save without it"))
+                let problem = format!("an array of the type `{}` is not read", quoted(kind));
+                Err(cursor.error(problem, "Save without this array"))
             }
         },
     }

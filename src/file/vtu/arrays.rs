@@ -168,7 +168,8 @@ impl File<'_> {
             "Int64" | "UInt64" => Ok(8),
             other => {
                 let place = Location::Line(self.source.line_of(array.at));
-                let problem = format!("whole numbers of the type {}", quoted(other.as_bytes()));
+                let problem =
+                    format!("whole numbers of the type {} are not read", quoted(other.as_bytes()));
                 Err(self.source.error_at(place, problem, "Save the mesh again"))
             }
         }

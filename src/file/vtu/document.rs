@@ -131,7 +131,7 @@ impl Document {
                     }
                     if open.len() > DEEPEST {
                         let place = Location::Line(source.line_of(at));
-                        let problem = format!("more than {DEEPEST} elements stand in each other");
+                        let problem = format!("elements are nested more than {DEEPEST} deep");
                         return Err(source.error_at(place, problem, CORRECT));
                     }
                 }
@@ -160,7 +160,8 @@ impl Document {
             "UnstructuredGrid" => Content::Grid,
             "PolyData" => Content::Polygons,
             _ => {
-                let problem = format!("a VTK file of the type {}", quoted(kind.as_bytes()));
+                let problem =
+                    format!("a VTK file of the type {} is not read", quoted(kind.as_bytes()));
                 let remedy = "Save as an unstructured grid in one file (.vtu)";
                 return Err(tag.error(problem, remedy));
             }
@@ -242,7 +243,8 @@ impl Tag<'_> {
             Some("appended") => Coding::Appended,
             None | Some("ascii") => Coding::Ascii,
             Some(other) => {
-                let problem = format!("an array of the format {}", quoted(other.as_bytes()));
+                let problem =
+                    format!("an array of the format {} is not read", quoted(other.as_bytes()));
                 return Err(self.error(problem, "Save the mesh again"));
             }
         };
@@ -250,7 +252,7 @@ impl Tag<'_> {
             true => after,
             false => match memchr::memchr(b'<', &bytes[after..]) {
                 Some(length) => after + length,
-                None => return Err(self.error("an array without an end", CUT_OFF)),
+                None => return Err(self.error("the file ends within an array", CUT_OFF)),
             },
         };
         let offset = match format {
@@ -292,7 +294,9 @@ impl Tag<'_> {
             let length = memchr::memchr(quote, &tag[start..])?;
             is_value.then_some(self.at + start..self.at + start + length)
         });
-        found.ok_or_else(|| self.error(format!("the place of {name} is not found"), CORRECT))
+        found.ok_or_else(|| {
+            self.error(format!("the attribute {name} is not written as name=\"value\""), CORRECT)
+        })
     }
 
     fn appended(&self, after: usize) -> Result<Appended, ReadError> {
@@ -301,7 +305,8 @@ impl Tag<'_> {
             Some("raw") => false,
             None | Some("base64") => true,
             Some(other) => {
-                let problem = format!("appended data encoded as {}", quoted(other.as_bytes()));
+                let problem =
+                    format!("appended data encoded as {} are not read", quoted(other.as_bytes()));
                 return Err(self.error(problem, "Save as raw or base64"));
             }
         };
@@ -310,7 +315,7 @@ impl Tag<'_> {
             Some(start) if bytes[after + start] == b'_' => {
                 Ok(Appended { start: after + start + 1, base64 })
             }
-            _ => Err(self.error("appended data without an underscore before it", CUT_OFF)),
+            _ => Err(self.error("no underscore stands before the appended data", CUT_OFF)),
         }
     }
 

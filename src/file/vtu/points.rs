@@ -65,15 +65,16 @@ impl<'f> Points<'_, 'f> {
         let cursor = &mut Cursor::standing_at(file.source, points.at);
         cursor.check_vertex_count(self.count.saturating_add(count))?;
         if points.components != 3 {
-            let problem = format!("points of {} components", points.components);
-            return Err(cursor.error(problem, "Points have three coordinates in VTK"));
+            let problem = format!("the points have {} components", points.components);
+            return Err(cursor.error(problem, "In VTK points have three: save the mesh again"));
         }
         let precision = match points.number.as_str() {
             "Float32" => Precision::Single,
             "Float64" => Precision::Double,
             other => {
-                let problem = format!("points of the type {}", quoted(other.as_bytes()));
-                return Err(cursor.error(problem, "Float32 and Float64 are read"));
+                let problem =
+                    format!("points of the type {} are not read", quoted(other.as_bytes()));
+                return Err(cursor.error(problem, "Save them as Float32 or Float64"));
             }
         };
         let (start, numbers, is_encoded) = match points.format {
@@ -84,11 +85,12 @@ impl<'f> Points<'_, 'f> {
             _ => self.binary(file, points, count, precision)?,
         };
         if *self.numbers.get_or_insert((numbers, is_encoded)) != (numbers, is_encoded) {
-            let problem = "the points of this piece are not encoded as those before";
+            let problem = "the points of this piece are not encoded as those of the pieces before";
             return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
         }
         if !is_encoded && start < self.end {
-            let problem = "the points of this piece stand before those of another";
+            let problem =
+                "the points of this piece stand in the file before those of the piece before it";
             return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
         }
         self.end = start;
@@ -108,7 +110,8 @@ impl<'f> Points<'_, 'f> {
         let (wrapping, old, range) = file.unwrap(points)?;
         let wide = precision.bytes();
         if Some(old.bytes.len() as u64) != count.checked_mul(3 * wide as u64) {
-            let problem = format!("{} bytes for {count} points", old.bytes.len());
+            let problem =
+                format!("the array has {} bytes, which do not fit {count} points", old.bytes.len());
             return Err(cursor.error(problem, CORRECT));
         }
         // Raw bytes can be replaced in place. All others are encoded again.

@@ -107,7 +107,7 @@ impl<'a> File<'a> {
         let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
         if differs(item.elements, tag) || differs(item.announced(), count) {
             let problem = format!("the Topology ends after {tag} elements of {count} numbers");
-            return Err(words.error(problem, "Its tags announce others: correct them"));
+            return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
         if sink.asks_for_data() {
             let of_regions: Vec<&Item> = regions.iter().map(|(own, _)| *own).collect();
@@ -176,7 +176,8 @@ impl<'a> File<'a> {
             "wedge" => (13, 6),
             "pyramid" => (14, 5),
             other => {
-                let problem = format!("a Topology of the type {}", quoted(other.as_bytes()));
+                let problem =
+                    format!("a Topology of the type {} is not read", quoted(other.as_bytes()));
                 let remedy = "Save a mesh of linear triangles (Triangle, or Mixed)";
                 return Err(self.cursor(item).error(problem, remedy));
             }
@@ -206,8 +207,9 @@ impl<'a> File<'a> {
     fn integers(&self, item: &Item) -> Result<Vec<i64>, ReadError> {
         if let Some(numbers) = self.heavy.read(item, &self.cursor(item))? {
             let whole = numbers.integers();
-            return whole
-                .ok_or_else(|| self.cursor(item).error("numbers that are not whole", CORRECT));
+            return whole.ok_or_else(|| {
+                self.cursor(item).error("the numbers of cells are not whole", CORRECT)
+            });
         }
         let cursor = &mut self.content(item);
         let mut numbers = Vec::new();
@@ -238,7 +240,8 @@ fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError
         8 => (13, 6),
         9 => (12, 8),
         other => {
-            let problem = format!("a cell of the type {other}, not of first order");
+            let problem =
+                format!("a cell of the type {other} is not read, as it is not of first order");
             let remedy = "Save a mesh of linear triangles (type 4)";
             return Err(place.error(problem, remedy));
         }

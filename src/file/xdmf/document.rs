@@ -136,11 +136,11 @@ fn item(
     of: &Section,
 ) -> Result<Item, ReadError> {
     let Some(length) = memchr::memchr(b'<', &source.bytes[after..]) else {
-        return Err(error_at(source, at, "an item without an end", CUT_OFF));
+        return Err(error_at(source, at, "the file ends within a DataItem", CUT_OFF));
     };
     let number = |text: &str| {
         text.trim().parse::<u64>().map_err(|_| {
-            let problem = format!("`{}` is no whole number", quoted(text.as_bytes()));
+            let problem = format!("`{}` is not a whole number", quoted(text.as_bytes()));
             error_at(source, at, &problem, CORRECT)
         })
     };
@@ -160,7 +160,7 @@ fn item(
         "HDF" | "HDF5" => in_hdf5(source, text)?,
         "BINARY" => {
             if tag.value(&["Compression"]).is_some_and(|c| !c.eq_ignore_ascii_case("raw")) {
-                let problem = "numbers in a file beside it that is compressed";
+                let problem = "numbers in a compressed raw file beside it are not read";
                 return Err(error_at(source, at, problem, SAVE));
             }
             let precision = optional(tag, &["Precision"])?.unwrap_or(4);
@@ -175,7 +175,7 @@ fn item(
                 ("short" | "ushort", _) => Number::Whole(2, order),
                 ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
                 _ => {
-                    let problem = format!("numbers of {precision} bytes");
+                    let problem = format!("numbers of {precision} bytes are not read");
                     return Err(error_at(source, at, &problem, SAVE));
                 }
             };
@@ -184,7 +184,8 @@ fn item(
             Content::Raw { file, seek, number, named_at }
         }
         other => {
-            let problem = format!("numbers of the format {}", quoted(other.as_bytes()));
+            let problem =
+                format!("numbers of the format {} are not read", quoted(other.as_bytes()));
             return Err(error_at(source, at, &problem, SAVE));
         }
     };

@@ -118,7 +118,7 @@ impl<'a> Heavy<'a> {
                 }
             }
             _ => {
-                let problem = format!("{} is no HDF5", source.name());
+                let problem = format!("{} is not HDF5", source.name());
                 return Err(cursor.error(problem, "Save the mesh again"));
             }
         };
@@ -126,7 +126,7 @@ impl<'a> Heavy<'a> {
         match item.announced() {
             Some(announced) if announced != count => {
                 let problem = format!(
-                    "its Dimensions announce {announced} numbers, {} has {count}",
+                    "its Dimensions announce {announced} numbers, but {} has {count}",
                     source.name()
                 );
                 Err(cursor.error(problem, "Correct them, or save the mesh again"))

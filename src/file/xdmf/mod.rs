@@ -133,7 +133,9 @@ impl<'a> File<'a> {
         if let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? {
             let reals = numbers.reals();
             let Some(reals) = reals else {
-                return Err(self.cursor(item).error("data that are no numbers", "Save them again"));
+                return Err(self
+                    .cursor(item)
+                    .error("the data are not numbers", "Save the data as Float or Int"));
             };
             let stored = heavy::stored(&mut numbers, &self.heavy);
             return Ok(PointNumbers { numbers: reals, nodes: None, stored });

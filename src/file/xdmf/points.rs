@@ -25,7 +25,8 @@ impl File<'_> {
             "xy" => 2,
             "" | "xyz" => 3,
             other => {
-                let problem = format!("a Geometry of the type {}", quoted(other.as_bytes()));
+                let problem =
+                    format!("a Geometry of the type {} is not read", quoted(other.as_bytes()));
                 return Err(self.cursor(item).error(problem, "Save points as XY or XYZ"));
             }
         };
@@ -42,7 +43,7 @@ impl File<'_> {
         sink: &mut dyn Sink,
     ) -> Result<(Layout, u64), ReadError> {
         if item.precision.is_none() {
-            let problem = "points that are whole numbers";
+            let problem = "the points are whole numbers";
             return Err(self.cursor(item).error(problem, "Save them as Float"));
         }
         let announced = item.announced();
@@ -54,14 +55,17 @@ impl File<'_> {
         let mut index = 0;
         while cursor.next_word() {
             if Some(index) == count {
-                return Err(cursor.error(format!("more than the {index} points"), CORRECT));
+                return Err(cursor.error(
+                    format!("there are more points than the {index} that Dimensions announces"),
+                    CORRECT,
+                ));
             }
             let own = cursor.clone();
             let mut point = [0.0; 3];
             let mut places = [0; 3];
             for axis in 0..axes as usize {
                 if !cursor.next_word() {
-                    return Err(cursor.error(format!("point {index} is not whole"), CORRECT));
+                    return Err(cursor.error(format!("point {index} lacks a coordinate"), CORRECT));
                 }
                 places[axis] = cursor.at();
                 let owner = format_args!("point {index}");
@@ -78,7 +82,9 @@ impl File<'_> {
         }
         if announced.is_some_and(|announced| index.checked_mul(axes) != Some(announced)) {
             let problem = format!("the Geometry ends after {index} points");
-            return Err(cursor.error(problem, "Its Dimensions announce others: correct them"));
+            return Err(
+                cursor.error(problem, "Its Dimensions announce another number: correct them")
+            );
         }
         cursor.check_vertex_count(index)?;
         sink.end_nodes(&self.cursor(item))?;
@@ -97,13 +103,16 @@ impl File<'_> {
         sink: &mut dyn Sink,
     ) -> Result<(Layout, u64), ReadError> {
         let Number::Real(precision, order) = numbers.number else {
-            let problem = "points that are no numbers of 32 or 64 bits with a point";
+            let problem = "the points are not floating-point numbers of 32 or 64 bits";
             return Err(self.cursor(item).error(problem, "Save them as Float"));
         };
         let size = precision.bytes();
         let stride = axes * size;
         if !numbers.bytes.len().is_multiple_of(stride) {
-            let problem = format!("{} numbers for points of {axes}", numbers.bytes.len() / size);
+            let problem = format!(
+                "there are {} numbers, not {axes} for each point",
+                numbers.bytes.len() / size
+            );
             return Err(self.cursor(item).error(problem, CORRECT));
         }
         let count = numbers.bytes.len() / stride;

@@ -91,7 +91,7 @@ impl BoundMove {
     ) -> Result<Self, GpuError> {
         if targets.buffer == share {
             let problem = "targets and share are in one buffer, and a kernel that writes a buffer \
-                           cannot read another part of it";
+                           cannot read another part of it: use two buffers";
             return Err(GpuError::Buffer(problem.into()));
         }
         let stride = targets.words()?;

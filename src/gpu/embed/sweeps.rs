@@ -120,11 +120,13 @@ impl Sweeps {
                 Err(SmoothError::Option { option, value, remedy })
             };
             if !options.scheme.base().is_smooth() {
-                return refuse("sweeps by edge that are encoded have none: only whole runs do");
+                return refuse(
+                    "encoded sweeps by edge are not corrected: take Method::Auto, or do a whole run",
+                );
             }
             if options.scheme.alternates() {
                 return refuse(
-                    "metrics alternate in encoded sweeps without corrections, or in whole runs",
+                    "encoded sweeps are not corrected if metrics alternate: take Method::Auto, one metric, or a whole run",
                 );
             }
         }

@@ -42,7 +42,7 @@ pub(crate) struct BenchArgs {
     /// Print Markdown with the machine and the version, ready to be pasted
     #[arg(long, conflicts_with = "json")]
     pub(crate) markdown: bool,
-    /// Compare with measurements that `bench --json` has printed
+    /// Compare with the measurements in FILE, the output of `bench --json`
     #[arg(long, value_name = "FILE")]
     pub(crate) baseline: Option<PathBuf>,
     #[command(flatten)]

@@ -24,10 +24,14 @@ impl Baseline {
     pub(super) fn read(path: &Path) -> Result<Self, String> {
         let name = path.display();
         let text = std::fs::read_to_string(path).map_err(|error| {
-            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` has printed")
+            format!(
+                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
+            )
         })?;
         let rows = serde_json::from_str(&text).map_err(|error| {
-            format!("{name}: {error}. A baseline is what `gpu-smooth bench --json` has printed")
+            format!(
+                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
+            )
         })?;
         Ok(Self { rows })
     }

@@ -17,7 +17,7 @@ const CANDIDATES: usize = 10_000;
 const LISTS: [(&str, usize, bool); 3] = [
     ("The worst before the run", 0, false),
     ("The worst after the run", 1, false),
-    ("The worst after the run that can move", 1, true),
+    ("The worst after the run of those that can move", 1, true),
 ];
 
 /// A bad triangle of the mesh before or after the run.
@@ -108,7 +108,7 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
         }
         text += "</tbody></table></div>";
     }
-    text + "</div><p>A click shows the triangle in the mesh. All vertices of those marked as fixed must stay.</p>"
+    text + "</div><p>Click a triangle to see it in the mesh. Triangles marked as fixed have no vertex that may move.</p>"
 }
 
 /// Formats a coordinate with about seven significant digits.

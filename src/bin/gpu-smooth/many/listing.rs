@@ -24,7 +24,7 @@ impl Listed {
     fn new(input: &Path, directory: &Path) -> Result<Self, String> {
         let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
         let name = name.ok_or_else(|| {
-            format!("{}: not the name of a file, which --out-dir needs", input.display())
+            format!("{}: not a file. --out-dir takes meshes in files, and names each result as its mesh", input.display())
         })?;
         let out = directory.join(name);
         let inputs = parts(input);

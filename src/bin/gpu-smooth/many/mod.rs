@@ -109,7 +109,7 @@ impl Watch for Watched<'_> {
 
     fn interrupted(&mut self) {
         tell::leave_bar();
-        let text = "interrupted: meshes under way are given up (once more to end at once)";
+        let text = "interrupted: meshes that are being smoothed are given up (interrupt again to end at once)";
         tell::note(self.show.quiet, text);
     }
 }

@@ -47,7 +47,10 @@ fn kind(path: &Path) -> Result<Kind, String> {
     match ending.as_deref() {
         Some("png") => Ok(Kind::Png),
         Some("svg") => Ok(Kind::Svg),
-        _ => Err(format!("{}: a picture is .png or .svg. End its name so", path.display())),
+        _ => Err(format!(
+            "{}: a picture is PNG or SVG. End its name in .png or .svg",
+            path.display()
+        )),
     }
 }
 
@@ -75,7 +78,7 @@ pub(crate) fn write(
     let failed = |problem: String| format!("the picture was not written: {problem}");
     if args.picture_arrows && shots.len() < 2 {
         return Err(failed(
-            "--picture-arrows is for a run, as arrows begin where vertices were".into(),
+            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one".into(),
         ));
     }
     let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));

@@ -17,7 +17,8 @@ pub(crate) struct Png {
 
 impl Png {
     pub(crate) fn new(width: u32, height: u32) -> Result<Self, String> {
-        let mut pixels = Pixmap::new(width, height).ok_or("the picture is too large")?;
+        let mut pixels = Pixmap::new(width, height)
+            .ok_or("the picture is too large: give a smaller --picture-size")?;
         pixels.fill(tiny_skia::Color::WHITE);
         Ok(Self { pixels, font: Font::new()?, clip: None })
     }
@@ -41,7 +42,8 @@ fn paint(color: Color, opacity: f32) -> Paint<'static> {
 pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
     let (width, height) = (size(raster.width)?, size(raster.height)?);
-    let mut pixels = Pixmap::new(width, height).ok_or("the picture is too large")?;
+    let mut pixels = Pixmap::new(width, height)
+        .ok_or("the picture is too large: give a smaller --picture-size")?;
     for (to, [r, g, b, a]) in pixels.pixels_mut().iter_mut().zip(raster.pixels()) {
         *to = PremultipliedColorU8::from_rgba(r, g, b, a).unwrap_or(*to);
     }

@@ -226,7 +226,7 @@ impl Scene<'_> {
                 worst as Sign,
                 "worst triangles",
             ),
-            (self.with_arrows, moved as Sign, "way of a vertex"),
+            (self.with_arrows, moved as Sign, "displacement"),
         ];
         let signs: Vec<_> = signs.into_iter().filter(|sign| sign.0).collect();
         let rows = signs.len().div_ceil(2).max(3);

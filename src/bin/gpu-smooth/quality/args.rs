@@ -31,8 +31,8 @@ pub(crate) struct QualityArgs {
     /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]
     pub(crate) by_region: bool,
-    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. Exit code 1 if a triangle
-    /// has one
+    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. The exit code is 1 if a
+    /// triangle has such a value
     #[arg(long, value_name = "NAME<VALUE")]
     pub(crate) threshold: Vec<Threshold>,
     /// Print JSON
@@ -104,7 +104,7 @@ impl FromStr for Threshold {
         if rest.starts_with('<') != (bad == "low") {
             // Most likely the user wrote the values that all triangles should have.
             return Err(format!(
-                "{bad} values of {measure} are the bad ones: name those that no triangle may have, as in '{threshold}'"
+                "--threshold names the values that no triangle may have, and {bad} values of {measure} are bad: write '{threshold}'"
             ));
         }
         Ok(threshold)

@@ -22,7 +22,10 @@ use crate::tell;
 pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
     if let Some(picture) = &args.picture.picture {
         if args.meshes.len() > 1 {
-            return Err(format!("{}: a picture is of one mesh: give one", picture.display()));
+            return Err(format!(
+                "{}: --picture draws a single mesh: give only one",
+                picture.display()
+            ));
         }
         picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
     }

@@ -19,7 +19,7 @@ pub(crate) fn of_mesh(file: &MeshFile, out: &Path) -> Result<Vec<PathBuf>, Strin
     }
     match file.paths().count() {
         1 => Ok(Vec::new()),
-        _ => Err("the mesh is of several files: name OUT".into()),
+        _ => Err("the mesh has several files and cannot go to standard output: name OUT".into()),
     }
 }
 

@@ -83,7 +83,8 @@ impl Follow for Shown<'_> {
 
     fn has_smoothed(&mut self) -> Result<(), String> {
         if interrupt::is_requested() {
-            let text = "interrupted: writing the best mesh so far (once more to end without it)";
+            let text =
+                "interrupted: writing the best mesh so far (interrupt again to end without it)";
             self.display.aside(|| tell::note(self.show.quiet, text));
         }
         interrupt::has_result();
