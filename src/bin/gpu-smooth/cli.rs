@@ -103,7 +103,7 @@ pub(crate) enum Command {
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
-    /// Writes a mesh in another format, and first lists what that format does not hold
+    /// Writes a mesh in another format; if that does not hold all of it, lists what is lost, and writes only with --lossy
     Convert(ConvertArgs),
     /// Lists the GPU adapters there are, best first, and whether each can be used
     Adapters(AdaptersArgs),

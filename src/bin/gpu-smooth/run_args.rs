@@ -38,8 +38,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "A[+B...]", help_heading = "Metric and engine")]
     scheme: Option<Scheme>,
 
-    /// Where to compute: on a GPU adapter, be it a software one, or on the CPU; auto takes what is estimated to be
-    /// done first, but no software adapter
+    /// Where to compute: on a GPU adapter, even if it is software (gpu), on the CPU (cpu), or where the run is estimated
+    /// to be done first, but not on a software adapter (auto)
     #[arg(long, value_enum, default_value = "auto", help_heading = "Metric and engine")]
     pub(crate) engine: EngineChoice,
     /// Take the first GPU adapter with NAME in its name (see `gpu-smooth adapters`)
@@ -61,13 +61,12 @@ pub(crate) struct SmoothArgs {
     /// Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep
     #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = tolerance, allow_negative_numbers = true, conflicts_with_all = ["fraction", "desired"])]
     pub(crate) tolerance: f64,
-    /// Stop at this share of the way from the first f to the desired one, instead of at the
-    /// tolerance; 0.95 is the paper's [default with --desired: 0.95]
+    /// Stop at this share of the way from the first f to the desired one, instead of at the tolerance. Park & Shontz's is
+    /// 0.95 [default with --desired: 0.95]
     #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = fraction, allow_negative_numbers = true)]
     pub(crate) fraction: Option<f64>,
-    /// The desired f by the first metric; auto finds the optimum before the run,
-    /// in up to 5000 sweeps a try [default with
-    /// --fraction: auto]
+    /// The desired f by the first metric; auto finds the optimum before the run, in tries of up to 5000 sweeps [default
+    /// with --fraction: auto]
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
@@ -75,16 +74,16 @@ pub(crate) struct SmoothArgs {
     /// takes counts, but does not end it
     #[arg(long, value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<Duration>,
-    /// Save the state of the run to FILE every five minutes, and where the run is left by Ctrl-C or --time-limit. Removed once a run has
-    /// come to its end. OUT may then not be IN
+    /// Save the state of the run to FILE every five minutes, and when Ctrl-C or --time-limit ends it. FILE is removed once a run has
+    /// come to its end. OUT must be another file than IN
     #[arg(long, value_name = "FILE", help_heading = "Stopping", conflicts_with = "out_dir")]
     pub(crate) checkpoint: Option<PathBuf>,
     /// How often the state is saved
     #[arg(long, default_value = "300", value_name = "SECONDS", requires = "kept", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) checkpoint_every: Duration,
-    /// Go on with the run that FILE is a checkpoint of, given the same IN and options, to the same mesh as if it had never been left: bit
-    /// for bit, on the CPU or on the GPU that it was left on. If the driver of that GPU ended the process, add --engine cpu. The state
-    /// is saved to FILE again, unless --checkpoint names another
+    /// Go on with the run whose checkpoint FILE is. IN and the options must be the same. The result is the same to the bit as if the run
+    /// had not been interrupted, on the CPU or on the GPU that it was on. If the driver of that GPU ended the process, add --engine cpu.
+    /// The state is saved to FILE again, unless --checkpoint names another
     #[arg(
         long = "continue",
         value_name = "FILE",
@@ -93,8 +92,9 @@ pub(crate) struct SmoothArgs {
     )]
     pub(crate) continued: Option<PathBuf>,
 
-    /// Sweeps corrected from coarser levels of the mesh (all but area), over-relaxed sweeps, or the
-    /// paper's plain ones (the same as relaxed --omega 1); auto takes the first that the other options allow
+    /// Sweeps corrected from coarser levels of the mesh, by all metrics but area (multilevel), over-relaxed sweeps (relaxed),
+    /// the plain sweeps of Park & Shontz, as relaxed with --omega 1 (paper), or the first of these that the other options
+    /// allow (auto)
     #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
     pub(crate) method: MethodChoice,
     /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
@@ -150,23 +150,23 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
-    /// Write a report with the history of every sweep, as JSON, and a certificate: the mesh is read again after it was written, and proved to
-    /// be what `gpu-smooth compare` proves, with hashes of both; if inverted or flat triangles keep the mesh from
-    /// being smoothed, a list of them
+    /// Write a report as JSON: the history of every sweep, and a certificate, for which the written mesh is read again and what
+    /// `gpu-smooth compare` proves is proved of it, with hashes of both files. If inverted or flat triangles keep the mesh from
+    /// being smoothed, the report lists them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
-    /// What f the report's history holds: the first metric's, or every metric's
+    /// Which f the report's history holds: that of the first metric (base), or those of all metrics (all)
     #[arg(long, value_enum, default_value = "base", requires = "report", help_heading = "Output")]
     pub(crate) history: History,
-    /// Write a page for a browser, in one file that needs nothing else: the mesh before and after to be enlarged, histograms,
-    /// f by sweep and time, statistics, the worst triangles
+    /// Write a page for a browser, in one file that needs nothing else: the mesh before and after, which can be enlarged,
+    /// histograms, f by sweep and time, statistics, the worst triangles
     #[arg(long, value_name = "FILE", help_heading = "Output", conflicts_with = "out_dir")]
     pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
 
-    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it is not there. Small ones
-    /// are smoothed side by side; one that fails does not stop the rest
+    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it does not exist. Small
+    /// meshes are smoothed side by side; one that fails does not stop the rest
     #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
     pub(crate) out_dir: Option<PathBuf>,
     /// Skip meshes whose smoothed files are all in DIR and newer than the mesh

@@ -18,7 +18,7 @@ pub(crate) struct SlideArgs {
     /// A vertex where a line turns by more than this angle is a corner, and stays where it is
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0, requires = "slide", help_heading = HEADING, value_parser = angle, allow_negative_numbers = true)]
     corner_angle: f64,
-    /// How far lines may leave those of IN, in the unit of the mesh [default: a tenth of the edge there]
+    /// How far lines may be from those of IN, in the unit of the mesh [default: a tenth of the edge there]
     #[arg(long, value_name = "DISTANCE", requires = "slide", help_heading = HEADING, value_parser = distance, allow_negative_numbers = true)]
     hausdorff: Option<f64>,
     /// Two sides of the boundary that a translation or a rotation takes to one another: their vertices slide together. For files that do

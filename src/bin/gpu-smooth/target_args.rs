@@ -18,11 +18,11 @@ const HEADING: &str = "Target elements";
 /// The options that say what elements should look like.
 #[derive(Args)]
 pub(crate) struct TargetArgs {
-    /// What elements are to look like: equilateral, of any size that their neighbors leave them; equilateral, of the sizes
-    /// they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
-    /// in SOURCE (size=SOURCE), or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE is a .sol file of Medit,
-    /// a metric file of BAMG, or the name of point data of IN, with a value for each vertex; or BACKGROUND:DATA, a mesh of its own
-    /// with the name of its point data or such a file for its vertices; or a view of gmsh (.pos), of scalars on triangles
+    /// What elements are to look like: equilateral, of any size that their neighbors leave them (equilateral); equilateral, of the
+    /// sizes they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
+    /// in SOURCE (size=SOURCE); or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE has a value for each vertex:
+    /// a .sol file of Medit, a metric file of BAMG, or the name of point data of IN. Or it is on another mesh: BACKGROUND:DATA, where
+    /// BACKGROUND is a mesh file and DATA its point data or such a file, or a view of gmsh (.pos) of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 2]
