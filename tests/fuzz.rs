@@ -74,7 +74,7 @@ fn arbitrary_bytes_as_a_file_never_panic() {
 
 /// The error message once quoted the whole tag, with its line ends.
 #[test]
-fn a_closing_tag_of_several_lines_is_told_on_one() {
+fn a_closing_tag_of_several_lines_is_quoted_on_one_line() {
     checks::any_file(b"<?xml version=\"1.0\"?>\n</P 2.0 1.78 0.0\n12 3.0 1.73 0.0\n>\n");
     let long = ["<?xml version=\"1.0\"?>\n</", &"long ".repeat(1000), ">\n"].concat();
     checks::any_file(long.as_bytes());

@@ -249,7 +249,7 @@ fn the_tour_runs_in_a_window() {
 }
 
 #[test]
-fn mistakes_in_a_script_are_told_by_line() {
+fn mistakes_in_a_script_are_reported_by_line() {
     for wrong in ["wait", "wait -1", "drag 0 0 1 1", "key ab", "jump", "press 0 nan"] {
         let text = format!("wait 1 # fine\n\n{wrong}\n");
         let problem = live::script::Script::parse(&text, PathBuf::new()).err().unwrap();

@@ -13,7 +13,7 @@ fn assert_usage(folder: &Folder, line: &str, parts: &[&str]) {
 }
 
 #[test]
-fn missing_and_surplus_files_are_told() {
+fn missing_and_surplus_arguments_are_errors() {
     let folder = small();
     assert_usage(&folder, "", &["<IN>", "<OUT>"]);
     assert_usage(&folder, "in", &["<OUT>"]);

@@ -40,7 +40,7 @@ fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
 }
 
 #[test]
-fn a_mesh_of_ones_own_is_measured_and_told_as_text() {
+fn a_mesh_of_the_user_is_measured_and_printed_as_text() {
     let folder = small();
     let vertices = folder.mesh("in").points.len().to_string();
     let run = folder.line("bench in --engine cpu --seconds 0").clean();
@@ -98,7 +98,7 @@ fn markdown_tells_the_machine_and_compares_with_a_baseline() {
 }
 
 #[test]
-fn kernels_are_told_as_markdown() {
+fn times_of_kernels_are_printed_as_markdown() {
     let folder = small();
     let out = folder.line("bench in --engine gpu --seconds 0 --markdown").clean().out;
     let rows = table(&out);

@@ -146,7 +146,7 @@ fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
 /// Names of files are bytes. They may be invalid text, and contain line ends or control characters of a terminal.
 #[cfg(target_os = "linux")]
 #[test]
-fn names_of_any_bytes_are_read_and_written_and_told_on_one_line() {
+fn names_of_any_bytes_are_read_and_written_and_printed_on_one_line() {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt;
 

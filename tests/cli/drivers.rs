@@ -175,7 +175,7 @@ fn a_driver_that_crashes_on_start_does_not_end_a_run_that_was_free_to_choose() {
 }
 
 #[test]
-fn a_driver_that_crashes_on_start_is_told_where_a_gpu_is_asked_for() {
+fn a_driver_that_crashes_on_start_is_an_error_where_a_gpu_is_asked_for() {
     let folder = small();
     let before = folder.content();
     let told = "the driver of the GPU failed when it was tried: signal: 6";

@@ -19,7 +19,7 @@ fn groups_are_a_table() {
 }
 
 #[test]
-fn data_of_vertices_are_told_beside_groups() {
+fn data_of_vertices_are_listed_beside_groups() {
     let deep = SMS.replace("ND 5 .5 .5 0", "ND 5 .5 .5 -2.5");
     let folder = Folder::new(&[("in.2dm", &deep)]);
     let out = folder.line("groups in.2dm").clean().out;

@@ -63,7 +63,7 @@ fn depths_stay_as_they_are_unless_they_are_to_come_along() {
 }
 
 #[test]
-fn data_that_are_not_as_they_should_be_are_told_by_compare() {
+fn compare_finds_interpolated_data_that_are_wrong() {
     let text = gr3(&disturbed());
     let folder = Folder::new(&[("in.gr3", &text)]);
     folder.line("in.gr3 out.gr3 --engine cpu --quiet --interpolate all").clean();

@@ -150,7 +150,7 @@ fn perturbed_lattice(side: usize) -> Folder {
 }
 
 #[test]
-fn a_goal_not_reached_is_told_when_interrupted() {
+fn an_interrupted_run_reports_that_its_goal_was_not_reached() {
     // The mesh is so large, and the sweeps are so slow, that the run does not stop by itself before the signal.
     let folder = perturbed_lattice(90);
     let args = ["in.off", "out.off", "-v", "--engine", "cpu", "--method", "paper"];

@@ -141,7 +141,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
 
 /// A disk without room for the checkpoint does not end the run; it says so.
 #[test]
-fn a_checkpoint_that_cannot_be_saved_is_told() {
+fn a_checkpoint_that_cannot_be_saved_is_reported() {
     let folder = small();
     fs::create_dir(folder.path("sub")).unwrap();
     let line = format!("{LONG} -v --checkpoint sub/run.ckpt --checkpoint-every 0.001");

@@ -65,7 +65,7 @@ fn each_mesh_ends_as_in_a_run_by_itself_and_a_bad_one_stops_none() {
 }
 
 #[test]
-fn the_table_is_told_as_csv_and_json_too() {
+fn the_table_is_printed_as_csv_and_json_too() {
     let folder = several();
     let line = format!("{ALL} --out-dir out --engine cpu");
     let csv = folder.line(&format!("{line} --csv"));

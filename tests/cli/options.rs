@@ -98,7 +98,7 @@ fn a_goal_ends_a_run_when_reached() {
 }
 
 #[test]
-fn a_goal_out_of_reach_is_told() {
+fn a_goal_out_of_reach_is_reported() {
     let folder = small();
     let (report, out) = run(&folder, "--desired 1 --fraction 1 --max-sweeps 3");
     assert_eq!(

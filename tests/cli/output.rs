@@ -12,7 +12,7 @@ pub(crate) const INVERTED: [&str; 2] = [
 ];
 
 #[test]
-fn quality_tells_what_the_report_tells() {
+fn quality_prints_what_the_report_says() {
     let folder = small();
     folder.line("in out --engine cpu --report r.json").clean();
     let report = folder.json("r.json");
@@ -105,7 +105,7 @@ fn quiet_prints_nothing() {
 }
 
 #[test]
-fn a_worst_element_that_got_worse_is_told_with_what_helps() {
+fn a_worst_element_that_got_worse_is_reported_with_a_remedy() {
     let folder = Folder::new(&[]);
     let plate = plate_path().to_str().unwrap();
     let out = folder.run([plate, "good", "--engine", "cpu"]).clean().out;

@@ -53,7 +53,7 @@ fn many_meshes_are_logged_one_by_one() {
 /// Every stage reports that it goes on, also one that cannot tell how far it is.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_stage_that_lasts_is_told_on_a_terminal_and_in_a_log() {
+fn a_long_stage_is_shown_on_a_terminal_and_in_a_log() {
     use std::fs;
     use std::process::{Command, Stdio};
     use std::time::Duration;

@@ -90,7 +90,7 @@ fn histograms_count_every_triangle() {
 }
 
 #[test]
-fn the_worst_triangles_are_told_with_their_place() {
+fn the_worst_triangles_are_listed_with_their_place() {
     let folder = small();
     let mesh = folder.mesh("in");
     let told = json(&folder, "quality in --json --worst 7 -m min-angle,shape");
@@ -200,7 +200,7 @@ fn several_meshes_stand_in_one_table() {
 }
 
 #[test]
-fn regions_are_told_apart() {
+fn regions_have_statistics_of_their_own() {
     let mesh = disturbed();
     let regions: Vec<[i32; 2]> = (0..160).map(|t| if t < 60 { [4, 7] } else { [2, 7] }).collect();
     let files = support::write_regions(&mesh, &regions);

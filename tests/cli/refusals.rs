@@ -60,7 +60,7 @@ fn meshes_of_these_tests_are_smoothed_before_they_are_spoiled() {
 }
 
 #[test]
-fn files_that_are_not_there_are_told() {
+fn missing_files_are_errors() {
     assert_refused(&TRIANGULATED[..1], "in.node", &["in.ele: not found", "put it beside in.node"]);
     assert_refused(&TRIANGULATED[1..], "in.ele", &["in.node: not found", "put it beside in.ele"]);
     assert_refused(&[], "none.msh", &["none.msh: ", "Check the name"]);
@@ -68,7 +68,7 @@ fn files_that_are_not_there_are_told() {
 }
 
 #[test]
-fn truncated_files_are_told() {
+fn truncated_files_are_errors() {
     assert_triangle_refused(
         &NODE[..20],
         ELE,
@@ -90,7 +90,7 @@ fn truncated_files_are_told() {
 }
 
 #[test]
-fn numbers_that_make_no_sense_are_told() {
+fn numbers_that_make_no_sense_are_errors() {
     assert_triangle_refused(
         NODE,
         &ELE.replace("2 2 3 5", "2 2 6 5"),
@@ -229,7 +229,7 @@ fn all_inverted_and_flat_triangles_are_listed() {
 }
 
 #[test]
-fn meshes_without_a_free_vertex_are_told() {
+fn meshes_without_a_free_vertex_are_errors() {
     assert_refused(
         &[("in.node", "3 2\n1 0 0\n2 1 0\n3 0 1\n"), ("in.ele", "1 3\n1 1 2 3\n")],
         "in.node",
@@ -243,7 +243,7 @@ fn meshes_without_a_free_vertex_are_told() {
 }
 
 #[test]
-fn an_edge_of_three_triangles_is_told() {
+fn a_mesh_file_with_an_edge_of_three_triangles_is_an_error() {
     assert_triangle_refused(
         &NODE.replace("5 2 0 0", "6 2 0 0").replace("5 0.25 0.5", "5 0.25 0.5\n6 2 -1"),
         "6 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n# two more\n5 2 1 6\n6 6 5 1\n",
@@ -268,7 +268,7 @@ fn an_edge_of_three_triangles_is_told() {
 }
 
 #[test]
-fn files_of_other_kinds_are_told() {
+fn files_of_other_kinds_are_errors() {
     let elements = GMSH.find("4\n7 2 2").unwrap();
     assert_gmsh_refused(
         &GMSH[elements..],

@@ -52,7 +52,7 @@ fn a_mesh_goes_in_and_out_through_pipes() {
 }
 
 #[test]
-fn pipes_without_a_mesh_are_told() {
+fn pipes_without_a_mesh_are_errors() {
     let folder = small();
     let (run, out) = piped(&folder, "- - --engine cpu", b"");
     assert_eq!((run.code, out.len()), (Some(1), 0));

@@ -86,7 +86,7 @@ fn an_encoder_that_is_dropped_takes_no_copy_with_it() {
 }
 
 #[test]
-fn a_lost_device_is_told() {
+fn a_readback_reports_a_lost_device() {
     let app = App::new();
     let buffer = app.buffer(4, Usage::COPY_SRC);
     let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();

@@ -130,7 +130,7 @@ fn each_metric_of_a_scheme_is_differentiated_in_its_own_way() {
 }
 
 #[test]
-fn a_slightly_different_sweep_is_told_apart() {
+fn the_comparison_of_sweeps_fails_for_a_slightly_different_sweep() {
     let problem = mild();
     for &metric in Metric::ALL {
         let plan =

@@ -81,7 +81,7 @@ fn windings_do_not_matter() {
 }
 
 #[test]
-fn a_mesh_a_little_different_is_told_apart() {
+fn the_comparison_of_runs_fails_for_a_slightly_different_mesh() {
     let mesh = mild();
     let other = transformed(&mesh, 1.0 + 1e-3, [0.0; 2]);
     let told = std::panic::catch_unwind(|| check(&mesh, &other, 1.0, [0.0; 2], [CPU, GPU]));

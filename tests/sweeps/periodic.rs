@@ -224,7 +224,7 @@ fn a_corner_on_one_periodic_side_holds_its_partner_too() {
 }
 
 #[test]
-fn pairs_that_are_not_alike_stay_and_nonsense_is_told() {
+fn pairs_that_are_not_alike_stay_and_impossible_pairs_are_errors() {
     let inner = [ROWS, COLUMNS].map(|count| count as usize - 1);
     let mut mesh = lattice(|[u, v]| [2.0 * u, v]);
     mesh.points[at(3, COLUMNS) as usize][1] += 0.01;

@@ -164,7 +164,7 @@ fn the_values_as_stored_are_untangled() {
 }
 
 #[test]
-fn untangling_gives_the_same_bits_again_and_ends_when_told() {
+fn untangling_gives_the_same_bits_again_and_ends_when_the_observer_says_so() {
     let swapped = boundaries::swapped(&boundaries::two_holes(600), 1);
     let mesh = tangle::turned_hole(60, 0.25);
     for mesh in [&mesh, &swapped] {

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_of_wgpu_are_told_from_others() {
+    fn files_of_wgpu_are_distinguished_from_others() {
         assert!(is_of_wgpu("/home/a/registry/src/b/wgpu-hal-30.0.1/src/vulkan/descriptor.rs"));
         assert!(is_of_wgpu(r"C:\registry\wgpu-30.0.1\src\lib.rs"));
         assert!(!is_of_wgpu("src/gpu/device/open.rs"));

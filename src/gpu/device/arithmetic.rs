@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adapter_that_drops_digits_is_named_and_told_what_to_do() {
+    fn an_adapter_that_drops_digits_is_named_with_a_remedy() {
         let gpu = Gpu::open(None).unwrap();
         let opened = Gpu::new(gpu.device().clone(), gpu.queue().clone()).unwrap();
         let found = fault_after(&opened, &[(FOLDED[1].0, FOLDED[1].1)]);
