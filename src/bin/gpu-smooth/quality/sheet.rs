@@ -14,6 +14,7 @@ use crate::quality::args::{QualityArgs, Threshold};
 use crate::quality::bins;
 use crate::report::QualityReport;
 use crate::streams::read;
+use crate::surface_args::as_in_file;
 use crate::tell;
 
 /// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
@@ -75,7 +76,9 @@ pub(crate) struct Worst {
     pub(crate) place: Place,
     /// The file's numbers or tags for its vertices.
     pub(crate) vertices: [u64; 3],
+    /// Its vertices as the file has them, even where longitudes are continued, and its centroid.
     pub(crate) corners: [[f64; 2]; 3],
+    pub(crate) at: [f64; 2],
     /// The values of the measures that were asked for.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether one of its vertices is free to move.
@@ -212,11 +215,16 @@ fn worst(
     let one = |&(t, _): &(usize, f64)| Worst {
         place: places[&t].clone(),
         vertices: mesh.triangles[t].map(|v| names[&v].label),
-        corners: mesh.triangles[t].map(|v| mesh.points[v as usize]),
+        corners: file.original().triangles[t].map(|v| file.original().points[v as usize]),
+        at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
         is_movable: mesh.triangles[t].iter().any(|&v| topology.free()[v as usize]),
     };
     found.iter().map(one).collect()
+}
+
+fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
 }
 
 fn violation(file: &MeshFile, measured: &Measured<'_>, threshold: &Threshold) -> Violation {
