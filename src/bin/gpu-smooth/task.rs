@@ -123,6 +123,10 @@ pub(crate) fn carry_out<T>(
     };
     let taken = taken??;
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
+    let hanging = smoother.topology().hanging_nodes(&mesh.points).map_err(told)?;
+    if let Some(remark) = explain::hanging(&file, &hanging) {
+        follow.remark(&remark);
+    }
     if let Some(remark) = args.target.set(&file, &mut smoother, points)? {
         follow.remark(&remark);
     }

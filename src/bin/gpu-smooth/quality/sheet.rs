@@ -39,6 +39,7 @@ pub(crate) struct Sheet {
     /// Inverted and flat triangles: all of them for JSON, else the first ones, which are listed.
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
+    pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
     pub(crate) unused_vertices: usize,
 }
@@ -105,6 +106,7 @@ impl Sheet {
         let quality = Quality::on(surface, &mesh.points, &topology).map_err(refused)?;
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
+        let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
         let shot = Shot { title, points: &mesh.points };
         picture::write(&args.picture, &file, (&topology, surface), &[shot])?;
@@ -112,7 +114,11 @@ impl Sheet {
         Ok(Self {
             path: path.to_owned(),
             format: file.format().to_string(),
-            remarks: tell::remarks(&file, false).into_iter().chain(laid_out).collect(),
+            remarks: tell::remarks(&file, false)
+                .into_iter()
+                .chain(laid_out)
+                .chain(explain::hanging(&file, &hanging))
+                .collect(),
             vertices: file.original().points.len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
@@ -125,6 +131,7 @@ impl Sheet {
             violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
+            hanging_nodes: hanging.len(),
             duplicate_vertices: measured.duplicate_vertices().len(),
             unused_vertices: unused(&file, &measured),
         })
