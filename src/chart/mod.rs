@@ -200,24 +200,38 @@ impl Chart {
     /// Returns the points of the given mesh, in degrees, for points of the chart's mesh. Longitudes are brought back to
     /// the range of the given mesh. Points that have not moved keep their bits.
     pub fn given(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let all = || self.given.points.iter().map(|point| point[0]);
-        let range = [[-180.0, 180.0], [0.0, TURN]];
-        let range =
-            range.into_iter().find(|[low, high]| all().all(|x| (*low..=*high).contains(&x)));
+        let range = self.range();
         let back = |((now, was), given): ((&[f64; 2], &[f64; 2]), &[f64; 2])| {
             if bits(now) == bits(was) {
                 return *given;
             }
             let x = now[0] - TURN * ((was[0] - given[0]) / TURN).round();
-            let x = match range {
-                Some([_, high]) if x > high => x - TURN,
-                Some([low, _]) if x < low => x + TURN,
-                _ => x,
-            };
-            [x, now[1]]
+            [brought_back(x, range), now[1]]
         };
         let pairs = points.iter().zip(&self.mesh.points).zip(&self.given.points);
         pairs.map(back).collect()
+    }
+
+    /// Returns a longitude of the chart, in degrees, in the range of the given mesh: from -180 to 180, or from 0 to 360.
+    /// It stays as it is if the given mesh keeps to neither.
+    pub fn given_longitude(&self, longitude: f64) -> f64 {
+        brought_back(longitude, self.range())
+    }
+
+    /// Returns the usual range of longitudes that those of the given mesh are in, if they are.
+    fn range(&self) -> Option<[f64; 2]> {
+        let all = || self.given.points.iter().map(|point| point[0]);
+        let ranges = [[-180.0, 180.0], [0.0, TURN]];
+        ranges.into_iter().find(|[low, high]| all().all(|x| (*low..=*high).contains(&x)))
+    }
+}
+
+/// Brings a longitude that is less than a turn outside of a range back into it.
+fn brought_back(x: f64, range: Option<[f64; 2]>) -> f64 {
+    match range {
+        Some([_, high]) if x > high => x - TURN,
+        Some([low, _]) if x < low => x + TURN,
+        _ => x,
     }
 }
 

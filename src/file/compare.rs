@@ -72,8 +72,14 @@ impl MeshFile {
                 let (file, bytes) = ([self, other][side], [mine, theirs][side]);
                 merged(file.coordinates(), number_ranges(bytes, fields[side], is_beside_points))
             });
-            if unequal([mine, theirs], ranges).is_some() {
-                return differ(0, [0; 2], "third coordinates are not the same".into());
+            if let Some([at, _]) = unequal([mine, theirs], ranges) {
+                let vertex = self.vertex_before(at);
+                let [place, other_place] = [self, other].map(|file| file.vertex_place(vertex));
+                let what =
+                    format!("third coordinates are not the same, first of vertex {}", place.label);
+                let unlabeled = |place| Place { label: 0, ..place };
+                let (place, other_place) = (unlabeled(place), unlabeled(other_place));
+                return Some(Difference { place, other_place, what });
             }
         }
         for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
@@ -97,6 +103,16 @@ impl MeshFile {
             }
         }
         None
+    }
+
+    /// Returns the vertex whose coordinates stand last before a place in the bytes that hold them.
+    fn vertex_before(&self, at: usize) -> u32 {
+        let owners = self.owners();
+        let count = owners.map_or(self.original().points.len(), <[u32]>::len);
+        let x_at = self.x_at();
+        let before = (0..count).filter(|&index| x_at.at(index) <= at);
+        let index = before.max_by_key(|&index| x_at.at(index)).unwrap_or(0);
+        owners.map_or(index as u32, |owners| owners[index])
     }
 
     /// Returns the ranges of coordinates in the bytes that hold them, ascending.

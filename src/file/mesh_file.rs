@@ -208,6 +208,20 @@ impl MeshFile {
         fixed.truncate(fixed.len() - held.len());
     }
 
+    /// Returns the vertices between [regions](Self#regions), and not on the boundary, that are fixed for another reason
+    /// too, ascending: line elements, points or quadrilaterals of the file are there, or [`fix`](Self::fix) was called.
+    /// [`free_interfaces`](Self::free_interfaces) leaves them fixed.
+    pub fn held_interface_vertices(&self) -> Vec<u32> {
+        let Mesh { points, triangles, fixed } = &self.mesh;
+        let Some(regions) = &self.regions else { return Vec::new() };
+        let mut is_held = vec![false; points.len()];
+        fixed.iter().for_each(|&v| is_held[v as usize] = true);
+        self.interfaces.iter().for_each(|&v| is_held[v as usize] = false);
+        let mut between = interface_vertices(regions, triangles, points.len(), &[]);
+        between.retain(|&v| is_held[v as usize]);
+        between
+    }
+
     /// Returns the edges along which vertices inside the mesh may slide, for [`Slide::lines`](crate::Slide::lines).
     /// These are line elements, segments, and the edges between triangles of different [regions](Self#regions), unless
     /// [`free_interfaces`](Self::free_interfaces) was called.

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::error::ReadError;
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, Cursor};
+use crate::file::token::{float, quoted};
 
 /// Numbers for the vertices of a mesh, in the order of the mesh file. Each vertex has one number, a size in the unit of
 /// the mesh, or three, a symmetric tensor as xx, xy, yy.
@@ -97,13 +98,16 @@ fn bamg(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
     }
 }
 
+/// The remedy where there are more numbers than vertices.
+const COUNT: &str = "Correct the number of vertices, or remove what is too much";
+
 /// Reads a whole number on this row or a later one.
 fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.next_word();
     cursor.integer(what)
 }
 
-/// Reads `components` numbers for each of `count` vertices. Text after them is ignored.
+/// Reads `components` numbers for each of `count` vertices. Keywords may follow, but no further number.
 fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solution, ReadError> {
     let wanted = count.saturating_mul(components as u64);
     let mut values = Vec::with_capacity(cursor.capacity(wanted, 2));
@@ -114,6 +118,14 @@ fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solu
             return Err(cursor.error(problem, crate::file::text::CUT_OFF));
         }
         values.push(cursor.real("a value")?);
+    }
+    if cursor.next_word()
+        && let Some(word) = cursor.clone().token().filter(|word| float(word).is_some())
+    {
+        let all = if components == 1 { "one number" } else { "three numbers" };
+        let problem =
+            format!("`{}` follows after {all} for each of {count} vertices", quoted(word));
+        return Err(cursor.error(problem, COUNT));
     }
     Ok(Solution { components, values })
 }

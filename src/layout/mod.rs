@@ -9,6 +9,7 @@ mod smallest_last;
 
 pub use coloring::Coloring;
 pub use prepare::prepare;
+pub(crate) use prepare::prepare_to_slide;
 pub use problem::Problem;
 pub(crate) use sizes::target_areas;
 pub use smallest_last::UNCOLORED;

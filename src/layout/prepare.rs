@@ -15,8 +15,24 @@ use crate::topology::Topology;
 pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;
+    Ok(laid_out(mesh, topology))
+}
+
+/// Does the same as [`prepare`], also for a mesh without a free vertex, of which vertices may slide.
+///
+/// # Errors
+/// [`MeshError`] if the mesh cannot be smoothed for another reason.
+pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
+    let topology = Topology::new(mesh)?;
+    match topology.check_smoothable(&mesh.points) {
+        Ok(()) | Err(MeshError::NothingFree { .. }) => Ok(laid_out(mesh, topology)),
+        Err(error) => Err(error),
+    }
+}
+
+fn laid_out<'m>(mesh: &'m Mesh, topology: Topology<'m>) -> (Topology<'m>, Problem) {
     let curve = along_curve(mesh, &topology);
     let coloring = Coloring::along(&topology, &curve);
     let problem = Problem::along(mesh, &topology, &coloring, &curve);
-    Ok((topology, problem))
+    (topology, problem)
 }

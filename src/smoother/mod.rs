@@ -14,7 +14,7 @@ use web_time::Instant;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::{Gpu, MeshSize, Waiting};
-use crate::layout::{Problem, prepare};
+use crate::layout::{Problem, prepare, prepare_to_slide};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::outcome::Outcome;
@@ -53,11 +53,37 @@ impl<'a> Smoother<'a> {
     /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
-        let (mut topology, problem) = prepare(mesh)?;
+        Ok(Self::of(mesh, prepare(mesh)?, start))
+    }
+
+    /// Prepares a mesh of which vertices slide, as [`new`](Self::new) and [`set_slide`](Self::set_slide) do, and also one in
+    /// which no vertex is free, such as a strip of triangles: its runs consist of sliding alone, on the CPU.
+    ///
+    /// # Errors
+    /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, which with [`MeshError::NothingFree`] means that no vertex can
+    /// slide either; [`SmoothError::Option`] under the conditions that [`set_slide`](Self::set_slide) gives.
+    pub fn with_slide(mesh: &'a Mesh, slide: &Slide) -> Result<Self, SmoothError> {
+        let start = Instant::now();
+        let mut smoother = Self::of(mesh, prepare_to_slide(mesh)?, start);
+        smoother.set_slide(Some(slide))?;
+        smoother.check_movable()?;
+        Ok(Self { prepare: start.elapsed(), ..smoother })
+    }
+
+    fn of(mesh: &'a Mesh, (topology, problem): (Topology<'a>, Problem), start: Instant) -> Self {
+        let mut topology = topology;
         // Runs need only the problem. The stars are found again if a vertex has to be set back.
         topology.forget_stars();
         let (mesh, sliding, pairs, field) = (Cow::Borrowed(mesh), None, [0; 2], None);
-        Ok(Self { mesh, topology, problem, sliding, pairs, field, prepare: start.elapsed() })
+        Self { mesh, topology, problem, sliding, pairs, field, prepare: start.elapsed() }
+    }
+
+    /// Fails if no vertex is free and none slides.
+    fn check_movable(&self) -> Result<(), MeshError> {
+        match self.problem.free_count() == 0 && self.sliding.is_none() {
+            true => Err(MeshError::NothingFree { vertices: self.mesh.points.len() }),
+            false => Ok(()),
+        }
     }
 
     /// Copies the mesh into the smoother, which can then outlive the mesh that it was made from: in a struct without

@@ -31,6 +31,9 @@ impl Smoother<'_> {
     ) -> Result<Outcome, SmoothError> {
         let start = Instant::now();
         options.check_for(&self.problem)?;
+        self.check_movable()?;
+        // Vertices slide on the CPU, whatever the engine of the sweeps.
+        let device = device.filter(|_| self.problem.free_count() > 0);
         Ways::check(self, options, from.is_some())?;
         let (device, fault) = self.checked(device, keeper).await?;
         let mut about = resume::about(&self.mesh, self.problem.targets(), options);

@@ -14,8 +14,9 @@ use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
     CPU, Checkpoint, Course, DriveError, End, Guard, History, Keeper, Keeping, Method, Objectives,
-    Observer, Options, Phase, Plan, Saved, Stop, Strategy, drive, set_guards,
+    Observer, Options, Phase, Plan, Progress, Saved, Stop, Strategy, drive, set_guards,
 };
+use crate::whole::in_rounds::objectives;
 
 /// The largest sum of q² - ideal² that a device is given. It is far below the largest single, 3e38, as formulas of
 /// metrics of size multiply powers of their arguments.
@@ -75,6 +76,9 @@ impl Attempt<'_> {
     ) -> Result<Ended, SmoothError> {
         let problem = self.problem;
         let mut plan = options.plan_to(target);
+        if problem.free_count() == 0 {
+            return Ok(self.still(&plan, from, observe));
+        }
         set_guards(&mut plan, options.guard, problem, from);
         let (device, opened) = match resumed {
             Some(Checkpoint { about, saved }) => {
@@ -160,19 +164,33 @@ impl Attempt<'_> {
         })
     }
 
+    /// Returns the end of a run in which no vertex is free. Its sweeps change nothing.
+    fn still(&self, plan: &Plan, from: &[DVec2], observe: &mut (impl Observer + ?Sized)) -> Ended {
+        let sweeps = plan.stop.max_sweeps;
+        let here = objectives(self.problem, plan, from);
+        let f = here.of(plan.scheme.base()).unwrap_or(f64::NAN);
+        let progress = Progress { phase: self.phase, sweep: self.done + sweeps, f };
+        let is_left = observe(&progress).is_break();
+        Ended {
+            history: vec![here; sweeps as usize + 1],
+            positions: from.to_vec(),
+            alternated: sweeps,
+            corrections: 0,
+            opening_sweeps: 0,
+            levels_left_out: false,
+            remaining: None,
+            held_back: 0,
+            stop: if is_left { Stop::Canceled } else { Stop::MaxSweeps },
+            fault: None,
+        }
+    }
+
     /// Returns the end of a run in the state that was last saved, or at its start, because a later sweep made f
     /// infinite or NaN.
     fn undone(&self, plan: &Plan, from: &[DVec2], last: Option<Saved>) -> End {
         let (log, positions) = match last {
             Some(Saved { log, engine, .. }) => (log, engine.best.unwrap_or(engine.positions)),
-            None => {
-                let mut start = Objectives::untracked();
-                for metric in plan.tracked() {
-                    let excess = mean_excess(metric, self.problem, from);
-                    start.set(metric, metric.ideal_squared() + excess);
-                }
-                (vec![start], from.to_vec())
-            }
+            None => (vec![objectives(self.problem, plan, from)], from.to_vec()),
         };
         let history = History::resumed(plan, &log, None);
         let (stop, corrections, alternated) = (Stop::NotFinite, 0, history.sweeps());

@@ -51,6 +51,26 @@ fn a_mesh_is_converted_by_the_ending_or_by_name() {
     folder.line("quality out.node").clean();
 }
 
+/// SU2 knows markers by name only.
+#[test]
+fn names_that_change_are_told_once() {
+    let two = SMS.replace("-3 \"shore\"", "-3 \"a b\"\nNS 3 -4 \"a_b\"");
+    let folder = Folder::new(&[("in.2dm", &two)]);
+    let run = folder.line("convert in.2dm out.su2 --lossy");
+    let told = "gpu-smooth: renamed, as SU2 cannot hold it so: groups: `a b` (1) to `a_b_2`\n";
+    assert_eq!((run.code, run.err.matches(told).count()), (Some(0), 1), "{}", run.err);
+    assert_holds(
+        &folder.text("out.su2"),
+        &[
+            "NMARK= 2\n",
+            "MARKER_TAG= a_b_2\nMARKER_ELEMS= 2\n",
+            "MARKER_TAG= a_b\nMARKER_ELEMS= 1\n",
+        ],
+    );
+    let quiet = folder.line("convert in.2dm out.su2 --lossy --quiet");
+    assert_eq!((quiet.code, quiet.err.as_str()), (Some(0), ""));
+}
+
 #[test]
 fn conversions_that_cannot_work_are_refused() {
     let folder = Folder::new(&[("in.2dm", SMS), ("word", "1 2 x\n")]);

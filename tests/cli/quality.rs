@@ -283,6 +283,27 @@ fn defects_are_counted() {
     assert_holds(row("condition"), &[" infinite"]);
 }
 
+/// Two squares side by side. The right one has a vertex in the middle of the edge that the left one has whole.
+#[test]
+fn hanging_nodes_are_counted_and_the_first_is_named() {
+    let hanging = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .4 .5 0\nND 6 2 0 0\nND 7 2 1 0\nND 8 1 .5 0\n\
+                   ND 9 1.6 .5 0\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\nE3T 3 3 4 5 1\nE3T 4 4 1 5 1\nE3T 5 2 6 9 1\nE3T 6 6 7 9 1\n\
+                   E3T 7 7 3 9 1\nE3T 8 3 8 9 1\nE3T 9 8 2 9 1\n";
+    let whole = hanging.replace("E3T 2 2 3 5 1\n", "E3T 2 2 8 5 1\nE3T 10 8 3 5 1\n");
+    let folder = Folder::new(&[("in.2dm", hanging), ("whole.2dm", &whole)]);
+    let told = "1 hanging node: vertex 8 (in.2dm:9) is inside the edge between vertices 2 and 3; the mesh is open there";
+    let run = folder.line("in.2dm out.2dm --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &[told]);
+    assert_holds(&folder.line("quality in.2dm").out, &[told]);
+    let count = |name: &str| {
+        let json = folder.line(&format!("quality {name} --json")).out;
+        serde_json::from_str::<serde_json::Value>(&json).unwrap()["hanging_nodes"].clone()
+    };
+    assert_eq!([count("in.2dm"), count("whole.2dm")], [1, 0]);
+    assert!(!folder.line("whole.2dm out.2dm --engine cpu").err.contains("hanging"));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn on_a_terminal_bars_are_of_blocks_unless_it_is_dumb() {

@@ -41,6 +41,34 @@ fn interfaces_between_regions_stay_and_a_note_says_so() {
     }
 }
 
+/// Two squares side by side, of two regions, with a vertex in the middle of the edge between them.
+#[test]
+fn interfaces_that_lines_hold_are_told_where_they_were_to_be_free() {
+    let mesh = |lines: &str| {
+        let count = 10 + lines.lines().count();
+        let triangles =
+            [[1, 2, 5], [2, 8, 5], [8, 3, 5], [3, 4, 5], [4, 1, 5]].iter().map(|t| (t, 1));
+        let others = [[2, 6, 9], [6, 7, 9], [7, 3, 9], [3, 8, 9], [8, 2, 9]].iter().map(|t| (t, 2));
+        let rows = (1..)
+            .zip(triangles.chain(others))
+            .map(|(k, ([a, b, c], region))| format!("{k} 2 2 {region} {region} {a} {b} {c}\n"));
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .4 .5 0\n6 2 0 0\n7 2 1 0\n\
+             8 1 .4 0\n9 1.6 .5 0\n$EndNodes\n$Elements\n{count}\n{}{lines}$EndElements\n",
+            rows.collect::<String>()
+        )
+    };
+    let lines = mesh("11 1 2 3 3 2 8\n12 1 2 3 3 8 3\n");
+    let folder = Folder::new(&[("lines.msh", &lines), ("none.msh", &mesh(""))]);
+    let told = "--free-interfaces: 1 vertex between regions is on line elements, points or quadrilaterals of the file";
+    let run = folder.line("lines.msh out.msh --engine cpu --free-interfaces --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &[told]);
+    assert_holds(&folder.json("r.json").to_string(), &[told]);
+    let run = folder.line("none.msh out.msh --engine cpu --free-interfaces");
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+}
+
 #[test]
 fn free_interfaces_move_as_if_all_were_one_region() {
     let mesh = disturbed();

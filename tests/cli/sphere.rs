@@ -96,6 +96,35 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
     }
 }
 
+/// Longitudes are continued to measure triangles across the date line, and told as the file has them.
+#[test]
+fn the_worst_triangles_are_where_the_file_has_them() {
+    for has_pole in [false, true] {
+        let folder = Folder::new(&[("in.gr3", &band(COLUMNS, has_pole))]);
+        let points = folder.mesh("in.gr3").points;
+        let line = "quality in.gr3 --surface sphere --measure min-angle --worst 500";
+        let json = folder.line(&format!("{line} --json"));
+        let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+        let worst = json["worst"].as_array().unwrap();
+        assert_eq!(worst.len(), folder.mesh("in.gr3").triangles.len());
+        for triangle in worst {
+            for corner in 0..3 {
+                let vertex = triangle["vertices"][corner].as_u64().unwrap() as usize;
+                let own = [0, 1].map(|axis| number(&triangle["corners"][corner][axis]));
+                assert_eq!(own, points[vertex - 1], "{triangle}");
+            }
+        }
+        let text = folder.line(line).out;
+        let mut count = 0;
+        for row in text.lines().filter(|row| row.contains("; at ")) {
+            let x = row.split("; at ").nth(1).unwrap().split(' ').next().unwrap();
+            assert!(x.parse::<f64>().unwrap().abs() <= 180.0, "{row}");
+            count += 1;
+        }
+        assert_eq!(count, worst.len());
+    }
+}
+
 /// Triangles at a pole and where the globe is cut have copies of their vertices.
 #[test]
 fn vertices_are_counted_as_the_file_has_them() {

@@ -132,6 +132,13 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
         ),
         ("solid.sol", "MeshVersionFormatted 2\nDimension 3\n".to_owned()),
         ("none.sol", "MeshVersionFormatted 2\nDimension 2\nEnd\n".to_owned()),
+        ("more.mtr", format!("{count} 1\n{good}0.5\n")),
+        (
+            "more.sol",
+            format!(
+                "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n{count}\n1 1\n{good}\n7 8\nEnd\n"
+            ),
+        ),
     ];
     let files: Vec<(&str, &str)> =
         files.iter().map(|(name, text)| (*name, text.as_str())).collect();
@@ -146,6 +153,15 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
         ("size=vector.sol", &["vector.sol:5: the solution is of kind 2"]),
         ("size=solid.sol", &["solid.sol:2: the solution is of a mesh of dimension 3"]),
         ("size=none.sol", &["there is no SolAtVertices"]),
+        (
+            "size=more.mtr",
+            &[
+                "more.mtr:",
+                "`0.5` follows after one number for each of",
+                "Correct the number of vertices",
+            ],
+        ),
+        ("size=more.sol", &["more.sol:", "`7` follows after one number for each of"]),
         ("size=nowhere", &["nowhere: there is no such file"]),
     ] {
         folder.line(&format!("in out --engine cpu --target {target}")).refused(parts);
@@ -188,6 +204,38 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
     folder
         .line("in.gr3 out.gr3 --engine cpu --surface sphere --quiet")
         .refused(&["its latitude is not between -90 and 90 degrees"]);
+}
+
+/// Records of TELEMAC's SELAFIN stand between their lengths; the mesh is the small one at 60 degrees north.
+#[test]
+fn degrees_are_noticed_in_selafin() {
+    let mesh = disturbed();
+    let (points, triangles) = (mesh.points.len(), mesh.triangles.len());
+    let mut bytes: Vec<u8> = Vec::new();
+    let mut record = |content: &[u8]| {
+        let length = (content.len() as u32).to_be_bytes();
+        bytes.extend([&length[..], content, &length[..]].concat());
+    };
+    let ints =
+        |numbers: &[i32]| -> Vec<u8> { numbers.iter().flat_map(|n| n.to_be_bytes()).collect() };
+    let reals =
+        |numbers: Vec<f64>| -> Vec<u8> { numbers.iter().flat_map(|x| x.to_be_bytes()).collect() };
+    record(format!("{:<72}SERAFIND", "bay").as_bytes());
+    record(&ints(&[1, 0]));
+    record(format!("{:<16}{:<16}", "BOTTOM", "M").as_bytes());
+    record(&ints(&[1, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
+    record(&ints(&[triangles as i32, points as i32, 3, 1]));
+    record(&ints(&mesh.triangles.as_flattened().iter().map(|&v| v as i32 + 1).collect::<Vec<_>>()));
+    record(&ints(&vec![0; points]));
+    record(&reals(mesh.points.iter().map(|p| p[0]).collect()));
+    record(&reals(mesh.points.iter().map(|p| 60.0 + 0.5 * p[1]).collect()));
+    record(&reals(vec![0.0]));
+    record(&reals(vec![1.0; points]));
+    let folder = Folder::new(&[]);
+    std::fs::write(folder.path("in.slf"), bytes).unwrap();
+    let run = folder.line("in.slf out.slf --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &["the coordinates look like degrees: --surface sphere"]);
 }
 
 /// A file of gmsh with two triangles around the small mesh. `h` at their corners is 1 on the left and 4 on the right.

@@ -19,6 +19,7 @@ mod packed;
 mod parameters;
 mod refused;
 mod regions;
+mod renamed;
 mod special;
 mod spoiled;
 mod stl;

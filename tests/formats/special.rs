@@ -3,6 +3,7 @@
 use super::Folder;
 use super::made::{all, base};
 use gpu_smooth::{Format, MeshFile};
+use std::fs;
 
 const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
@@ -164,6 +165,35 @@ fn regions_of_a_vtk_are_found_among_other_data() {
         );
         let file = assert_square("a.vtk", &text, Format::Vtk);
         assert_eq!(file.regions(), Some(&[0, 1][..]), "{data}");
+    }
+}
+
+/// Zero of either sign is one number, and so one region.
+#[test]
+fn a_negative_zero_is_the_region_of_zero() {
+    for (kind, zeros) in [
+        ("float", [0.0_f32.to_be_bytes().to_vec(), (-0.0_f32).to_be_bytes().to_vec()].concat()),
+        ("double", [0.0_f64.to_be_bytes().to_vec(), (-0.0_f64).to_be_bytes().to_vec()].concat()),
+        ("int", [0_i32.to_be_bytes(), i32::MIN.to_be_bytes()].concat()),
+    ] {
+        let mut bytes =
+            b"# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 4 double\n".to_vec();
+        for [x, y] in [[0.0_f64, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+            bytes.extend([x, y, 0.0].iter().flat_map(|x| x.to_be_bytes()));
+        }
+        bytes.extend(b"\nPOLYGONS 2 8\n");
+        bytes.extend([3_i32, 0, 1, 2, 3, 0, 2, 3].iter().flat_map(|n| n.to_be_bytes()));
+        bytes.extend(
+            format!("\nCELL_DATA 2\nSCALARS region {kind} 1\nLOOKUP_TABLE default\n").bytes(),
+        );
+        bytes.extend(zeros);
+        bytes.extend(b"\n");
+        let folder = Folder::new(&[]);
+        fs::write(folder.path("in.vtk"), bytes).unwrap();
+        let file = folder.read("in.vtk");
+        let regions = if kind == "int" { Some(&[0, 1][..]) } else { None };
+        assert_eq!(file.regions(), regions, "{kind}");
+        assert_eq!(file.groups().unwrap().len(), if kind == "int" { 2 } else { 1 }, "{kind}");
     }
 }
 

@@ -4,6 +4,8 @@ use super::made::base;
 pub(crate) use super::made::vtu::{Place, styles, write, write_pieces};
 use super::support::{SplitMix64, check};
 use super::{Folder, damage};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use gpu_smooth::{Conversion, Format, Location, Mesh, MeshFile, PointField, Precision};
 use std::fs;
 pub(crate) fn folder(bytes: &[u8]) -> Folder {
@@ -35,6 +37,33 @@ fn every_encoding_is_read_and_comes_back() {
         assert!(fs::read(folder.path("out.vtu")).unwrap() == bytes, "{style:?}");
         assert_eq!(file.difference(&folder.read("out.vtu")), None, "{style:?}");
     }
+}
+
+/// A third coordinate that differs is told with its vertex and place, however the points are encoded.
+#[test]
+fn the_vertex_is_told_whose_third_coordinate_differs() {
+    let points = |z: f64| {
+        let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, z, 0.0, 1.0, 0.0];
+        let bytes: Vec<u8> = numbers.iter().flat_map(|x: &f64| x.to_le_bytes()).collect();
+        STANDARD.encode([&(bytes.len() as u32).to_le_bytes()[..], &bytes].concat())
+    };
+    let text = |z: f64| {
+        format!(
+            "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n\
+             <Piece NumberOfPoints=\"4\" NumberOfCells=\"2\">\n<Points>\n\
+             <DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"binary\">{}</DataArray></Points>\n<Cells>\
+             <DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 2 3</DataArray>\n\
+             <DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6</DataArray>\n\
+             <DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 5</DataArray></Cells>\n</Piece>\n\
+             </UnstructuredGrid>\n</VTKFile>\n",
+            points(z)
+        )
+    };
+    let folder = Folder::new(&[("a.vtu", &text(0.0)), ("b.vtu", &text(0.5))]);
+    let difference = folder.read("a.vtu").difference(&folder.read("b.vtu")).unwrap();
+    assert_eq!(difference.what, "third coordinates are not the same, first of vertex 2");
+    assert_eq!(difference.place.location, Location::Line(5));
+    assert_eq!(difference.other_place.location, Location::Line(5));
 }
 
 #[test]

@@ -188,3 +188,43 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
         assert!(matches!(error, SmoothError::Option { option: "slide", .. }), "{error}");
     }
 }
+
+/// A strip of triangles has no vertex inside. Those on its sides slide, on any engine to the same bits.
+#[test]
+fn a_strip_slides_without_a_free_vertex() {
+    let mut mesh = Mesh { points: Vec::new(), triangles: Vec::new(), fixed: Vec::new() };
+    let mut random = SplitMix64::new(8);
+    for k in 0..=12_u32 {
+        let mut off = || if k % 12 == 0 { 0.0 } else { random.range(-0.4, 0.4) };
+        mesh.points.extend([[f64::from(k) + off(), 0.0], [f64::from(k) + off(), 1.0]]);
+        if k < 12 {
+            let low = 2 * k;
+            mesh.triangles.extend([[low, low + 2, low + 3], [low, low + 3, low + 1]]);
+        }
+    }
+    assert_eq!(Smoother::new(&mesh).err(), Some(MeshError::NothingFree { vertices: 26 }));
+    let slide = Slide::default();
+    let smoother = Smoother::with_slide(&mesh, &slide).unwrap();
+    let mut ends = Vec::new();
+    for backend in backends() {
+        let outcome = run(&smoother, &Options::default(), backend);
+        assert_eq!(outcome.stop, Stop::Converged, "{}", name(backend));
+        let f = history(&outcome, Metric::Imr);
+        assert!(f.windows(2).all(|pair| pair[1] <= pair[0]), "{f:?}");
+        assert!(f[f.len() - 1] < 0.97 * f[0], "{f:?}");
+        assert_eq!(outcome.slid.unwrap().vertices, 22);
+        assert_eq!(validity::infeasible(&outcome.points, &mesh.triangles), Ok(vec![]));
+        assert!(outcome.points.iter().all(|point| point[1] == 0.0 || point[1] == 1.0));
+        ends.push(outcome.points);
+    }
+    assert!(ends.iter().all(|end| *end == ends[0]));
+    // With nothing to slide either, there is nothing to do.
+    let held = Slide { held: (0..26).collect(), ..Slide::default() };
+    let refused = |result: Result<(), SmoothError>| {
+        matches!(result, Err(SmoothError::Mesh(MeshError::NothingFree { vertices: 26 })))
+    };
+    assert!(refused(Smoother::with_slide(&mesh, &held).map(drop)));
+    let mut stopped = Smoother::with_slide(&mesh, &slide).unwrap();
+    stopped.set_slide(None).unwrap();
+    assert!(refused(stopped.run(&Options::default(), &Backend::Cpu).map(drop)));
+}

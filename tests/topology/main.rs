@@ -4,6 +4,7 @@
 mod support;
 
 mod boundary;
+mod hanging;
 mod hubs;
 mod requests;
 mod windings;

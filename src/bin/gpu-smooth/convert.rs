@@ -28,6 +28,9 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     for what in lost {
         tell::note(show.quiet, &format!("lost: {what}"));
     }
+    for what in conversion.renamed() {
+        tell::note(show.quiet, &format!("renamed, as {format} cannot hold it so: {what}"));
+    }
     if is_standard(&args.output) {
         let Some(content) = conversion.bytes() else {
             return Err(

@@ -1,6 +1,6 @@
 //! Words what is wrong with a mesh in the terms of its file.
 
-use gpu_smooth::{BadTriangle, Format, Location, MeshError, MeshFile, Place};
+use gpu_smooth::{BadTriangle, Format, HangingNode, Location, MeshError, MeshFile, Place};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -80,6 +80,24 @@ pub(crate) fn are_across(file: &MeshFile, bad: &[BadTriangle]) -> bool {
     file.chart().is_none()
         && points.iter().all(|&[x, y]| x.abs() <= 360.0 && y.abs() <= 90.0)
         && bad.iter().any(is_far)
+}
+
+/// Words a remark on vertices that hang on edges of other triangles, if there are such.
+pub(crate) fn hanging(file: &MeshFile, nodes: &[HangingNode]) -> Option<String> {
+    let HangingNode { vertex, edge: [a, b] } = *nodes.first()?;
+    let names = file.vertex_places([vertex, a, b]);
+    let place = &names[&vertex];
+    let [v, a, b] = [vertex, a, b].map(|v| names[&v].label);
+    let first = format!(
+        "vertex {v} ({place}) is inside the edge between vertices {} and {}",
+        a.min(b),
+        a.max(b)
+    );
+    let open = "the mesh is open there, and both sides stay as boundary. Cut the triangles at such edges in two";
+    Some(match nodes.len() {
+        1 => format!("1 hanging node: {first}; {open}"),
+        n => format!("{n} hanging nodes, such as: {first}; {open}"),
+    })
 }
 
 /// Returns the coordinate that is the same at all vertices, and its value, if there is one. The mesh then stands

@@ -94,6 +94,7 @@ impl MoveArgs {
             file.free_interfaces();
         }
         let mut choice = Choice::default();
+        choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
         if !self.restricts() {
             return Ok(choice);
         }
@@ -122,6 +123,18 @@ impl Choice {
             )
         })
     }
+}
+
+/// Words that vertices between regions are held all the same, if some are.
+fn held_interfaces(file: &MeshFile) -> Option<String> {
+    let held = match file.held_interface_vertices().len() {
+        0 => return None,
+        1 => "1 vertex between regions is".to_owned(),
+        n => format!("{n} vertices between regions are"),
+    };
+    Some(format!(
+        "--free-interfaces: {held} on line elements, points or quadrilaterals of the file, and not freed"
+    ))
 }
 
 /// Finds what options name in a mesh.

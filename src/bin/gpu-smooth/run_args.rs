@@ -34,7 +34,7 @@ pub(crate) struct SmoothArgs {
 
     /// The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges
     /// convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94 (see `gpu-smooth metrics`)
-    /// [default: imr; soft-size with --target keep-size]
+    /// [default: imr; soft-size with --target keep-size or size=SOURCE]
     #[arg(long, value_name = "A[+B...]", help_heading = "Metric and engine")]
     scheme: Option<Scheme>,
 

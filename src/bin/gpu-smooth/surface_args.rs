@@ -54,6 +54,11 @@ impl SurfaceArgs {
     }
 }
 
+/// Returns a point of a mesh that is laid out on its surface as the file would have it.
+pub(crate) fn as_in_file(file: &MeshFile, [x, y]: [f64; 2]) -> [f64; 2] {
+    [file.chart().map_or(x, |chart| chart.given_longitude(x)), y]
+}
+
 /// Words what was done to lay a mesh out on the sphere.
 fn remarks(chart: &Chart) -> Vec<String> {
     let mut remarks = Vec::new();

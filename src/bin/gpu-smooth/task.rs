@@ -95,7 +95,7 @@ pub(crate) fn carry_out<T>(
     // The driver may start while the mesh is prepared.
     let (prepared, taken) = std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
-        let prepared = match Smoother::new(mesh) {
+        let prepared = match smoother(args, &file) {
             prepared if args.untangle && untangle::can_mend(&prepared) => {
                 drop(prepared);
                 follow.stage(Stage::Untangling);
@@ -121,8 +121,17 @@ pub(crate) fn carry_out<T>(
             (smoother, Some(&mended))
         }
     };
-    let taken = taken??;
+    let taken = match (taken??, smoother.topology().free_count()) {
+        (_, 0) => {
+            Taken::new(Backend::Cpu, Some("no vertex is free, and sliding is on the CPU".into()))
+        }
+        (taken, _) => taken,
+    };
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
+    let hanging = smoother.topology().hanging_nodes(&mesh.points).map_err(told)?;
+    if let Some(remark) = explain::hanging(&file, &hanging) {
+        follow.remark(&remark);
+    }
     if let Some(remark) = args.target.set(&file, &mut smoother, points)? {
         follow.remark(&remark);
     }
@@ -217,6 +226,18 @@ pub(crate) fn carry_out<T>(
     };
     let done = Done { file: &file, smoother: &smoother, outcome: &outcome, times, report };
     Ok(finish(done)?)
+}
+
+/// Prepares a mesh to be smoothed. If vertices slide, none needs to be free.
+fn smoother<'f>(args: &SmoothArgs, file: &'f MeshFile) -> Result<Smoother<'f>, MeshError> {
+    let slides = |error| match args.sliding.slide(file) {
+        Ok(Some(slide)) => Smoother::with_slide(file.mesh(), &slide).map_err(|_| error),
+        _ => Err(error),
+    };
+    match Smoother::new(file.mesh()) {
+        Err(error @ MeshError::NothingFree { .. }) => slides(error),
+        made => made,
+    }
 }
 
 /// Reads the written mesh again, and proves from the files alone that only vertices which may move have moved.
@@ -350,13 +371,12 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &MeshFile, error: &MeshErro
         return message.into();
     }
     let message = match error {
-        // Sweeps and steps along lines take turns.
         MeshError::NothingFree { .. }
             if args.sliding.slide && file.interface_vertices().is_empty() =>
         {
             let (path, error) = (file.path().display(), explain::nothing_free(file));
             format!(
-                "{path}: {error}, and --slide needs a free vertex too. Refine the mesh, so that it has vertices inside"
+                "{path}: {error}, and none can slide, as all are corners or held. Refine the mesh, so that it has vertices between"
             )
         }
         _ => explain::mesh_error(file, error),

@@ -4,6 +4,7 @@ use super::collector;
 use super::content::Content;
 use super::grids;
 use super::job::Job;
+use super::names;
 use super::targets::{TARGETS, Target, Write};
 use super::triangle_source;
 use crate::error::{ReadError, WriteError};
@@ -34,6 +35,7 @@ pub struct Conversion {
     content: Content,
     target: &'static Target,
     lost: Vec<String>,
+    renamed: Vec<String>,
 }
 
 impl Conversion {
@@ -68,13 +70,20 @@ impl Conversion {
         content.points.clone_from(&file.mesh().points);
         grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
-        Ok(Some(Conversion { content, target, lost }))
+        let renamed = names::fit(&target.holds, &mut content);
+        Ok(Some(Conversion { content, target, lost, renamed }))
     }
 
     /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
     /// always lost, and not listed.
     pub fn lost(&self) -> &[String] {
         &self.lost
+    }
+
+    /// Lists the names that change, as the format cannot hold them, or cannot tell them from others: one line for the
+    /// groups of each dimension and for each kind of data. Groups and data that were different stay so.
+    pub fn renamed(&self) -> &[String] {
+        &self.renamed
     }
 
     /// Lists the files that [`write`](Self::write) to `path` writes. A Triangle mesh without lines has no `.poly`,

@@ -96,7 +96,7 @@ fn names(job: &Job<'_>, out: &mut String) {
     if !rows.is_empty() {
         put!(out, "$PhysicalNames\n{}\n", rows.len());
         for (dimension, tag, name) in rows {
-            put!(out, "{dimension} {tag} \"{}\"\n", name.replace('"', "'"));
+            put!(out, "{dimension} {tag} \"{name}\"\n");
         }
         out.push_str("$EndPhysicalNames\n");
     }
@@ -214,7 +214,7 @@ fn section(
     let is_given = |place: &usize| !of(*place).iter().all(|value| value.is_nan());
     let rows: Vec<(u64, usize)> =
         numbers.zip(places).filter(|(_, place)| is_given(place)).collect();
-    let title = data.name.replace('"', "'");
+    let title = &data.name;
     put!(out, "${name}\n1\n\"{title}\"\n1\n0.0\n3\n0\n{padded}\n{}\n", rows.len());
     for (number, place) in rows {
         put!(out, "{number}");

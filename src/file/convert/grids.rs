@@ -52,7 +52,7 @@ pub(crate) fn write_sms(job: &Job<'_>) -> String {
         let Some(group) = job.tags.group(content, cell) else { continue };
         let is_line = content.cells.kinds[cell] == Kind::Line;
         if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
-            materials.insert(job.tags.number(group), name.replace('"', "'"));
+            materials.insert(job.tags.number(group), name);
         }
     }
     for (group, string) in strings(job) {
@@ -61,7 +61,7 @@ pub(crate) fn write_sms(job: &Job<'_>) -> String {
         before.iter().for_each(|&vertex| put!(out, " {}", job.number(vertex as usize)));
         put!(out, " -{}", job.number(*last as usize));
         match content.groups[group as usize].name() {
-            Some(name) => put!(out, " \"{}\"\n", name.replace('"', "'")),
+            Some(name) => put!(out, " \"{name}\"\n"),
             None => out.push('\n'),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::content::{Content, Data, Group};
 use super::sides;
+use super::spelling::Spelling;
 use super::tags::{Tags, decides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
@@ -20,6 +21,8 @@ pub(crate) struct Holds {
     pub(crate) groups: Groups,
     /// Whether groups of points, lines and surfaces have names.
     pub(crate) names: [bool; 3],
+    /// How names of groups and data are spelled.
+    pub(crate) spelling: Spelling,
     /// A kind of groups whose names belong to the format itself, such as Medit's lists; empty if there is none.
     pub(crate) own: &'static str,
     /// Whether the numbers of groups may be negative.
@@ -79,6 +82,7 @@ impl Holds {
         labels: false,
         groups: Groups::None,
         names: [false; 3],
+        spelling: Spelling::Any,
         own: "",
         negative: true,
         vertex_groups: false,
@@ -275,7 +279,7 @@ fn listed<'g>(groups: impl Iterator<Item = &'g Group>) -> String {
 }
 
 /// Lists the first names, and counts the rest.
-fn first(names: &[&str]) -> String {
+pub(super) fn first(names: &[&str]) -> String {
     const TOLD: usize = 8;
     let told = names[..names.len().min(TOLD)].join(", ");
     match names.len().saturating_sub(TOLD) {

@@ -79,9 +79,9 @@ impl<'a> Job<'a> {
         Some(&self.content.groups[group as usize])
     }
 
-    /// Returns the name of a group, or its number, as one word.
+    /// Returns the name of a group, or its number.
     pub(crate) fn word(&self, group: u32) -> String {
-        let name = self.content.groups[group as usize].name().map(one_word);
+        let name = self.content.groups[group as usize].name().map(str::to_owned);
         name.unwrap_or_else(|| self.tags.number(group).to_string())
     }
 
@@ -105,12 +105,6 @@ impl<'a> Job<'a> {
     pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
         self.content.cell_data.iter().filter(|data| self.holds.cell_data.holds(data))
     }
-}
-
-/// Replaces the blanks in a name by underscores.
-pub(crate) fn one_word(name: &str) -> String {
-    let words: Vec<&str> = name.split_whitespace().collect();
-    words.join("_")
 }
 
 /// Formats a value of some data, without a fraction if the data are whole numbers.

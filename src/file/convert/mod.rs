@@ -19,9 +19,11 @@ mod grids;
 mod holds;
 mod job;
 mod medit;
+mod names;
 mod netcdf;
 mod ply;
 mod sides;
+mod spelling;
 mod su2;
 mod surface;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Writes PLY.
 
 use super::content::Data;
-use super::job::{Job, one_word, text_of};
+use super::job::{Job, text_of};
 use crate::file::sink::Kind;
 use std::fmt::Write;
 
@@ -14,7 +14,7 @@ pub(crate) fn write_ply(job: &Job<'_>) -> String {
     out.push_str("property double x\nproperty double y\nproperty double z\n");
     for data in &data {
         let kind = if data.is_real { "double" } else { "int" };
-        put!(out, "property {kind} {}\n", one_word(&data.name));
+        put!(out, "property {kind} {}\n", data.name);
     }
     let faces = || {
         let is_face = |cell: &usize| content.cells.kinds[*cell].dimension() == 2;

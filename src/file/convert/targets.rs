@@ -2,6 +2,7 @@
 
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
+use super::spelling::Spelling;
 use super::{exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
 
@@ -32,6 +33,7 @@ const GMSH: Holds = Holds {
     labels: true,
     groups: Groups::PhysicalAndEntity,
     names: [true; 3],
+    spelling: Spelling::Quoted,
     negative: false,
     point_data: Numbers::All,
     cell_data: Numbers::All,
@@ -104,6 +106,7 @@ pub(crate) static TARGETS: [Target; 16] = [
             quadrilaterals: true,
             groups: Groups::OneOfLines,
             names: [false, true, false],
+            spelling: Spelling::Word,
             ..Holds::TRIANGLES
         },
         write: Write::One(su2::write),
@@ -143,6 +146,7 @@ pub(crate) static TARGETS: [Target; 16] = [
             heights: true,
             groups: Groups::One,
             names: [true; 3],
+            spelling: Spelling::Word,
             ..Holds::TRIANGLES
         },
         write: Write::One(surface::write_obj),
@@ -161,6 +165,7 @@ pub(crate) static TARGETS: [Target; 16] = [
             quadrilaterals: true,
             polygons: true,
             heights: true,
+            spelling: Spelling::Word,
             point_data: Numbers::Scalars,
             ..Holds::TRIANGLES
         },
@@ -176,6 +181,7 @@ pub(crate) static TARGETS: [Target; 16] = [
             labels: true,
             groups: Groups::One,
             names: [false, true, true],
+            spelling: Spelling::Quoted,
             ..Holds::TRIANGLES
         },
         write: Write::One(grids::write_sms),

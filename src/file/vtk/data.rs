@@ -189,9 +189,11 @@ impl Data<'_> {
         let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
         if self.binary {
             let size = size_of(kind)?;
-            // Real numbers are told apart by their bits.
+            // Real numbers are told apart by their bits, but a negative zero is zero.
+            let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
+            let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
-            names.extend(numbers.map(|number| Order::Big.signed(number)));
+            names.extend(numbers.map(|number| positive(Order::Big.signed(number))));
             label = label_of(kind);
         } else {
             for _ in 0..tuples {

@@ -6,6 +6,7 @@ use gpu_smooth::{Measure, Measured, MeshFile};
 
 use crate::html::page::escape;
 use crate::numbers::five;
+use crate::surface_args::as_in_file;
 
 /// How many triangles a list has.
 const LISTED: usize = 8;
@@ -30,8 +31,9 @@ pub(crate) struct Spot {
     /// The file's number or tag for the triangle, and its place in the file.
     label: u64,
     place: String,
-    /// The centroid of the triangle, and its longest edge, in units of the mesh.
+    /// The centroid of the triangle where it is drawn and as the file has it, and its longest edge, in units of the mesh.
     pub(crate) at: [f64; 2],
+    at_in_file: [f64; 2],
     pub(crate) size: f64,
     /// Shape and smallest angle (degrees), before and after.
     values: [[f64; 2]; 2],
@@ -62,13 +64,15 @@ pub(crate) fn spots(file: &MeshFile, states: [&Measured<'_>; 2]) -> Vec<Spot> {
         let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
         let measures = [Measure::Shape, Measure::MinAngle];
         let place = &places[&triangle];
+        let at = [0, 1].map(|axis| p[axis] / 3.0 + q[axis] / 3.0 + r[axis] / 3.0);
         Spot {
             triangle,
             list,
             state,
             label: place.label,
             place: place.to_string(),
-            at: [0, 1].map(|axis| p[axis] / 3.0 + q[axis] / 3.0 + r[axis] / 3.0),
+            at,
+            at_in_file: as_in_file(file, at),
             size: length(p, q).max(length(q, r)).max(length(r, p)),
             values: states.map(|state| measures.map(|measure| state.value(measure, triangle))),
             is_movable: can_move(triangle),
@@ -92,7 +96,8 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
              <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
         );
         for (i, spot) in of_list() {
-            let Spot { label, place, at: [x, y], values: [before, after], is_movable, .. } = spot;
+            let Spot { label, place, at_in_file: [x, y], is_movable, .. } = spot;
+            let [before, after] = spot.values;
             let held = if *is_movable { "" } else { " (fixed)" };
             let _ = write!(
                 text,

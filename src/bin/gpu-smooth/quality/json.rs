@@ -25,6 +25,7 @@ fn object(sheet: &Sheet) -> Result<Value, serde_json::Error> {
     value["triangles"] = sheet.triangles.into();
     value["free"] = sheet.free.into();
     value["flat"] = sheet.flat.into();
+    value["hanging_nodes"] = sheet.hanging_nodes.into();
     value["duplicate_vertices"] = sheet.duplicate_vertices.into();
     value["unused_vertices"] = sheet.unused_vertices.into();
     value["bad_triangles"] = serde_json::to_value(&sheet.bad)?;

@@ -14,6 +14,7 @@ use crate::quality::args::{QualityArgs, Threshold};
 use crate::quality::bins;
 use crate::report::QualityReport;
 use crate::streams::read;
+use crate::surface_args::as_in_file;
 use crate::tell;
 
 /// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
@@ -38,6 +39,7 @@ pub(crate) struct Sheet {
     /// Inverted and flat triangles: all of them for JSON, else the first ones, which are listed.
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
+    pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
     pub(crate) unused_vertices: usize,
 }
@@ -75,7 +77,9 @@ pub(crate) struct Worst {
     pub(crate) place: Place,
     /// The file's numbers or tags for its vertices.
     pub(crate) vertices: [u64; 3],
+    /// Its vertices as the file has them, even where longitudes are continued, and its centroid.
     pub(crate) corners: [[f64; 2]; 3],
+    pub(crate) at: [f64; 2],
     /// The values of the measures that were asked for.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether one of its vertices is free to move.
@@ -102,6 +106,7 @@ impl Sheet {
         let quality = Quality::on(surface, &mesh.points, &topology).map_err(refused)?;
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
+        let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
         let shot = Shot { title, points: &mesh.points };
         picture::write(&args.picture, &file, (&topology, surface), &[shot])?;
@@ -109,7 +114,11 @@ impl Sheet {
         Ok(Self {
             path: path.to_owned(),
             format: file.format().to_string(),
-            remarks: tell::remarks(&file, false).into_iter().chain(laid_out).collect(),
+            remarks: tell::remarks(&file, false)
+                .into_iter()
+                .chain(laid_out)
+                .chain(explain::hanging(&file, &hanging))
+                .collect(),
             vertices: file.original().points.len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
@@ -122,6 +131,7 @@ impl Sheet {
             violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
+            hanging_nodes: hanging.len(),
             duplicate_vertices: measured.duplicate_vertices().len(),
             unused_vertices: unused(&file, &measured),
         })
@@ -212,11 +222,16 @@ fn worst(
     let one = |&(t, _): &(usize, f64)| Worst {
         place: places[&t].clone(),
         vertices: mesh.triangles[t].map(|v| names[&v].label),
-        corners: mesh.triangles[t].map(|v| mesh.points[v as usize]),
+        corners: file.original().triangles[t].map(|v| file.original().points[v as usize]),
+        at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
         is_movable: mesh.triangles[t].iter().any(|&v| topology.free()[v as usize]),
     };
     found.iter().map(one).collect()
+}
+
+fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
 }
 
 fn violation(file: &MeshFile, measured: &Measured<'_>, threshold: &Threshold) -> Violation {

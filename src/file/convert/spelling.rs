@@ -1,0 +1,109 @@
+//! How a format spells names, and names that differ.
+
+use std::collections::HashMap;
+
+/// How a format spells names.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Spelling {
+    /// As they are.
+    Any,
+    /// Between quotation marks, so that a name has none of its own. Groups have numbers besides.
+    Quoted,
+    /// As one word, which alone tells what it names from others.
+    Word,
+}
+
+impl Spelling {
+    /// Spells a name as the format can hold it.
+    pub(super) fn of(self, name: &str) -> String {
+        match self {
+            Spelling::Any => name.to_owned(),
+            Spelling::Quoted => {
+                let held = |c: char| match c {
+                    '"' => '\'',
+                    c if c.is_control() => ' ',
+                    c => c,
+                };
+                name.chars().map(held).collect()
+            }
+            Spelling::Word => {
+                // A percent sign starts a comment in SU2.
+                let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '%';
+                let words: Vec<&str> =
+                    name.split(is_blank).filter(|word| !word.is_empty()).collect();
+                words.join("_")
+            }
+        }
+    }
+}
+
+/// Spells names as a format can hold them. A name that has to be changed gets one that no other has, nor any of `taken`;
+/// so does the later of two equal ones if the format tells by names alone. `spare` is the name in place of one of which
+/// nothing is left.
+pub(super) fn distinct(
+    names: &[&str],
+    spelling: Spelling,
+    taken: &[&str],
+    spare: impl Fn(usize) -> String,
+) -> Vec<String> {
+    // Each name that is given, with the number that the next one of that name ends in.
+    let mut given: HashMap<String, usize> =
+        taken.iter().map(|&name| (name.to_owned(), 2)).collect();
+    let mut spelled: Vec<Option<String>> = Vec::with_capacity(names.len());
+    for &name in names {
+        let stays = spelling.of(name) == name && !name.is_empty();
+        let is_new = stays && given.insert(name.to_owned(), 2).is_none();
+        let keeps = is_new || (stays && spelling != Spelling::Word);
+        spelled.push(keeps.then(|| name.to_owned()));
+    }
+    let name = |(at, kept): (usize, Option<String>)| {
+        kept.unwrap_or_else(|| {
+            let new = match spelling.of(names[at]) {
+                new if new.trim().is_empty() => spare(at),
+                new => new,
+            };
+            let Some(next) = given.get(&new).copied() else {
+                given.insert(new.clone(), 2);
+                return new;
+            };
+            let free = (next..).find(|end| !given.contains_key(&format!("{new}_{end}")));
+            let end = free.unwrap_or(next);
+            let other = format!("{new}_{end}");
+            given.insert(new, end + 1);
+            given.insert(other.clone(), 2);
+            other
+        })
+    };
+    spelled.into_iter().enumerate().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spelled(names: &[&str], spelling: Spelling) -> Vec<String> {
+        distinct(names, spelling, &["x"], |at| at.to_string())
+    }
+
+    #[test]
+    fn names_that_can_stay_do_and_all_others_differ_from_them() {
+        let names = ["a b", "a_b", "a\tb", "wall", "wall", "a_b_2", "50%", "", " ", "x"];
+        let words = ["a_b_3", "a_b", "a_b_4", "wall", "wall_2", "a_b_2", "50", "7", "8", "x_2"];
+        assert_eq!(spelled(&names, Spelling::Word), words);
+    }
+
+    /// Names between quotation marks are given numbers besides, so equal ones stay.
+    #[test]
+    fn only_quotation_marks_are_changed_between_them() {
+        let names = ["a\"b", "a'b", "wall", "wall", "in let", "a\nb"];
+        let quoted = ["a'b_2", "a'b", "wall", "wall", "in let", "a b"];
+        assert_eq!(spelled(&names, Spelling::Quoted), quoted);
+    }
+
+    #[test]
+    fn many_groups_of_one_name_differ() {
+        let names = vec!["wall"; 100_000];
+        let words = spelled(&names, Spelling::Word);
+        assert_eq!(words[99_999], "wall_100000");
+    }
+}
