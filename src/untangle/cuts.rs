@@ -21,6 +21,8 @@ use crate::untangle::pieces::{Boundary, Corner, Pieces};
 const TRIED: usize = 1024;
 /// The same for a line within one boundary, where all pairs are tried.
 const TRIED_WITHIN: usize = 256;
+/// The most by which chance makes a line seem worse: enough that trials differ, and that none begins with a bad line.
+const CHANCE: f64 = 1.3;
 /// The most corners from which paths are measured.
 const SOURCES: usize = 24;
 /// The most that a chain of a boundary may turn inward, in radians: a sixth of a turn.
@@ -43,6 +45,8 @@ pub(crate) enum Short {
     Both,
     /// The path of edges.
     Path,
+    /// As by `Both`, but another line may be taken that is nearly as good, by chance: the number tells trials apart.
+    ByChance(u32),
 }
 
 /// What was cut.
@@ -145,13 +149,15 @@ impl<'p> Cutter<'p> {
         let all = sampled(TRIED);
         let sources = match self.short {
             Short::Line => all.clone(),
-            Short::Both | Short::Path => sampled(SOURCES),
+            Short::Both | Short::Path | Short::ByChance(_) => sampled(SOURCES),
         };
         // The best line from each source.
         let lines = map_parts(sources, |_, from| {
             let paths = match self.short {
                 Short::Line => None,
-                Short::Both | Short::Path => Some(self.path_lengths(corner(from))),
+                Short::Both | Short::Path | Short::ByChance(_) => {
+                    Some(self.path_lengths(corner(from)))
+                }
             };
             let rated = |&to: &Place| {
                 let line = self.at(corner(from)).distance(self.at(corner(to)));
@@ -159,10 +165,15 @@ impl<'p> Cutter<'p> {
                     None => line,
                     Some(paths) => {
                         let path = self.reached(paths, corner(to));
+                        // How much they differ counts twice.
+                        let both = line.max(path).powi(3) / line.min(path).powi(2);
                         match self.short {
-                            // How much they differ counts twice.
-                            Short::Both => line.max(path).powi(3) / line.min(path).powi(2),
-                            _ => path,
+                            Short::Path => path,
+                            Short::ByChance(trial) => {
+                                let ends = [from, to].map(|place| corner(place).vertex);
+                                both * CHANCE.powf(chance(trial, ends))
+                            }
+                            Short::Line | Short::Both => both,
                         }
                     }
                 };
@@ -340,6 +351,15 @@ impl<'p> Cutter<'p> {
     }
 }
 
+/// A number from 0 to 1 for a trial and two vertices, without any pattern (SplitMix64).
+fn chance(trial: u32, [from, to]: [u32; 2]) -> f64 {
+    let seed = u64::from(trial).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut x = (u64::from(from) << 32 | u64::from(to)) ^ seed;
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
 /// The numbers of some corners of a boundary, `most` at most, evenly along it.
 fn samples(boundary: &Boundary, most: usize) -> impl Iterator<Item = usize> + use<> {
     let step = boundary.len().div_ceil(most.max(1)).max(1);
@@ -380,7 +400,7 @@ mod tests {
     #[test]
     fn pieces_of_a_ring_have_one_boundary_that_turns_inward_but_little() {
         let problem = ring();
-        for short in [Short::Line, Short::Both, Short::Path] {
+        for short in [Short::Line, Short::Both, Short::Path, Short::ByChance(1)] {
             let cuts = cut_ring(&problem, short);
             let mut cutter = Cutter::new(&problem, &areas(&problem), cuts.positions, short);
             for v in (0..problem.free_count()).filter(|&v| cuts.held[v]) {

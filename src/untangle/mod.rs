@@ -23,22 +23,35 @@ use cuts::Short;
 use state::{Assessment, Region, State};
 
 /// What is done in turn until the mesh is untangled. Cuts by each rule untangle some meshes that the other rules do not.
-const STAGES: [Stage; 7] = [
+const STAGES: [Stage; 15] = [
     Stage { start: Start::Near(2), sweeps: 10 },
     Stage { start: Start::Near(6), sweeps: 20 },
     Stage { start: Start::Means, sweeps: 10 },
-    Stage { start: Start::Cut(Short::Line), sweeps: 60 },
+    Stage { start: Start::Cut(Short::Line), sweeps: 50 },
     Stage { start: Start::Cut(Short::Both), sweeps: 100 },
     Stage { start: Start::Cut(Short::Path), sweeps: 150 },
+    Stage { start: Start::Cut(Short::ByChance(1)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(2)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(3)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(4)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(5)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(6)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(7)), sweeps: 100 },
+    Stage { start: Start::Cut(Short::ByChance(8)), sweeps: 100 },
     Stage { start: Start::Means, sweeps: 100 },
 ];
+
+/// After a cut, sweeps go on beyond those of the stage while the least area comes this much nearer to 0 in so many of them.
+const GOES_ON: (u32, f64) = (50, 0.5);
+/// The most sweeps after a cut, in units of those of the stage.
+const LONGEST: u32 = 4;
 
 /// If more than this share of the triangles are bad, all vertices move from the start.
 const MANY: f64 = 0.05;
 
 struct Stage {
     start: Start,
-    /// The most sweeps.
+    /// The number of sweeps after which the next stage begins. After a cut it is a multiple of those of [`GOES_ON`].
     sweeps: u32,
 }
 
@@ -166,7 +179,19 @@ impl Work<'_> {
                 }
             };
             let mut least = state.assess(&region).least;
-            for _ in 0..stage.sweeps {
+            let (often, share) = GOES_ON;
+            let most = match stage.start {
+                Start::Cut(_) => LONGEST * stage.sweeps,
+                Start::Near(_) | Start::Means => stage.sweeps,
+            };
+            let mut before = f64::NEG_INFINITY;
+            for sweep in 0..most {
+                if sweep % often == 0 {
+                    if sweep >= stage.sweeps && least < share * before {
+                        break;
+                    }
+                    before = least;
+                }
                 let epsilon = epsilon(least);
                 state.sweep(&region, epsilon);
                 if let Some(levels) = levels {

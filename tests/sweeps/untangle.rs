@@ -72,6 +72,14 @@ fn meshes_whose_boundary_was_taken_elsewhere_are_untangled() {
     }
 }
 
+/// The best lines of the cuts lead to meshes here that no sweep untangles. Lines that are nearly as good do, taken by chance.
+#[test]
+fn holes_that_the_best_cuts_do_not_untangle_are_untangled_by_others() {
+    let two = boundaries::two_holes(2000);
+    check("one dragged past the other", &boundaries::past(&two, 12));
+    check("swapped", &boundaries::swapped(&two, 8));
+}
+
 #[test]
 fn random_positions_are_not_taken_for_sizes() {
     // Among vertices at random places some triangles are sound by chance, and far larger than those of the mesh.
