@@ -89,8 +89,8 @@ pub struct Options {
     pub keep_altitude: bool,
     /// The measure by which the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as
     /// they are. Free vertices around the worst thousandth of the triangles (10 to 1000 of them) move so that the worst
-    /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little. Only for whole
-    /// runs, and not after one that was canceled.
+    /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little; where the worst
+    /// triangle of the mesh becomes no better, nothing moves. Only for whole runs, and not after one that was canceled.
     pub improve_worst: Option<WorstBy>,
     /// How metrics are differentiated.
     pub derivatives: Derivatives,

@@ -23,6 +23,9 @@ const PASSES: u32 = 10;
 /// The stage ends after a pass in which the worst badness of the mesh fell by less than this share. The share of the
 /// inverse mean ratio is half as much, as badness is its square.
 const LEAST_GAIN: f64 = 0.01;
+/// A pass is undone unless the worst badness of the mesh has fallen by more than this share: the first one by a thousandth of the
+/// measure, of which badness is the square, the following ones by more than rounding.
+const LEAST_KEPT: [f64; 2] = [2e-3, 1e-9];
 
 /// Returns the largest badness of a triangle with a free vertex.
 pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
@@ -69,8 +72,9 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
 }
 
 /// Improves the worst triangles of a mesh with its vertices at `positions`, in independent patches around them. Passes
-/// continue as long as the worst triangle of all becomes less bad and `goes_on`, called before each pass, allows it. No
-/// triangle becomes worse than the worst of its patch was. Returns the number of vertices that have moved.
+/// continue as long as the worst triangle of all becomes less bad and `goes_on`, called before each pass, allows it. A pass after
+/// which it is not is undone. No triangle becomes worse than the worst of its patch was. Returns the number of vertices that
+/// have moved.
 pub(crate) fn improve(
     problem: &Problem,
     rules: &Rules<'_>,
@@ -80,9 +84,12 @@ pub(crate) fn improve(
     let free = problem.free_count() as u32;
     let mut has_moved = vec![false; free as usize];
     let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MOST);
-    let mut last = f64::INFINITY;
-    for _ in 0..PASSES {
-        let badness = all(problem, rules.badness, positions);
+    let mut badness = all(problem, rules.badness, positions);
+    let mut worst = worst_of(problem, &badness);
+    for pass in 0..PASSES {
+        if !goes_on(positions) {
+            break;
+        }
         let is_movable = |&t: &u32| problem.triangles()[t as usize].iter().any(|&v| v < free);
         let mut bad: Vec<u32> = (0..badness.len() as u32).filter(is_movable).collect();
         let worse_first = |a: &u32, b: &u32| {
@@ -93,19 +100,27 @@ pub(crate) fn improve(
             bad.select_nth_unstable_by(count, worse_first);
             bad.truncate(count);
         }
-        let worst = bad.iter().map(|&t| badness[t as usize]).fold(0.0, f64::max);
-        let is_better = worst < last * (1.0 - LEAST_GAIN);
-        if !is_better || !goes_on(positions) {
-            break;
-        }
-        last = worst;
         let here = &*positions;
         let improved = map_parts(around(problem, &bad, RINGS), |_, vertices| {
             Patch::new(problem, rules, here, vertices).improve()
         });
-        for (v, to) in improved.into_iter().flatten().flatten() {
-            has_moved[v as usize] |= positions[v as usize] != to;
-            positions[v as usize] = to;
+        let moves: Vec<(u32, DVec2)> = improved.into_iter().flatten().flatten().collect();
+        let from: Vec<DVec2> = moves.iter().map(|&(v, _)| positions[v as usize]).collect();
+        moves.iter().for_each(|&(v, to)| positions[v as usize] = to);
+        badness = all(problem, rules.badness, positions);
+        let last = std::mem::replace(&mut worst, worst_of(problem, &badness));
+        let least = LEAST_KEPT[usize::from(pass > 0)];
+        let is_kept = worst < last * (1.0 - least);
+        if !is_kept {
+            moves.iter().zip(from).for_each(|(&(v, _), from)| positions[v as usize] = from);
+            break;
+        }
+        for (&(v, to), from) in moves.iter().zip(from) {
+            has_moved[v as usize] |= from != to;
+        }
+        let is_better = worst < last * (1.0 - LEAST_GAIN);
+        if !is_better {
+            break;
         }
     }
     has_moved.into_iter().filter(|moved| *moved).count()

@@ -148,6 +148,25 @@ fn triangles_that_cannot_be_improved_stay() {
     assert_eq!(outcome.improved, None);
 }
 
+/// The worst triangles are around a vertex that is at its best place already, and others are not as good as they could be.
+#[test]
+fn a_pass_that_leaves_the_worst_as_it_is_is_undone() {
+    let mut mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let first = mesh.points.len() as u32;
+    let rhombus = [[0.05, 0.0], [0.0, 0.005], [-0.05, 0.0], [0.0, -0.005], [0.0, 0.0]];
+    mesh.points.extend(rhombus.map(|[x, y]| [x + 9.0, y]));
+    mesh.triangles.extend((0..4).map(|k| [first + k, first + (k + 1) % 4, first + 4]));
+    let smoother = Smoother::new(&mesh).unwrap();
+    let usual = run(&smoother, &Options::default(), &Backend::Cpu);
+    for by in WorstBy::ALL {
+        let outcome = improved(&smoother, by, Options::default(), &Backend::Cpu);
+        let told = outcome.improved.unwrap();
+        assert_eq!(told.vertices, 0, "{told:?}");
+        assert_eq!((told.worst[0], told.f[0]), (told.worst[1], told.f[1]), "{told:?}");
+        assert_eq!(outcome.points, usual.points, "{told:?}");
+    }
+}
+
 #[test]
 fn improving_the_worst_ends_where_the_observer_says_so() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
