@@ -36,8 +36,9 @@ pub struct Outcome {
     /// last sweeps, and at most what f is above its ideal; `None` if they do not decay or are too few. After a run by EDGE with
     /// corrections, it includes what EDGE's p-norm leaves of f.
     pub remaining: Option<f64>,
-    /// Number of vertices that a guard kept from moving further at the end of a run that has otherwise converged.
-    /// Counted with [`Guard::Worst`](crate::Guard::Worst), or if the run ended for this reason ([`Stop::HeldBack`]).
+    /// Number of vertices that a guard kept from moving further at the end of a run that has otherwise converged, or has done
+    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. Without [`Guard::Worst`](crate::Guard::Worst) a converged run is then
+    /// said to have ended for this reason ([`Stop::HeldBack`]).
     pub held_back: usize,
     /// The share of the gain in f that is lost when positions are rounded to the digits that coordinates have, and
     /// vertices are set back because of it. Near 1 for a mesh as fine as its numbers.

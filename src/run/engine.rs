@@ -89,7 +89,7 @@ pub(crate) trait Engine: Send {
     /// else only the positions.
     fn save(&mut self, whole: bool) -> impl Future<Output = Result<EngineState, GpuError>> + Send;
 
-    /// Restores a saved state, before the first sweep. Returns whether the state is from this mesh and from an engine
+    /// Restores a saved state, before the first sweep or between two. Returns whether the state is from this mesh and from an engine
     /// that this one can continue. A state that is not whole leaves the engine without coarser levels.
     fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
 }

@@ -22,7 +22,8 @@ pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, posit
     }
 }
 
-fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
+/// Returns the largest inverse mean ratio among the triangles with a free vertex, infinite if one of them is inverted or flat.
+pub(crate) fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
     let free = problem.free_count() as u32;
     let ratio = |t: &[u32; 3]| {
         if t.iter().all(|&v| v >= free) {

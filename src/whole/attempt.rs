@@ -136,9 +136,9 @@ impl Attempt<'_> {
         let mut stop = end.stop;
         let mut held = 0;
         let step = plan.base_step(1.0);
-        if stop == Stop::Converged && step.shape_guard.is_finite() {
+        if matches!(stop, Stop::Converged | Stop::MaxSweeps) && step.shape_guard.is_finite() {
             held = held_back(problem, &end.positions, &step);
-            if held > 0 && options.guard == Guard::ByMetric {
+            if held > 0 && options.guard == Guard::ByMetric && stop == Stop::Converged {
                 stop = Stop::HeldBack;
             }
         }

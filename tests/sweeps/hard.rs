@@ -194,6 +194,11 @@ fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
         assert_eq!(outcome.stop, Stop::HeldBack, "{label}");
         assert!(outcome.held_back > 0, "{label}");
     }
+    // They are counted, too, where sweeps run out before.
+    let few = Options { max_sweeps: 30, ..options };
+    let outcome = run(&smoother, &few, &backends()[0]);
+    assert_eq!(outcome.stop, Stop::MaxSweeps);
+    assert!(outcome.held_back > 0);
     // A metric with a barrier has no guard.
     let outcome = run(&smoother, &Options::default(), &backends()[0]);
     assert_eq!((outcome.stop, outcome.held_back), (Stop::Converged, 0));

@@ -23,6 +23,7 @@ mod requests;
 mod resumed;
 mod safety;
 mod slide;
+mod stuck;
 mod targets;
 mod tolerance;
 mod untangle;

@@ -8,7 +8,7 @@ use gpu_smooth::{
     SmoothError, Smoother, Stop,
 };
 
-use super::{all_schemes, backends, name, perturbed, plate, support, with_points};
+use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
 
 /// A keeper that takes every checkpoint it can.
 #[derive(Default)]
@@ -227,6 +227,19 @@ fn keeping_positions_changes_no_bit() {
             let whole = smoother.run(&options, backend).unwrap();
             let kept = smoother.run_kept(&options, backend, None, &mut Often, &mut go_on).unwrap();
             assert_same(&whole, &kept, scheme);
+        }
+    }
+}
+
+/// Flat triangles are reopened within the run, after sweeps that were undone once.
+#[test]
+fn a_run_by_edge_that_reopens_triangles_goes_on_to_the_same_bits() {
+    for (seed, share) in [(87, 0.05), (5, 0.05)] {
+        let start = stuck::untangled_square(seed, share);
+        let smoother = Smoother::new(&start).unwrap();
+        for backend in backends() {
+            let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
+            assert_goes_on(&smoother, &options, backend, 3);
         }
     }
 }

@@ -253,7 +253,12 @@ impl Report {
             ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),
             ("canceled", None) => format!("interrupted after {sweeps}; more may gain more"),
             (_, None) => {
-                format!("stopped after {sweeps}, the most allowed (--max-sweeps){}", self.left())
+                let left = self.left();
+                let text = format!("stopped after {sweeps}, the most allowed (--max-sweeps){left}");
+                match self.held_back {
+                    0 => text,
+                    _ => format!("{text}; the shape guard holds back {held}"),
+                }
             }
         };
         if self.sweeps > 0 && self.best_sweep == 0 {

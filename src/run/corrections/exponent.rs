@@ -66,6 +66,8 @@ impl Corrections<'_> {
         match self.stage {
             Stage::Before { .. } => {}
             Stage::Correcting { length, .. } => self.begin_correcting(last, length),
+            // Corrections that the guard refuses by one exponent may be taken by the next.
+            Stage::Without { .. } if self.has_levels => self.begin_correcting(last, 1.0),
             Stage::Without { .. } => self.stage = Stage::Without { since: last },
         }
     }

@@ -44,6 +44,7 @@ impl Corrections<'_> {
             before - excess > share * before
         };
         match proposed {
+            _ if !self.has_levels => Some(Change::Build),
             0 if self.has_levels && !self.metric().is_smooth() => {
                 self.sharpness.is_multiple_of(REFIT_EVERY).then_some(Change::Fit)
             }
@@ -52,6 +53,14 @@ impl Corrections<'_> {
             _ if !self.accelerated && proposed != REFIT_AFTER => None,
             _ => dropped(self.fitted, REFIT_IF).then_some(Change::Fit),
         }
+    }
+
+    /// Drops the levels, so that they are built anew before the next correction. Returns the number of corrections proposed with the new
+    /// ones.
+    pub(super) fn drop_levels(&mut self, engine: &mut impl Engine) -> u32 {
+        engine.take_hierarchy();
+        self.has_levels = false;
+        0
     }
 
     /// Builds the levels, or fits them to the present stiffness, and hands them to the engine. Returns whether the

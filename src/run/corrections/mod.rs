@@ -2,6 +2,7 @@
 
 mod exponent;
 mod levels;
+mod reopening;
 mod words;
 
 use crate::error::GpuError;
@@ -98,6 +99,8 @@ pub(crate) struct Corrections<'a> {
     estimates: [f64; ESTIMATES],
     /// The error if there are no corrections, as the engine has no room for the levels.
     left_out: Option<GpuError>,
+    /// Whether triangles that lie flat at a low exponent have been reopened after it had doubled, or cannot be.
+    was_reopened: bool,
     /// Whether the engine had no room for the levels before the run continued from a saved state.
     was_left_out: bool,
 }
@@ -138,6 +141,7 @@ impl<'a> Corrections<'a> {
             fitted: 0,
             estimates: [f64::INFINITY; ESTIMATES],
             left_out: None,
+            was_reopened: false,
             was_left_out: false,
         }
     }
@@ -149,7 +153,8 @@ impl<'a> Corrections<'a> {
         let by_base = by_base.map(|omega| (base, omega));
         let others = plan.scheme.metrics().iter().filter(|&&metric| metric != base);
         let others = others.map(|&metric| (metric, OMEGA_ALTERNATING));
-        let kinds: Vec<_> = by_base.into_iter().chain(others).collect();
+        let reopening = reopening::kind(plan);
+        let kinds: Vec<_> = by_base.into_iter().chain(others).chain(reopening).collect();
         let of_exponent = |sharpness| {
             let step = move |&(metric, omega)| plan.step_with(metric, omega, sharpness);
             kinds.iter().map(step)
@@ -157,7 +162,7 @@ impl<'a> Corrections<'a> {
         exponents(plan).flat_map(of_exponent).collect()
     }
 
-    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends. Those that [reopen](reopening) triangles are not counted.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -180,7 +185,9 @@ impl<'a> Corrections<'a> {
                 }
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
+            let before = self.sharpness;
             self.record(objectives, history);
+            self.reopen(engine, history, self.sharpness > before).await?;
             if std::mem::take(&mut self.anew) {
                 engine.forget();
             }
@@ -305,6 +312,9 @@ impl<'a> Corrections<'a> {
         let mut length = Search::first_length(last_length, least_first);
         let step = self.step(OMEGA_BETWEEN);
         let mut proposal = engine.propose(&step, length, self.accelerated).await?;
+        // Levels by which a correction of all vertices leads uphill are no longer of the present stiffness.
+        let misleads = proposal.slope > 0.0 && !self.metric().is_smooth();
+        let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
         if proposal.slope < 0.0 && proposal.there.is_none() && step.shape_guard.is_finite() {
             proposal = engine.leave_out(length, !self.accelerated).await?;
         }
@@ -342,7 +352,7 @@ impl<'a> Corrections<'a> {
                 Stage::Without { since: done }
             }
             MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
-            _ => Stage::Correcting { since, length, proposed: proposed + 1, refused },
+            _ => Stage::Correcting { since, length, proposed, refused },
         };
         self.lowered.push(ideal + excess);
         // If f may rise, the engine stores the best state when it evaluates the objectives.

@@ -15,7 +15,8 @@ impl Corrections<'_> {
         };
         let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
         let levels = [self.built as u64, self.fitted as u64];
-        let flags = [self.settled, self.accelerated, self.is_left_out()].map(u64::from);
+        let flags = [self.settled, self.accelerated, self.is_left_out(), self.was_reopened];
+        let flags = flags.map(u64::from);
         let slope = [self.slope.is_some().into(), self.slope.unwrap_or(0.0).to_bits()];
         let mut words = vec![stage, at as u64, length.to_bits()];
         words.extend(counts.into_iter().chain(flags).chain(slope));
@@ -39,6 +40,7 @@ impl Corrections<'_> {
                 settled,
                 accelerated,
                 left_out,
+                was_reopened,
                 has_slope,
                 slope,
                 ref estimates @ ..,
@@ -48,7 +50,7 @@ impl Corrections<'_> {
                 fitted,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 9 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 10 + ESTIMATES }>()
         else {
             return false;
         };
@@ -100,6 +102,7 @@ impl Corrections<'_> {
         (self.built, self.fitted) = (built as usize, fitted as usize);
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
+        self.was_reopened = was_reopened != 0;
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
         self.estimates = estimates.map(f64::from_bits);
         true
