@@ -13,7 +13,7 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, MeshSize, Waiting};
+use crate::gpu::{DeviceMesh, Gpu, MeshSize, Waiting};
 use crate::layout::{Problem, prepare, prepare_to_slide};
 use crate::mesh::Mesh;
 use crate::metric::Metric;
@@ -189,6 +189,17 @@ impl<'a> Smoother<'a> {
     /// Returns the duration of [`Self::new`].
     pub fn prepare_time(&self) -> Duration {
         self.prepare
+    }
+
+    /// Uploads the mesh as [`DeviceMesh::new`] does, with the layout and the targets that are prepared already: sweeps then give
+    /// the same bits, and no more than the upload is left to do. Only a mesh with [`Mesh::fixed`] vertices is laid out again. A
+    /// field of targets is taken as it is at the vertices before a run; nothing slides on a device.
+    ///
+    /// # Errors
+    /// [`SmoothError::Gpu`] with [`GpuError::Limit`](crate::GpuError::Limit) if the mesh is too large for the device, and
+    /// [`SmoothError::Mesh`] if no vertex is free.
+    pub fn to_device(&self, gpu: &Gpu) -> Result<DeviceMesh, SmoothError> {
+        DeviceMesh::of(gpu, &self.mesh, &self.problem)
     }
 
     /// Returns the number of triangles, and the number of vertices that some triangle uses.

@@ -67,3 +67,34 @@ fn targets_that_do_not_fit_are_refused() {
     let error = Sweeps::new(&device_mesh, &options).err().unwrap();
     assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
 }
+
+/// What a smoother has prepared is not prepared again: with targets, and where fixed vertices are laid out in another way.
+#[test]
+fn a_mesh_from_a_smoother_is_swept_to_the_same_bits() {
+    let app = App::new();
+    let mut mesh = bad_plate(800);
+    // A vertex that no triangle uses.
+    mesh.points.push([0.3, 0.4]);
+    let targets = growing(&mesh);
+    let inside = Smoother::new(&mesh).unwrap().topology().free().iter().position(|&free| free);
+    let fixed = Mesh { fixed: vec![inside.unwrap() as u32], ..mesh.clone() };
+    let options = Options { method: Method::Sweeps, ..Options::default() };
+    for (mesh, with_targets) in [(&mesh, false), (&mesh, true), (&fixed, false), (&fixed, true)] {
+        let mut smoother = Smoother::new(mesh).unwrap();
+        let alone = match with_targets {
+            true => DeviceMesh::with_targets(&app.gpu, mesh, &targets).unwrap(),
+            false => DeviceMesh::new(&app.gpu, mesh).unwrap(),
+        };
+        if with_targets {
+            smoother.set_targets(&targets).unwrap();
+        }
+        let taken = smoother.to_device(&app.gpu).unwrap();
+        let swept = [&alone, &taken].map(|device_mesh| {
+            let mut sweeps = Sweeps::new(device_mesh, &options).unwrap();
+            app.submit(|encoder| sweeps.encode_sweeps(encoder, 6));
+            app.points(device_mesh)
+        });
+        assert_eq!(swept[0], swept[1]);
+        assert!(swept[0].iter().zip(&mesh.points).filter(|(a, b)| a != b).count() > 500);
+    }
+}

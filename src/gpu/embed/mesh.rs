@@ -68,32 +68,39 @@ impl DeviceMesh {
         Self::made(gpu, mesh, Some(targets))
     }
 
+    /// Does what [`Self::with_targets`] does, with the layout and the targets of a problem of the same mesh. Only a mesh with fixed vertices
+    /// is laid out again.
+    pub(crate) fn of(gpu: &Gpu, mesh: &Mesh, prepared: &Problem) -> Result<Self, SmoothError> {
+        if mesh.fixed.is_empty() && prepared.free_count() > 0 {
+            return Self::uploaded(gpu, mesh, prepared.clone());
+        }
+        let unconstrained = unconstrained(mesh);
+        let (_, mut problem) = prepare(&unconstrained)?;
+        if prepared.targets().is_some() {
+            problem.take_targets(prepared, &places(mesh, prepared));
+        }
+        Self::uploaded(gpu, mesh, problem)
+    }
+
     fn made(gpu: &Gpu, mesh: &Mesh, targets: Option<&Targets>) -> Result<Self, SmoothError> {
-        // Fixed vertices are laid out as free ones, and held by pins.
-        let unconstrained = match mesh.fixed.is_empty() {
-            true => Cow::Borrowed(mesh),
-            false => Cow::Owned(Mesh {
-                points: mesh.points.clone(),
-                triangles: mesh.triangles.clone(),
-                fixed: Vec::new(),
-            }),
-        };
-        let (topology, mut problem) = prepare(&unconstrained)?;
+        let unconstrained = unconstrained(mesh);
+        let (_, mut problem) = prepare(&unconstrained)?;
         if let Some(targets) = targets {
             targets.check_count(mesh.points.len())?;
             problem.set_targets(targets.maps());
         }
+        Self::uploaded(gpu, mesh, problem)
+    }
+
+    fn uploaded(gpu: &Gpu, mesh: &Mesh, problem: Problem) -> Result<Self, SmoothError> {
         let buffers = MeshBuffers::new(gpu, &problem, problem.positions())?;
         let numbers = scoped(&gpu.device, || {
             filled(gpu, "vertex numbers", problem.vertices(), Usage::STORAGE)
         })?;
         let vertex_count = mesh.points.len();
-        let unused = (0..).zip(&mesh.points).filter(|&(v, _)| topology.star(v).is_empty());
+        let places = places(mesh, &problem);
+        let unused = (0..).zip(&mesh.points).filter(|&(v, _)| places[v as usize] == NONE);
         let unused = unused.map(|(v, &point)| (v, point)).collect();
-        let mut places = vec![NONE; vertex_count];
-        for (place, &v) in (0..).zip(problem.vertices()) {
-            places[v as usize] = place;
-        }
         let free = problem.free_count() as u32;
         let mut fixed = Vec::new();
         for &vertex in &mesh.fixed {
@@ -295,4 +302,25 @@ impl DeviceMesh {
         }
         Ok(points)
     }
+}
+
+/// Returns the mesh without fixed vertices: on a device they are laid out as free ones, and held by pins.
+fn unconstrained(mesh: &Mesh) -> Cow<'_, Mesh> {
+    match mesh.fixed.is_empty() {
+        true => Cow::Borrowed(mesh),
+        false => Cow::Owned(Mesh {
+            points: mesh.points.clone(),
+            triangles: mesh.triangles.clone(),
+            fixed: Vec::new(),
+        }),
+    }
+}
+
+/// Returns the number in the problem of each vertex of the mesh; [`NONE`] for one that no triangle uses.
+fn places(mesh: &Mesh, problem: &Problem) -> Vec<u32> {
+    let mut places = vec![NONE; mesh.points.len()];
+    for (place, &v) in (0..).zip(problem.vertices()) {
+        places[v as usize] = place;
+    }
+    places
 }
