@@ -93,3 +93,16 @@ fn a_tangle_that_remains_is_listed_and_written_only_if_asked_for() {
     let run = folder.line("in.node out.node --keep-going");
     assert_eq!(run.code, Some(2), "{}", run.err);
 }
+
+#[test]
+fn the_time_limit_ends_untangling() {
+    let folder = folder(&support::tangle::turned_hole(60, 0.5));
+    let line = "in.node out.node --untangle --time-limit 0.000001";
+    let parts = &[
+        "--time-limit ended untangling. ",
+        " stayed inverted or flat after 1 sweep of untangling",
+    ];
+    folder.line(line).refused(parts);
+    assert!(!folder.path("out.node").exists());
+    folder.line("in.node out.node --untangle --engine cpu").clean();
+}

@@ -70,8 +70,8 @@ pub(crate) struct SmoothArgs {
     #[arg(long, value_name = "F|auto", help_heading = "Stopping", value_parser = desired, allow_negative_numbers = true)]
     pub(crate) desired: Option<Desired>,
 
-    /// Stop after this many seconds, counted from when the mesh begins to be read, and write the best mesh so far. The time that untangling
-    /// takes counts, but does not end it
+    /// Stop after this many seconds, counted from when the mesh begins to be read, and write the best mesh so far. A mesh that
+    /// is still being untangled then is written only with --keep-going
     #[arg(long, value_name = "SECONDS", help_heading = "Stopping", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<Duration>,
     /// Save the state of the run to FILE every five minutes, and when Ctrl-C or --time-limit ends it. FILE is removed once a run has

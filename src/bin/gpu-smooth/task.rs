@@ -101,7 +101,7 @@ pub(crate) fn carry_out<T>(
                 follow.stage(Stage::Untangling);
                 riding
                     .check_untangled()
-                    .and_then(|()| untangle::mend(args, show, &file, out))
+                    .and_then(|()| untangle::mend((args, show), start, &file, out))
                     .map(Prepared::Mended)
                     .map_err(Failure::from)
             }

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::Instant;
 
 use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Smoother, Untangled, Untangling};
 
@@ -21,23 +22,30 @@ pub(crate) struct Mended {
 
 /// Untangles a mesh that cannot be smoothed as it is.
 ///
-/// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before.
+/// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
+/// counts from `began`.
 pub(crate) fn mend(
-    args: &SmoothArgs,
-    show: &OutputArgs,
+    (args, show): (&SmoothArgs, &OutputArgs),
+    began: Instant,
     file: &MeshFile,
     out: &Path,
 ) -> Result<Mended, String> {
     let mesh = file.mesh();
+    let mut ended = None;
     let mut observe = |progress: &Untangling| {
         if show.verbose {
             let Untangling { sweep, bad } = progress;
             let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
             streams::say_beside(out, &text);
         }
-        match interrupt::is_requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if interrupt::is_requested() {
+            ended = Some("interrupted while untangling");
+        } else if args.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
+            ended = Some("--time-limit ended untangling");
+        }
+        match ended {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
         }
     };
     let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe)
@@ -47,9 +55,9 @@ pub(crate) fn mend(
         let mesh = Mesh { points, ..mesh.clone() };
         return Ok(Mended { mesh, bad_before, sweeps, moved });
     }
-    let mut message = still_tangled(file, &left, &hopeless, sweeps);
-    if interrupt::is_requested() {
-        message = format!("interrupted while untangling. {message}");
+    let mut message = still_tangled(file, (&left, &hopeless), sweeps, ended.is_some());
+    if let Some(ended) = ended {
+        message = format!("{ended}. {message}");
     }
     if !args.keep_going {
         return Err(message);
@@ -60,19 +68,25 @@ pub(crate) fn mend(
     }
 }
 
-/// Words why a mesh could not be untangled, with the first triangles that stay inverted.
+/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
+/// that untangling was ended before it gave up.
 fn still_tangled(
     file: &MeshFile,
-    left: &[BadTriangle],
-    hopeless: &[BadTriangle],
+    (left, hopeless): (&[BadTriangle], &[BadTriangle]),
     sweeps: u32,
+    was_ended: bool,
 ) -> String {
     let name = file.path().display();
     let (shown, count, why) = match hopeless.len() {
         0 => {
+            let sweeps =
+                if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") };
+            let perhaps = match was_ended {
+                true => "",
+                false => ". Perhaps the boundary crosses itself, or fixed vertices leave no room",
+            };
             let why = format!(
-                "stayed inverted or flat after {sweeps} sweeps of untangling. Perhaps the boundary crosses itself, or \
-                 fixed vertices leave no room; --keep-going writes the best mesh found"
+                "stayed inverted or flat after {sweeps} of untangling{perhaps}; --keep-going writes the best mesh found"
             );
             (left, left.len(), why)
         }
