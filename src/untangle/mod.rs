@@ -154,6 +154,7 @@ impl Work<'_> {
         let targets = target_areas(self.problem, self.problem.positions());
         let mut state = State::new(self.problem, targets);
         let mut hierarchy = None;
+        let mut tried = Vec::new();
         for stage in &STAGES {
             let (region, levels) = match stage.start {
                 Start::Near(rings) => {
@@ -168,7 +169,15 @@ impl Work<'_> {
                 Start::Means | Start::Cut(_) => {
                     let levels = &*hierarchy.get_or_insert_with(|| state.hierarchy());
                     let held = match stage.start {
-                        Start::Cut(short) => state.cut(short),
+                        Start::Cut(short) => {
+                            let held = state.cut(short);
+                            // Without holes all rules find the same cuts, or none.
+                            if tried.contains(&held) {
+                                continue;
+                            }
+                            tried.push(held.clone());
+                            held
+                        }
                         _ => vec![false; self.problem.positions().len()],
                     };
                     state.make_harmonic(levels, &held);
