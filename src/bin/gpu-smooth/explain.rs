@@ -188,7 +188,8 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
             file.path().display(),
             nothing_free(file),
             match file.interface_vertices() {
-                [] => "There is nothing to smooth",
+                [] =>
+                    "There is nothing to smooth, unless --slide lets some of them move along the boundary",
                 _ => "Let those between regions move: --free-interfaces",
             }
         ),

@@ -104,7 +104,9 @@ impl Report {
         row("min angle", angle(self.before.min_angle), angle(self.after.min_angle));
         row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
         row("worst imr", six(self.before.worst_imr), six(self.after.worst_imr));
-        if self.after.worst_movable_imr < self.after.worst_imr {
+        // Without a free vertex there is none.
+        let movable = self.after.worst_movable_imr;
+        if movable > 0.0 && movable < self.after.worst_imr {
             let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
             row("  of movable", six(before), six(after));
         }
