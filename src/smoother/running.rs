@@ -42,8 +42,7 @@ impl Smoother<'_> {
             .transpose()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
-        let is_beyond = || base.properties().barrier && self.is_beyond_precision(initial);
-        if !initial.is_finite() || is_beyond() {
+        if !initial.is_finite() || self.is_beyond_precision(base, initial) {
             let triangle = self.quality(&self.mesh.points)?.worst_triangle;
             let metric = base.properties().name;
             return Err(MeshError::BeyondPrecision { triangle, metric }.into());
@@ -72,14 +71,23 @@ impl Smoother<'_> {
         Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
     }
 
-    /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it, given the objective
-    /// by a metric with a barrier.
-    fn is_beyond_precision(&self, objective: f64) -> bool {
+    /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it as the metric does,
+    /// given the objective.
+    fn is_beyond_precision(&self, metric: Metric, objective: f64) -> bool {
         // Rounded areas have errors of some 1e-16 of the squared edges, so metrics of such triangles are far beyond this.
         const LEAST: f64 = 1e13;
-        // Some metrics are negative where the rounded area is.
-        objective.abs() * self.size().triangles as f64 > LEAST
-            && !self.problem.beyond_precision(self.problem.positions()).is_empty()
+        let beyond = || self.problem.beyond_precision(self.problem.positions());
+        if metric.properties().barrier {
+            // Some metrics are negative where the rounded area is.
+            let sum = objective.abs() * self.size().triangles as f64;
+            return sum > LEAST && !beyond().is_empty();
+        }
+        // The shape guard of EDGE would hold the vertices of such triangles.
+        let is_movable = |&t: &u32| {
+            let triangle = self.problem.triangles()[t as usize];
+            triangle.iter().any(|&v| (v as usize) < self.problem.free_count())
+        };
+        !metric.is_smooth() && beyond().iter().any(is_movable)
     }
 
     /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If

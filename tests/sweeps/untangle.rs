@@ -205,7 +205,9 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     let smoother = Smoother::new(&mesh).unwrap();
     assert_eq!(smoother.beyond_precision().len(), 1);
     // With a rounded area below zero f is finite, 8e30. Such a mesh once came back unsmoothed and was called converged.
-    for metric in Metric::ALL.iter().filter(|metric| metric.properties().barrier) {
+    // EDGE has no barrier, but its shape guard held the vertex where it was, and f ended 16 % above the least.
+    let refused = |metric: &&Metric| metric.properties().barrier || **metric == Metric::Edge;
+    for metric in Metric::ALL.iter().filter(refused) {
         for backend in crate::backends() {
             let options = Options { scheme: (*metric).into(), ..Options::default() };
             let run = smoother.run(&options, backend);
@@ -216,7 +218,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
         }
     }
 
-    // These need no area. Edge has no barrier either, but its shape guard holds the vertex where it is.
+    // These need no area.
     for metric in [Metric::Area, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = smoother.run(&options, &Backend::Cpu).unwrap();
