@@ -74,13 +74,13 @@ fn compare_finds_interpolated_data_that_are_wrong() {
     fs::write(folder.path("corner.gr3"), out.replace(corner, &other)).unwrap();
     folder
         .line("compare in.gr3 corner.gr3 --interpolate depth")
-        .refused(&["depth differs at 1 vertices that have not moved"]);
+        .refused(&["depth differs at 1 vertex that has not moved"]);
     let inside = out.lines().nth(2 + 35).unwrap();
     let other = inside.rsplit_once(' ').unwrap().0.to_owned() + " 2.75e9";
     fs::write(folder.path("inside.gr3"), out.replace(inside, &other)).unwrap();
     folder
         .line("compare in.gr3 inside.gr3 --interpolate depth")
-        .refused(&["1 values of depth are beyond all there were"]);
+        .refused(&["1 value of depth outside the range of the old ones"]);
 }
 
 #[test]

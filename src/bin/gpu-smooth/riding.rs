@@ -196,10 +196,16 @@ impl Riding {
                 beyond += usize::from(!(least..=most).contains(new));
             }
             if held > 0 {
-                problems.push(format!("{name} differs at {held} vertices that have not moved"));
+                let vertices = if held == 1 {
+                    "1 vertex that has"
+                } else {
+                    &format!("{held} vertices that have")
+                };
+                problems.push(format!("{name} differs at {vertices} not moved"));
             }
             if beyond > 0 {
-                problems.push(format!("{beyond} values of {name} are beyond all there were"));
+                let values = if beyond == 1 { "1 value" } else { &format!("{beyond} values") };
+                problems.push(format!("{values} of {name} outside the range of the old ones"));
             }
         }
         problems
@@ -214,7 +220,7 @@ impl Riding {
             _ => ("differ", "they are"),
         };
         Some(format!(
-            "{} {verb} only at vertices that have moved, and {it} within the values there were",
+            "{} {verb} only at vertices that have moved, and {it} within the range of the old values",
             listed(names.into_iter())
         ))
     }
