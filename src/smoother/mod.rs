@@ -175,7 +175,7 @@ impl<'a> Smoother<'a> {
 
     /// Returns the triangles that are neither inverted nor flat, but so flat, or so small beside the others, that their
     /// inverse mean ratio is not finite as computed in double precision from one of their corners. With one of them a run by
-    /// a metric that has a barrier may be refused ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
+    /// EDGE or a metric that has a barrier may be refused ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
     pub fn beyond_precision(&self) -> Vec<usize> {
         let beyond = self.problem.beyond_precision(self.problem.positions());
         self.problem.in_mesh(&beyond, self.topology.triangles())
