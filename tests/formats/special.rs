@@ -197,6 +197,20 @@ fn a_negative_zero_is_the_region_of_zero() {
     }
 }
 
+/// The numbers of points may be broken into lines anywhere, also where all but one of these lines have a point each.
+#[test]
+fn points_of_a_vtk_may_begin_on_the_line_of_the_keyword() {
+    let head = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n";
+    for between in [" ", "\t", "\x0b", " 0 0 0\n1 0 0 1 1 0 ", "\n\n"] {
+        let text = match between.contains('0') {
+            true => VTK.replace("\n0 0 0\n1 0 0\n1 1 0\n", between),
+            false => VTK.replace("float\n", &format!("float{between}")),
+        };
+        let file = assert_square("a.vtk", &format!("{head}{text}"), Format::Vtk);
+        assert_eq!(file.difference(&file), None, "{between:?}");
+    }
+}
+
 #[test]
 fn text_between_x_and_y_is_kept() {
     let head = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n";

@@ -176,12 +176,14 @@ fn points(
         return Ok(precision);
     }
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
-    // If points are not one in each row, their numbers may be broken into lines anywhere.
+    // If points are not one in each row, their numbers may be broken into lines anywhere, and the first may stand on the
+    // line of the keyword.
     let mut rest = cursor.clone();
     let mut done = 0;
+    let in_rows = if cursor.is_at_end() { count } else { 0 };
     let plain = each_row(
         cursor,
-        count,
+        in_rows,
         "points",
         sink,
         |cursor| {
@@ -199,7 +201,7 @@ fn points(
             Ok(())
         },
     );
-    if plain.is_ok() {
+    if plain.is_ok() && in_rows == count {
         return Ok(precision);
     }
     for index in 0..count {
