@@ -137,3 +137,14 @@ fn damaged_files_of_other_programs_never_panic() {
         assert!((few..rounds - few).contains(&read), "{format}: {read} of {rounds} were read");
     }
 }
+
+/// Writes a file of every layout for the fuzzer to start from, if the environment variable FUZZ_CORPUS names a folder.
+#[test]
+fn the_corpus_can_be_written() {
+    let Some(folder) = std::env::var_os("FUZZ_CORPUS") else { return };
+    let folder = std::path::Path::new(&folder).join("read");
+    fs::create_dir_all(&folder).unwrap();
+    for (index, made) in all(&base()).iter().enumerate() {
+        fs::write(folder.join(format!("layout{index}")), &made.bytes).unwrap();
+    }
+}
