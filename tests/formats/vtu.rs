@@ -66,6 +66,18 @@ fn the_vertex_is_told_whose_third_coordinate_differs() {
     assert_eq!(difference.other_place.location, Location::Line(5));
 }
 
+/// Some programs write the attribute without a number. VTK then takes one component.
+#[test]
+fn an_empty_number_of_components_is_one() {
+    for style in styles() {
+        let text = write(&base(), style);
+        let named = &b"Name='offsets'"[..];
+        let at = memchr::memmem::find(&text, named).unwrap();
+        let empty = [&text[..at], b"NumberOfComponents=\"\" ", &text[at..]].concat();
+        assert_eq!(folder(&empty).read("in.vtu").mesh().triangles, base().triangles, "{style:?}");
+    }
+}
+
 #[test]
 fn only_coordinates_change_in_every_encoding() {
     let mesh = base();

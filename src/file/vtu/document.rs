@@ -263,8 +263,9 @@ impl Tag<'_> {
             }
             _ => None,
         };
-        let components = match self.attribute("NumberOfComponents")? {
-            None => 1,
+        // VTK takes an empty number for one that is not there.
+        let components = match self.attribute("NumberOfComponents")?.as_deref().map(str::trim) {
+            None | Some("") => 1,
             Some(_) => self.number("NumberOfComponents")?,
         };
         Ok(Array {
