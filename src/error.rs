@@ -191,6 +191,14 @@ pub enum MeshError {
         /// All inverted or flat triangles, in ascending order.
         triangles: Vec<BadTriangle>,
     },
+    /// A part of the mesh has no boundary. It is a closed surface in space, and cannot be untangled in the plane.
+    #[error(
+        "the part of the mesh with triangle {triangle} has no boundary, so that it is a closed surface in space"
+    )]
+    Closed {
+        /// The first triangle of the part.
+        triangle: usize,
+    },
     /// The triangles around a free vertex overlap, though none is inverted: they wind more than once around it.
     #[error("the triangles around vertex {vertex} overlap: they wind {turns} times around it")]
     OverlappingStar {

@@ -77,6 +77,38 @@ impl Topology<'_> {
         loops
     }
 
+    /// Returns the first triangle of a part that has no boundary edge, if there is such a part. Parts are joined by edges. A
+    /// part without boundary is a closed surface, such as a sphere. Wherever its vertices lie in the plane, some of its
+    /// triangles are inverted or flat.
+    pub fn closed_part(&self) -> Option<usize> {
+        let mut seen = vec![false; self.triangles().len()];
+        let mut part = Vec::new();
+        for first in 0..seen.len() {
+            if seen[first] {
+                continue;
+            }
+            seen[first] = true;
+            part.push(first as u32);
+            let mut is_closed = true;
+            while let Some(triangle) = part.pop() {
+                for corner in 0..3 {
+                    match self.across(Side { triangle, corner }) {
+                        None => is_closed = false,
+                        Some(other) if !seen[other as usize] => {
+                            seen[other as usize] = true;
+                            part.push(other);
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+            if is_closed {
+                return Some(first);
+            }
+        }
+        None
+    }
+
     /// Returns the boundary edge after another. It goes around the vertex where that edge ends, from triangle to
     /// triangle, to the other end of the fan. The fans of a vertex share no triangle, so each triangle is visited once
     /// per corner.
@@ -108,4 +140,40 @@ pub fn signed_area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
     let relative: Vec<[f64; 2]> = corners.map(|p| [p[0] - x, p[1] - y]).collect();
     relative.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]).sum::<f64>()
         / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    /// An octahedron around the origin, seen from above, its poles at the same place.
+    const OCTAHEDRON: [[u32; 3]; 8] =
+        [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
+
+    fn closed(triangles: &[[u32; 3]]) -> Option<usize> {
+        let points = vec![
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [-1.0, 0.0],
+            [0.0, -1.0],
+            [0.0, 0.0],
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+            [2.0, 0.0],
+        ];
+        let mesh = Mesh { points, triangles: triangles.to_vec(), fixed: Vec::new() };
+        Topology::new(&mesh).unwrap().closed_part()
+    }
+
+    #[test]
+    fn a_part_without_boundary_is_found_among_others() {
+        assert_eq!(closed(&OCTAHEDRON), Some(0));
+        assert_eq!(closed(&OCTAHEDRON[..7]), None);
+        assert_eq!(closed(&OCTAHEDRON[..4]), None);
+        // Another part before it, which touches it in a vertex.
+        let both = [&[[6, 7, 8], [0, 6, 8]], &OCTAHEDRON[..]].concat();
+        assert_eq!(closed(&both), Some(2));
+    }
 }

@@ -106,8 +106,8 @@ pub struct Untangled {
 /// Transactions on Graphics 40 (2021). There is no proof that every mesh that can be untangled is.
 ///
 /// # Errors
-/// [`MeshError`] if the mesh cannot be read as one of the plane; see [`Topology::by_area`]. Triangles that stay
-/// inverted are no error: [`Untangled::left`] lists them.
+/// [`MeshError`] if the mesh cannot be read as one of the plane; see [`Topology::by_area`]. [`MeshError::Closed`] if a part of
+/// it has no boundary. Triangles that stay inverted are no error: [`Untangled::left`] lists them.
 pub fn untangle(
     mesh: &Mesh,
     stored: Precision,
@@ -117,6 +117,11 @@ pub fn untangle(
     let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
     let mut work = Work { mesh, topology: &topology, problem: &problem, stored };
     let before = work.bad_triangles(&mesh.points);
+    if !before.is_empty()
+        && let Some(triangle) = topology.closed_part()
+    {
+        return Err(MeshError::Closed { triangle });
+    }
     let is_free = |v: &u32| topology.free()[*v as usize];
     let is_hopeless = |bad: &BadTriangle| !bad.vertices.iter().any(is_free);
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();

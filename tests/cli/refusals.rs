@@ -291,6 +291,26 @@ fn files_of_other_kinds_are_errors() {
     folder.line("in.obj out.obj").refused(&["y of all vertices is 5, ", "Turn the mesh"]);
 }
 
+/// Untangling cannot help there, and would take long to give up.
+#[test]
+fn closed_surfaces_are_refused_without_advice_to_untangle() {
+    let vertices = "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n";
+    let above = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    let below = "f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n";
+    let sphere = format!("{vertices}{above}{below}");
+    let folder = Folder::new(&[("in.obj", &sphere), ("cup.obj", &sphere.replace("f 1 4 6\n", ""))]);
+    for arguments in ["in.obj out.obj", "in.obj out.obj --untangle"] {
+        let run = folder.line(arguments).refused(&[
+            "in.obj:7: triangle 1 belongs to a part of the mesh without boundary: a closed surface",
+            "Only meshes of the plane of x and y are smoothed",
+        ]);
+        assert!(!run.err.contains("--untangle"), "{}", run.err);
+    }
+    // An open one may also be a tangled mesh with heights.
+    let hint = "But if this is a surface in space that folds over itself";
+    folder.line("cup.obj out.obj").refused(&["Untangle the mesh first: --untangle", hint]);
+}
+
 #[test]
 fn quality_refuses_broken_files_with_the_same_messages() {
     let folder = Folder::new(&[("in.node", NODE), ("in.txt", "hello\n")]);

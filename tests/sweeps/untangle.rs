@@ -233,3 +233,13 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     let outcome = smoother.run(&Options::default(), &Backend::Cpu).unwrap();
     assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.1);
 }
+
+#[test]
+fn a_surface_without_boundary_is_refused_at_once() {
+    // A tetrahedron, seen from above.
+    let points = vec![[0.0, 0.0], [3.0, 0.0], [0.0, 3.0], [1.0, 1.0]];
+    let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]];
+    let closed = Mesh { points, triangles, fixed: Vec::new() };
+    let error = untangle(&closed, Precision::Double, &mut |_| ControlFlow::Continue(()));
+    assert_eq!(error.err(), Some(MeshError::Closed { triangle: 0 }));
+}

@@ -1,6 +1,8 @@
 //! Words what is wrong with a mesh in the terms of its file.
 
-use gpu_smooth::{BadTriangle, Format, HangingNode, Location, MeshError, MeshFile, Place};
+use gpu_smooth::{
+    BadTriangle, Format, HangingNode, Location, MeshError, MeshFile, Place, Topology,
+};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -82,6 +84,11 @@ pub(crate) fn are_across(file: &MeshFile, bad: &[BadTriangle]) -> bool {
         && bad.iter().any(is_far)
 }
 
+/// Returns a triangle of a part of the mesh without boundary, if there is one.
+fn closed_part(file: &MeshFile) -> Option<usize> {
+    Topology::new(file.mesh()).ok().filter(|_| file.chart().is_none())?.closed_part()
+}
+
 /// Words a remark on vertices that hang on edges of other triangles, if there are such.
 pub(crate) fn hanging(file: &MeshFile, nodes: &[HangingNode]) -> Option<String> {
     let HangingNode { vertex, edge: [a, b] } = *nodes.first()?;
@@ -140,13 +147,16 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
                     file.path().display()
                 );
             }
-            let remedy = match are_across(file, triangles) {
-                true => {
-                    "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again, as at 180 degrees"
-                }
-                false => {
-                    "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
-                }
+            let is_across = are_across(file, triangles);
+            if !is_across && let Some(triangle) = closed_part(file) {
+                return mesh_error(file, &MeshError::Closed { triangle });
+            }
+            let remedy = if is_across {
+                "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again, as at 180 degrees"
+            } else if file.data_names().iter().any(|name| name == "z") {
+                "Untangle the mesh first: --untangle. But if this is a surface in space that folds over itself in the plane of x and y, it cannot be smoothed"
+            } else {
+                "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
             };
             let count = triangles.len();
             match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
@@ -158,6 +168,14 @@ pub(crate) fn mesh_error(file: &MeshFile, error: &MeshError) -> String {
                     list(first, count, "--report FILE")
                 ),
             }
+        }
+        MeshError::Closed { triangle } => {
+            let place = file.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space. \
+                 Only meshes of the plane of x and y are smoothed",
+                place.label
+            )
         }
         MeshError::EdgeOfThree { edge, ref triangles } => {
             let places = file.triangle_places(triangles.iter().copied());
