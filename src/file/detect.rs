@@ -1,7 +1,8 @@
 //! Tells which format a file is in, first by its content, then by its ending.
 
 use crate::error::ReadError;
-use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, STL, TRIANGLE};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, STL, TRIANGLE};
+use crate::file::mike;
 use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
 use crate::file::syntax::Syntax;
@@ -35,6 +36,11 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
     if let Some(family) = by_content().find(promised).or_else(|| by_content().next()) {
         return of(source, family);
+    }
+    // Files of MIKE may start with any numbers. Their ending is also that of Medit.
+    let [first, second, _] = first_rows(source, Syntax::PLAIN);
+    if mike::opens(&first, &second) {
+        return of(source, &MIKE);
     }
     if TRIANGLE.has_ending_of(&source.path) {
         return Ok(Content::Triangle(Names::of(&source.path)));
@@ -206,7 +212,7 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 22] = [
+        let cases: [(&[u8], &str); 26] = [
             (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
             (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
             (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
@@ -219,7 +225,11 @@ mod tests {
             (b"\x89HDF\r\n", "HDF5"),
             (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
             (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM is not read"),
-            (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI) is not read"),
+            (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI)"),
+            (b"100000 1014 4 PROJCS[\"WGS 84 / UTM zone 32N\"]\n1 0 0 -5e0 1\n", "MIKE (DHI)"),
+            (b"4 LONG/LAT\n 1 4.5 55.5 -3 0\n", "MIKE (DHI)"),
+            (b"Node Number = 3\nCell Number = 1\n1 1 2 3 1\n", "FVCOM"),
+            (b"3 islands\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),
             (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),

@@ -4,8 +4,8 @@ use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
-    adcirc, cgns, container, exodus, freefem, gmsh, med, medit, meditb, obj, off, packed, ply,
-    selafin, sms, stl, su2, vtk, vtu, xdmf,
+    adcirc, cgns, container, exodus, freefem, fvcom, gmsh, med, medit, meditb, mike, obj, off,
+    packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -50,6 +50,8 @@ impl Family {
             Format::Ply | Format::PlyBinary => &PLY,
             Format::Adcirc => &ADCIRC,
             Format::Sms2dm => &SMS,
+            Format::Mike => &MIKE,
+            Format::Fvcom => &FVCOM,
             Format::FreeFem => &FREEFEM,
             Format::Selafin => &SELAFIN,
             Format::Stl | Format::StlBinary => &STL,
@@ -122,6 +124,9 @@ pub(crate) static ADCIRC: Family = family(
 );
 static SMS: Family =
     family("SMS 2dm", &[".2dm"], &[b"MESH2D", b"mesh2d", b"Mesh2D"], reader::<sms::Sms>());
+pub(crate) static MIKE: Family =
+    family("MIKE (DHI)", &[".mesh"], &[b"100079 ", b"100079\t"], reader::<mike::Mike>());
+static FVCOM: Family = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
 pub(crate) static FREEFEM: Family =
     family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
 static SELAFIN: Family = family(
@@ -166,8 +171,6 @@ static FLUENT: Family =
 static MFEM: Family =
     unread("MFEM", &[], &[b"MFEM mesh", b"MFEM NC mesh"], "Save it as VTK: Mesh::PrintVTK of MFEM");
 static DOLFIN: Family = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
-static MIKE: Family = unread("MIKE (DHI)", &[], &[b"100079 ", b"100079\t"], BY_OTHERS);
-static FVCOM: Family = unread("FVCOM", &[], &[b"Node Number"], BY_OTHERS);
 static COMSOL: Family =
     unread("COMSOL", &[".mphtxt", ".mphbin"], &[b"# Created by COMSOL"], "Export the mesh as VTK");
 static TECPLOT: Family =
@@ -204,6 +207,8 @@ pub(crate) static FAMILIES: [&Family; 41] = [
     &OFF,
     &ADCIRC,
     &SMS,
+    &MIKE,
+    &FVCOM,
     &FREEFEM,
     &SELAFIN,
     &VTK_XML,
@@ -223,8 +228,6 @@ pub(crate) static FAMILIES: [&Family; 41] = [
     &FLUENT,
     &MFEM,
     &DOLFIN,
-    &MIKE,
-    &FVCOM,
     &COMSOL,
     &TECPLOT,
     &AVS,

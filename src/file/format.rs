@@ -47,6 +47,10 @@ pub enum Format {
     Adcirc,
     /// SMS's `.2dm`.
     Sms2dm,
+    /// MIKE's `.mesh` (DHI).
+    Mike,
+    /// FVCOM's grid, `CASE_grd.dat`.
+    Fvcom,
     /// FreeFem's `.msh`.
     FreeFem,
     /// TELEMAC's SELAFIN, in either byte order and precision.
@@ -67,7 +71,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 28] = [
+    pub const ALL: [Format; 30] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -88,6 +92,8 @@ impl Format {
         Format::PlyBinary,
         Format::Adcirc,
         Format::Sms2dm,
+        Format::Mike,
+        Format::Fvcom,
         Format::FreeFem,
         Format::Selafin,
         Format::Stl,
@@ -121,6 +127,8 @@ impl Format {
             Format::PlyBinary => "PLY binary",
             Format::Adcirc => "ADCIRC or SCHISM grid",
             Format::Sms2dm => "SMS 2dm",
+            Format::Mike => "MIKE mesh",
+            Format::Fvcom => "FVCOM grid",
             Format::FreeFem => "FreeFem .msh",
             Format::Selafin => "SELAFIN",
             Format::Stl => "STL ASCII",

@@ -100,8 +100,8 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         }
         // A depth is a height with the other sign.
         let turned = match (file.format(), format) {
-            (Format::Adcirc, Format::Sms2dm) => Some(("depth", "z")),
-            (Format::Sms2dm, Format::Adcirc) => Some(("z", "depth")),
+            (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => Some(("depth", "z")),
+            (Format::Sms2dm | Format::Mike, Format::Adcirc) => Some(("z", "depth")),
             _ => None,
         };
         if let Some((from, to)) = turned

@@ -123,7 +123,7 @@ fn list_of(made: &Made) -> &'static str {
         Format::Su2 => "NPOIN",
         Format::Medit | Format::MeditBinary => "Vertices",
         Format::Obj => "the list of v rows",
-        Format::Adcirc => "the list of nodes",
+        Format::Adcirc | Format::Mike | Format::Fvcom => "the list of nodes",
         Format::Sms2dm => "the list of ND rows",
         Format::FreeFem | Format::Off | Format::Ply | Format::PlyBinary => "the list of vertices",
         Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",

@@ -109,10 +109,13 @@ pub(crate) fn remarks(file: &MeshFile, slides: bool) -> Vec<String> {
     remarks
 }
 
-/// Words a remark if an ADCIRC, SCHISM, 2dm or SELAFIN mesh seems to be in longitude and latitude, at latitudes where a degree
-/// of longitude is shorter by more than a few percent.
+/// Words a remark if a mesh in a format of coastal models seems to be in longitude and latitude, at latitudes where a degree of
+/// longitude is shorter by more than a few percent.
 pub(crate) fn degrees(file: &MeshFile) -> Option<String> {
-    let is_of_oceans = matches!(file.format(), Format::Adcirc | Format::Sms2dm | Format::Selafin);
+    let is_of_oceans = matches!(
+        file.format(),
+        Format::Adcirc | Format::Sms2dm | Format::Mike | Format::Fvcom | Format::Selafin
+    );
     let points = &file.mesh().points;
     let fits = |&[x, y]: &[f64; 2]| x.abs() <= 360.0 && y.abs() < 90.0;
     let middle = points.iter().map(|p| p[1]).sum::<f64>() / points.len() as f64;

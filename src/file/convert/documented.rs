@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 20] = [
+const ROWS: [Row; 22] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -156,6 +156,21 @@ const ROWS: [Row; 20] = [
             "material",
             "materials with the names of `MAT` rows, node strings",
             "linear elements",
+        ],
+    ),
+    row(
+        &[Format::Mike],
+        "text, with a first row as before 2012 or since, triangles or both kinds of elements",
+        ["quadrilaterals", "–", "codes of vertices", ""],
+    ),
+    row(
+        &[Format::Fvcom],
+        "text as Fortran reads it, with depths behind the coordinates or without",
+        [
+            "–",
+            "–",
+            "nothing",
+            "other files of a case, which may repeat coordinates (`_dep.dat`, `_cor.dat`, `_spg.dat`), stay as they are",
         ],
     ),
     row(

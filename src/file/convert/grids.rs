@@ -7,19 +7,19 @@ use crate::file::sink::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
-/// Turns depths into the third coordinates of a `.2dm`, or the reverse. In SMS z is positive upwards, and SMS opens a
-/// grid of ADCIRC with minus its depths as z.
+/// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS and MIKE z is positive upwards,
+/// and SMS opens a grid of ADCIRC with minus its depths as z.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
     match (from, to) {
-        (Format::Adcirc, Format::Sms2dm) => {
+        (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => {
             if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
                 let depths = content.point_data.remove(at).values;
                 content.heights = depths.into_iter().map(minus).collect();
             }
         }
-        (Format::Sms2dm, Format::Adcirc) => {
+        (Format::Sms2dm | Format::Mike, Format::Adcirc) => {
             let vertices = 0..content.points.len();
             let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
             (content.heights, content.height) = (Vec::new(), 0.0);

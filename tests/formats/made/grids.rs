@@ -12,7 +12,17 @@ const TRIANGLE: usize = PROBED.1;
 const CELL: usize = TRIANGLE + 1;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
-    vec![fort_14(mesh), gr3(mesh), sms(mesh), sms_in_order(mesh), freefem(mesh)]
+    vec![
+        fort_14(mesh),
+        gr3(mesh),
+        sms(mesh),
+        sms_in_order(mesh),
+        mike(mesh),
+        mike_of_2011(mesh),
+        fvcom(mesh),
+        fvcom_of_fortran(mesh),
+        freefem(mesh),
+    ]
 }
 
 /// Numbers of nodes and elements that are not consecutive.
@@ -92,6 +102,71 @@ fn sms_in_order(mesh: &Mesh) -> Made {
     text.lists.pop();
     let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
     text.made("nodes first", "in.2dm", Format::Sms2dm, mesh.clone(), probes)
+}
+
+/// A mesh with a quadrilateral among its triangles, whose fourth nodes are 0.
+fn mike(mesh: &Mesh) -> Made {
+    let mut text = Text::new("100079  1000  ");
+    text.count(mesh.points.len());
+    text.put(" PROJCS[\"WGS_1984_UTM_Zone_32N\",GEOGCS[\"GCS WGS 1984\"],UNIT[\"Meter\",1]]\n");
+    let vertices = text
+        .rows(points(mesh).map(|(i, at)| format!("{:>6} {at} {} {}", 100 + 3 * i, z(i), i % 3)));
+    let cells = cells(mesh);
+    text.count(cells.len());
+    text.put("\t4\t25\n");
+    let triangles = text.rows(cells.iter().enumerate().map(|(i, cell)| {
+        let fourth = if cell.len() == 3 { " 0" } else { "" };
+        format!("{} {}{fourth}", 9 + 2 * i, sparse(cell))
+    }));
+    let probes = [(142, vertices[VERTEX]), (9 + 2 * CELL as u64, triangles[CELL])];
+    let mesh = fixing(mesh, QUADRILATERAL);
+    text.made("with a quadrilateral", "in.mesh", Format::Mike, mesh, probes)
+}
+
+/// A mesh as it was written before 2012, of triangles alone.
+fn mike_of_2011(mesh: &Mesh) -> Made {
+    let mut text = Text::new("");
+    text.count(mesh.points.len());
+    text.put("  LONG/LAT\n");
+    let vertices = text.rows(points(mesh).map(|(i, at)| format!("{} {at} -5 {}", i + 1, i % 2)));
+    text.count(mesh.triangles.len());
+    text.put("  3  21\n");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(i, t)| format!("{}\t{}", i + 1, joined(t, 1))));
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
+    text.made("before 2012", "in.mesh", Format::Mike, mesh.clone(), probes)
+}
+
+fn fvcom(mesh: &Mesh) -> Made {
+    let mut text = Text::new("Node Number = ");
+    text.count(mesh.points.len());
+    text.put("\nCell Number = ");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(i, t)| format!("{0} {1} {0}", i + 1, joined(t, 1))));
+    let vertices = text.rows(points(mesh).map(|(i, at)| format!("{} {at} {}", i + 1, z(i))));
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
+    text.made("with depths", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
+}
+
+/// A grid with commas and comments, without depths.
+fn fvcom_of_fortran(mesh: &Mesh) -> Made {
+    let mut text = Text::new("Node Number=");
+    text.count(mesh.points.len());
+    text.put(" ! of the bay\n\n  cell number =\t");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(i, [a, b, c])| {
+        let [a, b, c] = [a, b, c].map(|v| 100 + 3 * v);
+        format!("{} , {a},{b} ,\t{c} /", 9 + 2 * i)
+    }));
+    let vertices = text.rows(
+        mesh.points.iter().enumerate().map(|(i, [x, y])| format!("  {}\t{x} {y} /", 100 + 3 * i)),
+    );
+    let probes = [(142, vertices[VERTEX]), (9 + 2 * TRIANGLE as u64, triangles[TRIANGLE])];
+    text.made("with commas", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
 }
 
 fn freefem(mesh: &Mesh) -> Made {
