@@ -58,7 +58,11 @@ impl Smoother<'_> {
             },
             (None, _) => None,
         };
-        let target = goal.as_ref().map(|goal| initial - goal.fraction * (initial - goal.desired));
+        let target = goal.as_ref().map(|goal| match goal.desired < initial {
+            true => initial - goal.fraction * (initial - goal.desired),
+            // Reached from the start, also where a device's f is a little above this one.
+            false => 2.0 * initial + 1.0,
+        });
 
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut keeping = Keeping::new(keeper);

@@ -1,7 +1,7 @@
 //! Goals: the paper's test of convergence, with all its schemes.
 
 use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
-use gpu_smooth::{Backend, Desired, Goal, Metric, Options, Sharpness, Smoother, Stop};
+use gpu_smooth::{Backend, Desired, Goal, Mesh, Metric, Options, Sharpness, Smoother, Stop};
 use std::sync::OnceLock;
 
 /// The optimum of a metric on the perturbed plate, nearly: as over-relaxed sweeps on the CPU find it.
@@ -39,6 +39,28 @@ fn both_engines_reach_goals_at_the_same_sweep() {
             // Near slivers, the last digits of a comparison decide whether EDGE takes a step.
             let bound = if base == Metric::Edge { 1e-4 } else { 1e-6 };
             assert!((f_gpu / f_cpu - 1.0).abs() < bound, "{label}: {f_gpu} for {f_cpu}");
+        }
+    }
+}
+
+/// What the runs that look for the optimum gain is rounding there.
+#[test]
+fn the_optimum_is_reached_from_the_start_on_an_optimal_mesh() {
+    // The one free vertex is in the center of its neighbors.
+    let points = (0..9).map(|i| [f64::from(i % 3) / 2.0, f64::from(i / 3) / 2.0]).collect();
+    let cells = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
+    let halves = cells.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let mesh = Mesh { points, triangles: halves.collect(), fixed: Vec::new() };
+    let smoother = Smoother::new(&mesh).unwrap();
+    for name_of_scheme in ["imr", "rms", "area+imr"] {
+        let goal = Some(Goal { fraction: 0.95, desired: Desired::Auto });
+        let options = Options { goal, scheme: scheme(name_of_scheme), ..Options::default() };
+        for backend in backends() {
+            let outcome = run(&smoother, &options, backend);
+            let label = format!("{name_of_scheme} on the {}", name(backend));
+            assert_eq!((outcome.stop, outcome.sweeps), (Stop::Reached, 0), "{label}");
+            assert_eq!(outcome.goal.unwrap().best_fraction, 1.0, "{label}");
+            assert!(outcome.points == mesh.points, "{label}");
         }
     }
 }
