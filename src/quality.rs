@@ -98,7 +98,7 @@ impl Quality {
 
         let tallies = map_parts(triangles.chunks(1024), |chunk, part| {
             let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
-                let movable = corners.iter().any(|&v| topology.free()[v as usize]);
+                let movable = topology.can_move(chunk * 1024 + t);
                 let lengths = surface.lengths_in(points, corners);
                 tally.and(&one(points, corners, lengths, mean_area, chunk * 1024 + t, movable))
             };

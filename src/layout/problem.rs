@@ -160,6 +160,11 @@ impl Problem {
         self.ring_start.len() - 1
     }
 
+    /// Whether one of these vertices, those of a triangle, is free.
+    pub(crate) fn can_move(&self, triangle: &[u32; 3]) -> bool {
+        triangle.iter().any(|&v| (v as usize) < self.free_count())
+    }
+
     /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last neighbor.
     pub fn ring_start(&self) -> &[u32] {
         &self.ring_start

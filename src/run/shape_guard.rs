@@ -24,9 +24,8 @@ pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, posit
 
 /// Returns the largest inverse mean ratio among the triangles with a free vertex, infinite if one of them is inverted or flat.
 pub(crate) fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
-    let free = problem.free_count() as u32;
     let ratio = |t: &[u32; 3]| {
-        if t.iter().all(|&v| v >= free) {
+        if !problem.can_move(t) {
             return 1.0;
         }
         problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()

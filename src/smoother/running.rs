@@ -87,11 +87,8 @@ impl Smoother<'_> {
             return sum > LEAST && !beyond().is_empty();
         }
         // The shape guard of EDGE would hold the vertices of such triangles.
-        let is_movable = |&t: &u32| {
-            let triangle = self.problem.triangles()[t as usize];
-            triangle.iter().any(|&v| (v as usize) < self.problem.free_count())
-        };
-        !metric.is_smooth() && beyond().iter().any(is_movable)
+        let can_move = |&t: &u32| self.problem.can_move(&self.problem.triangles()[t as usize]);
+        !metric.is_smooth() && beyond().iter().any(can_move)
     }
 
     /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If

@@ -129,6 +129,12 @@ impl<'m> Topology<'m> {
         &self.free
     }
 
+    /// Whether a triangle has a free vertex. Other triangles stay as they are in a run. False for a triangle that the mesh
+    /// does not have.
+    pub fn can_move(&self, triangle: usize) -> bool {
+        self.triangles.get(triangle).is_some_and(|t| t.iter().any(|&v| self.free[v as usize]))
+    }
+
     /// Returns the number of free vertices.
     pub fn free_count(&self) -> usize {
         self.free.iter().filter(|&&f| f).count()

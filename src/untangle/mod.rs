@@ -122,8 +122,7 @@ pub fn untangle(
     {
         return Err(MeshError::Closed { triangle });
     }
-    let is_free = |v: &u32| topology.free()[*v as usize];
-    let is_hopeless = |bad: &BadTriangle| !bad.vertices.iter().any(is_free);
+    let is_hopeless = |bad: &BadTriangle| !topology.can_move(bad.triangle);
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
     let mut result = Untangled {
         points: mesh.points.clone(),
@@ -243,12 +242,10 @@ impl Work<'_> {
         let triangles = self.topology.triangles();
         let mut bad = bad_triangles(points, triangles);
         let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
-        let is_free = |v: &u32| self.topology.free()[*v as usize];
         let beyond = self.problem.beyond_precision(&self.problem.normalized(points, Vec::new()));
         for triangle in self.problem.in_mesh(&beyond, triangles) {
-            let vertices = triangles[triangle];
-            if !exact.contains(&triangle) && vertices.iter().any(is_free) {
-                bad.push(BadTriangle { triangle, vertices, flat: true });
+            if !exact.contains(&triangle) && self.topology.can_move(triangle) {
+                bad.push(BadTriangle { triangle, vertices: triangles[triangle], flat: true });
             }
         }
         bad.sort_unstable_by_key(|bad| bad.triangle);

@@ -33,13 +33,8 @@ pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DV
 }
 
 fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
-    let movable = problem.triangles().iter().zip(badness).filter(|(t, _)| is_movable(problem, t));
+    let movable = problem.triangles().iter().zip(badness).filter(|(t, _)| problem.can_move(t));
     movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
-}
-
-/// Whether a triangle has a free vertex.
-fn is_movable(problem: &Problem, triangle: &[u32; 3]) -> bool {
-    triangle.iter().any(|&v| (v as usize) < problem.free_count())
 }
 
 /// Returns the number of triangles that are worse than the worst one with a free vertex, and have no vertex that is
@@ -52,9 +47,8 @@ pub(crate) fn stuck(
 ) -> usize {
     let all = all(problem, badness, positions);
     let worst = worst_of(problem, &all);
-    let stays = |t: &[u32; 3]| {
-        !is_movable(problem, t) && t.iter().all(|v| slides.binary_search(v).is_err())
-    };
+    let stays =
+        |t: &[u32; 3]| !problem.can_move(t) && t.iter().all(|v| slides.binary_search(v).is_err());
     let pairs = problem.triangles().iter().zip(&all);
     pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
 }
@@ -90,8 +84,8 @@ pub(crate) fn improve(
         if !goes_on(positions) {
             break;
         }
-        let is_movable = |&t: &u32| problem.triangles()[t as usize].iter().any(|&v| v < free);
-        let mut bad: Vec<u32> = (0..badness.len() as u32).filter(is_movable).collect();
+        let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
+        let mut bad: Vec<u32> = (0..badness.len() as u32).filter(can_move).collect();
         let worse_first = |a: &u32, b: &u32| {
             let [x, y] = [a, b].map(|&t| badness[t as usize]);
             y.total_cmp(&x).then(a.cmp(b))

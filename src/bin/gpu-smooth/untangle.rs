@@ -112,10 +112,9 @@ fn still_tangled(
 /// untangling may mend.
 pub(crate) fn can_mend(prepared: &Result<Smoother<'_>, MeshError>) -> bool {
     match prepared {
-        Ok(smoother) => smoother.beyond_precision().iter().any(|&t| {
-            let topology = smoother.topology();
-            topology.triangles()[t].iter().any(|&v| topology.free()[v as usize])
-        }),
+        Ok(smoother) => {
+            smoother.beyond_precision().iter().any(|&t| smoother.topology().can_move(t))
+        }
         Err(error) => matches!(error, MeshError::Infeasible { .. }),
     }
 }

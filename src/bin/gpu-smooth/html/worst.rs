@@ -37,7 +37,7 @@ pub(crate) struct Spot {
     pub(crate) size: f64,
     /// Shape and smallest angle (degrees), before and after.
     values: [[f64; 2]; 2],
-    is_movable: bool,
+    can_move: bool,
 }
 
 /// Finds the worst triangles by shape. Triangles that can move have a list of their own only if others are among the
@@ -45,13 +45,12 @@ pub(crate) struct Spot {
 pub(crate) fn spots(file: &MeshFile, states: [&Measured<'_>; 2]) -> Vec<Spot> {
     let topology = states[0].topology();
     let corners = |t: usize| topology.triangles()[t];
-    let can_move = |t: usize| corners(t).iter().any(|&v| topology.free()[v as usize]);
     let mut listed = Vec::new();
     for (list, &(_, state, only_movable)) in LISTS.iter().enumerate() {
         let most = if only_movable { CANDIDATES } else { LISTED };
         let found = states[state].worst(Measure::Shape, most).into_iter().map(|found| found.0);
         let found: Vec<usize> =
-            found.filter(|&t| !only_movable || can_move(t)).take(LISTED).collect();
+            found.filter(|&t| !only_movable || topology.can_move(t)).take(LISTED).collect();
         let is_new = listed.iter().all(|(_, known)| *known != found || !only_movable);
         if is_new {
             listed.push((list, found));
@@ -75,7 +74,7 @@ pub(crate) fn spots(file: &MeshFile, states: [&Measured<'_>; 2]) -> Vec<Spot> {
             at_in_file: as_in_file(file, at),
             size: length(p, q).max(length(q, r)).max(length(r, p)),
             values: states.map(|state| measures.map(|measure| state.value(measure, triangle))),
-            is_movable: can_move(triangle),
+            can_move: topology.can_move(triangle),
         }
     };
     let all = listed.iter().flat_map(|(list, found)| found.iter().map(|&t| (*list, t)));
@@ -96,9 +95,9 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
              <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
         );
         for (i, spot) in of_list() {
-            let Spot { label, place, at_in_file: [x, y], is_movable, .. } = spot;
+            let Spot { label, place, at_in_file: [x, y], can_move, .. } = spot;
             let [before, after] = spot.values;
-            let held = if *is_movable { "" } else { " (fixed)" };
+            let held = if *can_move { "" } else { " (fixed)" };
             let _ = write!(
                 text,
                 "<tr><td><a href=\"#spot-{i}\" title=\"{}\">{label}</a>{held}</td><td>{}</td><td>→ {}</td><td>{}°</td><td>→ {}°</td><td>{}</td><td>{}</td></tr>",

@@ -82,7 +82,7 @@ fn worst(worst: &Worst) -> Value {
     for (measure, value) in &worst.values {
         object.insert(measure.name().into(), json!(value));
     }
-    object.insert("movable".into(), worst.is_movable.into());
+    object.insert("movable".into(), worst.can_move.into());
     object.into()
 }
 

@@ -83,7 +83,7 @@ pub(crate) struct Worst {
     /// The values of the measures that were asked for.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether one of its vertices is free to move.
-    pub(crate) is_movable: bool,
+    pub(crate) can_move: bool,
 }
 
 /// The triangles that pass a threshold.
@@ -225,7 +225,7 @@ fn worst(
         corners: file.original().triangles[t].map(|v| file.original().points[v as usize]),
         at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
-        is_movable: mesh.triangles[t].iter().any(|&v| topology.free()[v as usize]),
+        can_move: topology.can_move(t),
     };
     found.iter().map(one).collect()
 }

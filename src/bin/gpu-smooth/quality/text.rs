@@ -161,10 +161,10 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
 
 /// Writes where a triangle is, how bad it is, and whether smoothing can help.
 fn worst_line(worst: &Worst, style: &Style) -> String {
-    let Worst { place, at: [x, y], values, is_movable, .. } = worst;
+    let Worst { place, at: [x, y], values, can_move, .. } = worst;
     let values: Vec<String> =
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
-    let movable = if *is_movable { "can move" } else { "all its vertices are fixed" };
+    let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
     let (label, values) = (place.label, values.join(", "));
     format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(*x), six(*y))
 }
