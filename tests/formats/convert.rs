@@ -4,7 +4,7 @@ use super::made::base;
 use super::others::{folder, for_each};
 use super::vtu::{self, styles};
 use super::{Folder, damage};
-use gpu_smooth::{Conversion, Format, Group, MeshFile};
+use gpu_smooth::{Conversion, Format, Group, MeshFile, Topology};
 use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
@@ -65,6 +65,8 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             continue;
         }
         clean += 1;
+        let free = |file: &MeshFile| Topology::new(file.mesh()).unwrap().free().to_vec();
+        assert_eq!(free(&back), free(file), "{name}: other vertices are free");
         let (before, after) = (file.groups().unwrap(), back.groups().unwrap());
         let after: Vec<_> = after.iter().map(held).collect();
         // A tag of zero is not a group in every format, and entities are replaced by physical groups where there are any.
