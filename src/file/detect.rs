@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 26] = [
+        let cases: [(&[u8], &str); 27] = [
             (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
             (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
             (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
@@ -229,6 +229,7 @@ mod tests {
             (b"100000 1014 4 PROJCS[\"WGS 84 / UTM zone 32N\"]\n1 0 0 -5e0 1\n", "MIKE (DHI)"),
             (b"4 LONG/LAT\n 1 4.5 55.5 -3 0\n", "MIKE (DHI)"),
             (b"Node Number = 3\nCell Number = 1\n1 1 2 3 1\n", "FVCOM"),
+            (b"# a.msh\nmshid=3;EUCLIDEAN-MESH\nndims=2\n", "JIGSAW"),
             (b"3 islands\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
             (b"% made by\n%\nNDIME= 2\n", "SU2"),
             (b" MeshVersionFormatted 2\n", "Medit"),

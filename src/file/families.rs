@@ -4,8 +4,8 @@ use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
-    adcirc, cgns, container, exodus, freefem, fvcom, gmsh, med, medit, meditb, mike, obj, off,
-    packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
+    adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb, mike, obj,
+    off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -52,6 +52,7 @@ impl Family {
             Format::Sms2dm => &SMS,
             Format::Mike => &MIKE,
             Format::Fvcom => &FVCOM,
+            Format::Jigsaw => &JIGSAW,
             Format::FreeFem => &FREEFEM,
             Format::Selafin => &SELAFIN,
             Format::Stl | Format::StlBinary => &STL,
@@ -127,6 +128,8 @@ static SMS: Family =
 pub(crate) static MIKE: Family =
     family("MIKE (DHI)", &[".mesh"], &[b"100079 ", b"100079\t"], reader::<mike::Mike>());
 static FVCOM: Family = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
+static JIGSAW: Family =
+    family("JIGSAW", &[".msh"], &[b"MSHID", b"mshid"], reader::<jigsaw::Jigsaw>());
 pub(crate) static FREEFEM: Family =
     family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
 static SELAFIN: Family = family(
@@ -196,7 +199,7 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 41] = [
+pub(crate) static FAMILIES: [&Family; 42] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -209,6 +212,7 @@ pub(crate) static FAMILIES: [&Family; 41] = [
     &SMS,
     &MIKE,
     &FVCOM,
+    &JIGSAW,
     &FREEFEM,
     &SELAFIN,
     &VTK_XML,

@@ -51,6 +51,8 @@ pub enum Format {
     Mike,
     /// FVCOM's grid, `CASE_grd.dat`.
     Fvcom,
+    /// JIGSAW's `.msh`.
+    Jigsaw,
     /// FreeFem's `.msh`.
     FreeFem,
     /// TELEMAC's SELAFIN, in either byte order and precision.
@@ -71,7 +73,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 30] = [
+    pub const ALL: [Format; 31] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -94,6 +96,7 @@ impl Format {
         Format::Sms2dm,
         Format::Mike,
         Format::Fvcom,
+        Format::Jigsaw,
         Format::FreeFem,
         Format::Selafin,
         Format::Stl,
@@ -129,6 +132,7 @@ impl Format {
             Format::Sms2dm => "SMS 2dm",
             Format::Mike => "MIKE mesh",
             Format::Fvcom => "FVCOM grid",
+            Format::Jigsaw => "JIGSAW .msh",
             Format::FreeFem => "FreeFem .msh",
             Format::Selafin => "SELAFIN",
             Format::Stl => "STL ASCII",

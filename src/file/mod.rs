@@ -30,6 +30,7 @@ mod group;
 mod group_table;
 mod hdf5;
 mod heights;
+mod jigsaw;
 mod label;
 mod layout;
 mod med;

@@ -20,6 +20,8 @@ pub(crate) enum Commas {
     Trailing,
     /// A comma between two numbers is a blank.
     Blanks,
+    /// A semicolon between two numbers is a blank.
+    Semicolons,
 }
 
 /// How a text format separates numbers.
@@ -58,6 +60,13 @@ impl Syntax {
         is_plain: false,
         ..Syntax::PLAIN
     };
+    /// Numbers are separated by semicolons, as in JIGSAW's files.
+    pub(crate) const SEMICOLONS: Syntax = Syntax {
+        commas: Commas::Semicolons,
+        ends: &SEMICOLON_ENDS,
+        is_plain: false,
+        ..Syntax::PLAIN
+    };
     /// Each item starts on a new line.
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
     /// Items stand anywhere on lines.
@@ -83,6 +92,7 @@ impl Syntax {
 static PLAIN_ENDS: [bool; 256] = ends(b"#");
 static PERCENT_ENDS: [bool; 256] = ends(b"#%");
 static FORTRAN_ENDS: [bool; 256] = ends(b"#,/");
+static SEMICOLON_ENDS: [bool; 256] = ends(b"#;");
 static JOINED_ENDS: [bool; 256] = ends(b"#\\");
 
 /// Returns a table in which blanks, control characters and `others` are marked.

@@ -205,10 +205,15 @@ impl<'a> Cursor<'a> {
 
     #[cold]
     fn skip_more(&self, mut at: usize) -> usize {
-        let mut comma = self.syntax.commas != Commas::Blanks;
+        let separator = match self.syntax.commas {
+            Commas::Blanks => Some(b','),
+            Commas::Semicolons => Some(b';'),
+            Commas::Letters | Commas::Trailing => None,
+        };
+        let mut is_separated = false;
         while let Some(&byte) = self.bytes.get(at) {
             match byte {
-                b',' if !comma => comma = true,
+                _ if Some(byte) == separator && !is_separated => is_separated = true,
                 b'\\' if self.syntax.joins => {
                     let end = line_end(self.bytes, at);
                     match self.bytes[at + 1..end].trim_ascii().is_empty() {

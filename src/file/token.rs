@@ -34,13 +34,13 @@ pub(crate) fn xml_text(value: &[u8]) -> String {
 }
 
 /// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
-/// and y, or have a comma there.
+/// and y, or have a comma or a semicolon there.
 #[inline]
 pub(crate) fn skip_to_number(bytes: &[u8], mut at: usize) -> usize {
     loop {
         match bytes.get(at) {
             Some(b'#') => at = line_end(bytes, at),
-            Some(b',' | b'\\') => at += 1,
+            Some(b',' | b';' | b'\\') => at += 1,
             Some(&byte) if byte <= b' ' => at += 1,
             _ => return at,
         }

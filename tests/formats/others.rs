@@ -120,7 +120,8 @@ fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
 
 /// Words and the separators between them, in turn.
 fn pieces(bytes: &[u8]) -> Vec<&[u8]> {
-    bytes.chunk_by(|a, b| a.is_ascii_whitespace() == b.is_ascii_whitespace()).collect()
+    let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b';';
+    bytes.chunk_by(|a, b| is_between(a) == is_between(b)).collect()
 }
 
 fn value(word: &[u8]) -> f64 {

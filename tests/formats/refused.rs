@@ -121,6 +121,7 @@ fn list_of(made: &Made) -> &'static str {
     match made.format {
         Format::Vtk | Format::VtkBinary => "POINTS",
         Format::Su2 => "NPOIN",
+        Format::Jigsaw => "POINT",
         Format::Medit | Format::MeditBinary => "Vertices",
         Format::Obj => "the list of v rows",
         Format::Adcirc | Format::Mike | Format::Fvcom => "the list of nodes",

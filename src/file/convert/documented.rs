@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 22] = [
+const ROWS: [Row; 23] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -171,6 +171,16 @@ const ROWS: [Row; 22] = [
             "–",
             "nothing",
             "other files of a case, which may repeat coordinates (`_dep.dat`, `_cor.dat`, `_spg.dat`), stay as they are",
+        ],
+    ),
+    row(
+        &[Format::Jigsaw],
+        "meshes of the kind EUCLIDEAN-MESH with 2 or 3 coordinates, keys in capital or small letters",
+        [
+            "edges, quadrilaterals",
+            "tag",
+            "tags of points, edges, triangles and quadrilaterals",
+            "no grids, nothing on an ellipsoid",
         ],
     ),
     row(

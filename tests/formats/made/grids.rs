@@ -21,6 +21,8 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
         mike_of_2011(mesh),
         fvcom(mesh),
         fvcom_of_fortran(mesh),
+        jigsaw(mesh),
+        jigsaw_in_space(mesh),
         freefem(mesh),
     ]
 }
@@ -167,6 +169,51 @@ fn fvcom_of_fortran(mesh: &Mesh) -> Made {
     );
     let probes = [(142, vertices[VERTEX]), (9 + 2 * TRIANGLE as u64, triangles[TRIANGLE])];
     text.made("with commas", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
+}
+
+/// A mesh with an edge, a quadrilateral, tags and values of points, with lists of elements before the points.
+fn jigsaw(mesh: &Mesh) -> Made {
+    let mut text = Text::new("# in.msh; by hand\nmshid=3;euclidean-mesh\nTRIA3=");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let semicolons = |vertices: &[u32]| joined(vertices, 0).replace(' ', " ; ");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(t, c)| format!("{};{}", semicolons(c), region(t))));
+    text.put("quad4=1\n");
+    text.rows([format!("{};2", semicolons(&QUADRILATERAL)), String::new()]);
+    text.put("NDIMS=2\nPOINT= ");
+    text.count(mesh.points.len());
+    text.put("\n");
+    let vertices = text.rows(
+        mesh.points
+            .iter()
+            .enumerate()
+            .map(|(i, [x, y])| format!("{x:e} ;\t{y};{}", i as i32 % 3 - 1)),
+    );
+    text.put(&format!("EDGE2=1\n{};-3\nVALUE={};2\n", semicolons(&LINE), mesh.points.len()));
+    (0..mesh.points.len()).for_each(|i| text.put(&format!("{};{i}\n", z(i))));
+    text.put("BOUND=1\n1;0;3\n");
+    let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (17, triangles[TRIANGLE])];
+    let regions = regions(mesh);
+    let mesh = fixing(mesh, QUADRILATERAL.into_iter().chain(LINE));
+    Made { regions, ..text.made("elements first", "in.msh", Format::Jigsaw, mesh, probes) }
+}
+
+/// A mesh as JIGSAW writes it, with three coordinates.
+fn jigsaw_in_space(mesh: &Mesh) -> Made {
+    let mut text =
+        Text::new("# in.msh; created by JIGSAW\nMSHID=3;EUCLIDEAN-MESH\nNDIMS=3\nPOINT=");
+    text.count(mesh.points.len());
+    text.put("\n");
+    let vertices =
+        text.rows(mesh.points.iter().enumerate().map(|(i, [x, y])| format!("{x};{y};{};0", z(i))));
+    text.put("TRIA3=");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let rows = mesh.triangles.iter();
+    let triangles = text.rows(rows.map(|c| format!("{};0", joined(c, 0).replace(' ', ";"))));
+    let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (17, triangles[TRIANGLE])];
+    text.made("in space", "in.msh", Format::Jigsaw, mesh.clone(), probes)
 }
 
 fn freefem(mesh: &Mesh) -> Made {
