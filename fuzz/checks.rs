@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use gpu_smooth::{
-    Backend, Conversion, Derivatives, Mesh, MeshError, MeshFile, Method, Metric, Options,
-    Precision, Scheme, Sharpness, SmoothError, Smoother, untangle, validity,
+    Backend, Conversion, Derivatives, Guard, Mesh, MeshError, MeshFile, Method, Metric, Options,
+    Precision, Scheme, Sharpness, Slide, SmoothError, Smoother, Surface, Targets, WorstBy,
+    untangle, validity,
 };
 
 /// Reads any bytes as a mesh file of any format but Triangle's, and does everything with it that needs no second file.
@@ -157,7 +158,64 @@ pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
     let mut bytes = Bytes(bytes.iter());
     let options = options(&mut bytes);
     let mesh = mesh(&mut bytes, options.stored);
-    smooth(&mesh, &options, backend)
+    let became = smooth(&mesh, &options, backend);
+    if became == Became::Smoothed {
+        smooth_whole(&mut bytes, &mesh, options, backend);
+    }
+    became
+}
+
+/// Runs with targets, with vertices that slide, and with what only whole runs can do, as the bytes that are left say.
+fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &Backend) {
+    let (what, which) = (bytes.byte(), bytes.below(4));
+    if what == 0 {
+        return;
+    }
+    let mut smoother = Smoother::new(mesh).unwrap();
+    let options = Options {
+        guard: if what & 1 != 0 { Guard::Worst } else { Guard::default() },
+        keep_altitude: what & 2 != 0,
+        max_move: (what & 4 != 0).then_some([1e-3, 0.1, 0.5, 2.0][which]),
+        improve_worst: (what & 8 != 0).then_some(WorstBy::ALL[which % 3]),
+        ..options
+    };
+    let rings = which as u32 % 3;
+    let targets = match what >> 4 & 3 {
+        1 => Targets::keep_size(smoother.topology(), &mesh.points, Surface::Plane, rings),
+        2 => Targets::keep_shape(smoother.topology(), &mesh.points, rings),
+        3 => {
+            let sizes: Vec<f64> =
+                mesh.points.iter().map(|_| 0.1 + f64::from(bytes.byte())).collect();
+            Targets::sizes(&sizes)
+        }
+        _ => Ok(Targets::equilateral(mesh.points.len())),
+    };
+    let Ok(targets) = targets else { return };
+    smoother.set_targets(&targets).unwrap();
+    let slide = (what & 64 != 0).then(Slide::default);
+    smoother.set_slide(slide.as_ref()).unwrap();
+    let run = || smoother.run(&options, backend);
+    let outcome = match run() {
+        Ok(outcome) => outcome,
+        Err(SmoothError::Option { .. } | SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {
+            return;
+        }
+        Err(error) => panic!("{error}"),
+    };
+    let topology = smoother.topology();
+    let bad = validity::infeasible(&outcome.points, topology.triangles()).unwrap();
+    assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    let slide = slide.unwrap_or_else(|| {
+        let held = (0..mesh.points.len() as u32).collect();
+        Slide { held, ..Slide::default() }
+    });
+    let astray = slide.astray(topology, &mesh.points, &outcome.points, options.stored);
+    assert!(astray.is_empty(), "vertices {astray:?} have moved otherwise than along their lines");
+    let f = |points: &[[f64; 2]]| smoother.f(options.scheme.base(), points).unwrap();
+    let (start, end) = (f(&mesh.points), f(&outcome.points));
+    let rises = options.improve_worst.is_some();
+    assert!(rises || end <= start * (1.0 + 1e-12), "f rose from {start} to {end}");
+    assert!(run().unwrap().points == outcome.points, "other points the second time");
 }
 
 /// The result for a mesh.

@@ -10,7 +10,6 @@ use crate::periodic::Periodic;
 /// curves, vertices where more than two such edges meet, [`held`](Self::held) vertices, and vertices at which a curve
 /// turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight runs
 /// stay straight; elsewhere vertices move along a piecewise cubic through the given positions of the vertices.
-/// vertices move along a piecewise cubic through the vertices as they were given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// A vertex at which a curve turns by more than this is a corner. In degrees, from 0 to 180.
