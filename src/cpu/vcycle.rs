@@ -6,8 +6,8 @@ use crate::layout::Problem;
 use crate::parallel::for_each_chunk;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
-/// Number of rows of one task.
-const GRAIN: usize = 512;
+/// Number of rows of one task. Levels with fewer rows are left to one thread, as handing tasks to others would take longer.
+const GRAIN: usize = 4096;
 
 /// Returns the correction -P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices. P is the prolongation from the
 /// aggregates of the free vertices, M⁻¹ one V-cycle over the coarse levels. The correction is a direction of descent.

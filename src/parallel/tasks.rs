@@ -10,7 +10,11 @@ use rayon::prelude::*;
 
 /// Calls `task` for every number below `count`.
 pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().for_each(task);
+    // Handing a task to another thread and waiting for it takes longer than most tasks.
+    match count {
+        0 | 1 => (0..count).for_each(task),
+        _ => (0..count).into_par_iter().for_each(task),
+    }
 }
 
 /// Calls `task` with the index of each part and the part, which may be owned or a mutable borrow.
