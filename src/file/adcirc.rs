@@ -7,8 +7,8 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::heights::Heights;
 use crate::file::label::Label;
+use crate::file::numbered_nodes::numbered_nodes;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::file::source::Source;
@@ -29,25 +29,7 @@ impl Walk for Adcirc {
             Ok((cursor.integer("the number of elements")?, cursor.vertex_count()?))
         };
         let (elements, count) = cursor.item(counts, &mut None)?;
-        sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
-        let mut depths = Heights::new(sink);
-        each_row(
-            cursor,
-            count,
-            "nodes",
-            sink,
-            |cursor| {
-                let tag = cursor.integer("the number of a node")?;
-                let owner = format_args!("node {tag}");
-                let point = cursor.point(owner)?;
-                Ok((tag, point, cursor.height(owner)?))
-            },
-            |cursor, sink, _, (tag, (x_at, at), depth)| {
-                sink.node(cursor, tag, 2, x_at, at);
-                depths.see(depth);
-                Ok(())
-            },
-        )?;
+        let depths = numbered_nodes(cursor, count, false, sink)?;
         sink.end_nodes(cursor)?;
         depths.send("depth", Numbers::TEXT.into(), sink);
         sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));

@@ -6,7 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::heights::Heights;
+use crate::file::numbered_nodes::numbered_nodes;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
@@ -27,24 +27,7 @@ impl Walk for Fvcom {
         // Cells stand before the nodes that they name, so they are read twice.
         let mut again = cursor.clone();
         each_row(cursor, cells, "cells", sink, cell, |_, _, _, _| Ok(()))?;
-        sink.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
-        let mut depths = Heights::new(sink);
-        each_row(
-            cursor,
-            count,
-            "nodes",
-            sink,
-            |cursor| {
-                let tag = cursor.integer("the number of a node")?;
-                let owner = format_args!("node {tag}");
-                Ok((tag, cursor.point(owner)?, cursor.height_if_any(owner)?))
-            },
-            |cursor, sink, _, (tag, (x_at, at), depth)| {
-                sink.node(cursor, tag, 2, x_at, at);
-                depths.see(depth);
-                Ok(())
-            },
-        )?;
+        let depths = numbered_nodes(cursor, count, true, sink)?;
         sink.end_nodes(cursor)?;
         depths.send("depth", Numbers::TEXT.into(), sink);
         sink.expect_elements(again.capacity(cells, "1 1 2 3\n".len()));

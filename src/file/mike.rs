@@ -6,7 +6,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::heights::Heights;
+use crate::file::numbered_nodes::numbered_nodes;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::file::source::Source;
@@ -28,24 +28,7 @@ impl Walk for Mike {
         let count = cursor.vertex_count()?;
         cursor.rest();
         let before = &mut cursor.clone();
-        sink.expect_nodes(cursor.capacity(count, "1 0 0 0 0\n".len()));
-        let mut heights = Heights::new(sink);
-        each_row(
-            cursor,
-            count,
-            "nodes",
-            sink,
-            |cursor| {
-                let tag = cursor.integer("the number of a node")?;
-                let owner = format_args!("node {tag}");
-                Ok((tag, cursor.point(owner)?, cursor.height(owner)?))
-            },
-            |cursor, sink, _, (tag, (x_at, at), z)| {
-                sink.node(cursor, tag, 2, x_at, at);
-                heights.see(z);
-                Ok(())
-            },
-        )?;
+        let heights = numbered_nodes(cursor, count, false, sink)?;
         if sink.asks_for_groups() {
             codes(before, count, sink)?;
         }

@@ -39,6 +39,7 @@ mod meditb;
 mod mesh_file;
 mod mike;
 mod named;
+mod numbered_nodes;
 mod numbers;
 mod obj;
 mod off;
