@@ -4,17 +4,38 @@
 //! library's compile time. Here only small functions are generic; the loop over tasks is compiled once.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
 /// Calls `task` for every number below `count`.
 pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
-    // Handing a task to another thread and waiting for it takes longer than most tasks.
-    match count {
-        0 | 1 => (0..count).for_each(task),
-        _ => (0..count).into_par_iter().for_each(task),
+    if count <= 1 {
+        // Handing a task to another thread and waiting for it takes longer than most tasks.
+        return (0..count).for_each(task);
     }
+    if rayon::current_thread_index().is_some() {
+        return (0..count).into_par_iter().for_each(task);
+    }
+    // Rayon would do all tasks on its own threads, while this one waits. It takes part instead, so that it need not be woken
+    // when the others are done first.
+    let next = AtomicUsize::new(0);
+    let work = || {
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= count {
+                break;
+            }
+            task(i);
+        }
+    };
+    rayon::in_place_scope(|scope| {
+        for _ in 1..rayon::current_num_threads().min(count) {
+            scope.spawn(|_| work());
+        }
+        work();
+    });
 }
 
 /// Calls `task` with the index of each part and the part, which may be owned or a mutable borrow.
