@@ -239,7 +239,11 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
         scheme,
         max_sweeps: bytes.below(25) as u32,
         method: if flags & 1 == 0 { Method::Auto } else { Method::Sweeps },
-        stored: if flags & 14 == 2 { Precision::Single } else { Precision::Double },
+        stored: match flags & 14 {
+            2 => Precision::Single,
+            6 => Precision::Text20,
+            _ => Precision::Double,
+        },
         inner: if flags & 48 == 16 { 3 } else { 1 },
         ..Options::default()
     };

@@ -55,7 +55,9 @@ fn samples() -> &'static (Vec<Vec<u8>>, Vec<u8>) {
         std::fs::write(folder.path().join("a.ele"), &ele).unwrap();
         let file = MeshFile::read(&folder.path().join("a.node")).unwrap();
         let text = |(_, format)| Conversion::new(&file, format).unwrap().unwrap().text();
-        let texts = Conversion::targets().filter_map(text).map(String::into_bytes).collect();
+        let abaqus = std::iter::once(ABAQUS.to_owned());
+        let texts = Conversion::targets().filter_map(text).chain(abaqus);
+        let texts = texts.map(String::into_bytes).collect();
         let poly = "0 2 0 0\n1 0\n1 5 6\n0\n";
         (texts, [node.as_bytes(), ele.as_bytes(), poly.as_bytes()].join(&0xFF))
     })
@@ -80,6 +82,13 @@ fn a_closing_tag_of_several_lines_is_quoted_on_one_line() {
     checks::any_file(long.as_bytes());
     checks::any_file(b"<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n</Xdmf>\n</4 5 6\n4 5 10 Center=\"Node\">\n");
 }
+
+/// An input file of Abaqus with a part, sets, sections, a surface and an instance.
+const ABAQUS: &str = "*Heading\n** made\n*Part, name=P\n*Node, nset=all\n1, 0., 0., 1.\n2, 2., 0.\n3, 2., 2.\n4, 0., 2.\n5, -.9D-3, 1.\n\
+*Element, type=CPS3\n1, 1, 2,\n5\n2, 2, 3, 5\n3, 3, 4, 5\n4, 4, 1, 5\n*Element, type=SPRINGA, elset=s\n5, 1, 3\n\
+*Elset, elset=a, generate\n1, 3, 2\n*Elset, elset=b\na, 4\n*Solid Section, elset=a, material=M\n1.,\n*Solid Section, elset=B, material=N\n\
+*End Part\n*Assembly, name=A\n*Instance, name=P-1, part=P\n*End Instance\n*Nset, nset=n, instance=P-1\n1, 5\n*Surface, name=S\nP-1.a, S1\n\
+*Element, type=CONN2D2\n1, P-1.2, 1\n*End Assembly\n*Include, input=none.inp\n*Step\n*End Step\n";
 
 /// Files of HDF5, of which the first is Exodus and the others stand beside an XDMF.
 const HDF5: [&[u8]; 4] = [

@@ -2,7 +2,7 @@
 
 use crate::file::numbers::{Form, Numbers, Places};
 use crate::file::token::{number_end, skip_to_number};
-use crate::mesh::Precision;
+use crate::mesh::{Precision, short_text};
 use std::io::Write;
 use std::ops::Range;
 
@@ -138,16 +138,19 @@ impl<'a> Column<'a> {
 }
 
 impl Form {
-    /// Writes a number. Text has the fewest digits that parse back to the same bits.
+    /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
     pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
             Form::Text(Precision::Double) => {
                 write!(out, "{value:?}").expect("memory takes what is written to it");
             }
+            Form::Text(Precision::Text20) => out.extend_from_slice(short_text(value).as_bytes()),
             Form::Text(Precision::Single) => {
                 write!(out, "{:?}", value as f32).expect("memory takes what is written to it");
             }
-            Form::Binary(order, Precision::Double) => out.extend_from_slice(&order.bytes(value)),
+            Form::Binary(order, Precision::Double | Precision::Text20) => {
+                out.extend_from_slice(&order.bytes(value));
+            }
             Form::Binary(order, Precision::Single) => {
                 out.extend_from_slice(&order.single_bytes(value as f32));
             }

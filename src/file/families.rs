@@ -4,8 +4,8 @@ use crate::file::format::Format;
 use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
-    adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb, mike, obj,
-    off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
+    abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb,
+    mike, obj, off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -60,6 +60,7 @@ impl Family {
             Format::Med => &MED,
             Format::Cgns => &CGNS,
             Format::Xdmf => &XDMF,
+            Format::Abaqus => &ABAQUS,
         }
     }
 
@@ -159,8 +160,24 @@ static CGNS: Family =
     family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
 static XDMF: Family =
     family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
-static ABAQUS: Family =
-    unread("Abaqus", &[".inp"], &[b"*HEADING", b"*Heading", b"*NODE", b"*Node"], BY_MESHIO);
+static ABAQUS: Family = family(
+    "Abaqus",
+    &[".inp"],
+    &[
+        b"**",
+        b"*HEADING",
+        b"*Heading",
+        b"*heading",
+        b"*NODE",
+        b"*Node",
+        b"*node",
+        b"*PART",
+        b"*Part",
+        b"*INCLUDE",
+        b"*Include",
+    ],
+    reader::<abaqus::Abaqus>(),
+);
 static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 

@@ -69,11 +69,13 @@ pub enum Format {
     Cgns,
     /// XDMF, with its numbers in the XML or in files beside it, HDF5 or raw.
     Xdmf,
+    /// The `.inp` of Abaqus and CalculiX.
+    Abaqus,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 31] = [
+    pub const ALL: [Format; 32] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -105,6 +107,7 @@ impl Format {
         Format::Med,
         Format::Cgns,
         Format::Xdmf,
+        Format::Abaqus,
     ];
 
     /// Returns the name for messages.
@@ -141,6 +144,7 @@ impl Format {
             Format::Med => "MED",
             Format::Cgns => "CGNS",
             Format::Xdmf => "XDMF",
+            Format::Abaqus => "Abaqus",
         }
     }
 }

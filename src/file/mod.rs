@@ -1,5 +1,6 @@
 //! Mesh files, which are read once and written with nothing changed but moved vertices.
 
+mod abaqus;
 mod adcirc;
 #[cfg(test)]
 mod ahead_tests;

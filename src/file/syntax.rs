@@ -67,6 +67,14 @@ impl Syntax {
         is_plain: false,
         ..Syntax::PLAIN
     };
+    /// Abaqus: commas between items, and comments after asterisks.
+    pub(crate) const KEYWORDS: Syntax = Syntax {
+        commas: Commas::Blanks,
+        comment: b'*',
+        ends: &COMMA_ENDS,
+        is_plain: false,
+        ..Syntax::PLAIN
+    };
     /// Each item starts on a new line.
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
     /// Items stand anywhere on lines.
@@ -93,6 +101,7 @@ static PLAIN_ENDS: [bool; 256] = ends(b"#");
 static PERCENT_ENDS: [bool; 256] = ends(b"#%");
 static FORTRAN_ENDS: [bool; 256] = ends(b"#,/");
 static SEMICOLON_ENDS: [bool; 256] = ends(b"#;");
+static COMMA_ENDS: [bool; 256] = ends(b",");
 static JOINED_ENDS: [bool; 256] = ends(b"#\\");
 
 /// Returns a table in which blanks, control characters and `others` are marked.

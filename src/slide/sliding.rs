@@ -41,6 +41,8 @@ impl Slide {
         let digits = match stored {
             Precision::Single => f64::from(f32::EPSILON),
             Precision::Double => f64::EPSILON,
+            // Fourteen digits, as negative numbers with an exponent of two digits have.
+            Precision::Text20 => 256.0 * f64::EPSILON,
         };
         Sliding::new(before, topology, self).astray(&moved, after, 8.0 * digits * size)
     }

@@ -51,6 +51,8 @@ impl<'s> Limit<'s> {
         let digits = match stored {
             Precision::Single => f64::from(f32::EPSILON),
             Precision::Double => f64::EPSILON,
+            // Fourteen digits, as negative numbers with an exponent of two digits have.
+            Precision::Text20 => 256.0 * f64::EPSILON,
         };
         let edges = mean_edges(topology, &mesh.points);
         let bound = |([x, y], edge): (&[f64; 2], &f64)| {

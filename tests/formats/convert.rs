@@ -25,6 +25,7 @@ fn ending(format: Format) -> &'static str {
         Format::Ply => "ply",
         Format::Sms2dm => "2dm",
         Format::Exodus => "e",
+        Format::Abaqus => "inp",
         _ => "gr3",
     }
 }
@@ -296,4 +297,33 @@ fn depths_of_grids_are_heights_of_sms() {
     assert_eq!(convert("a.14", Format::Off, "a.off"), ["data of vertices: depth"]);
     assert_eq!(convert("a.2dm", Format::Off, "b.off"), [""; 0]);
     assert_eq!(convert("b.off", Format::Adcirc, "c.14"), ["third coordinates"]);
+}
+
+#[test]
+fn sets_of_an_input_file_of_abaqus_are_the_groups_of_a_mesh() {
+    let (inp, lost) = converted("in.msh", GMSH, Format::Abaqus);
+    assert!(
+        lost.starts_with("groups of surfaces (entity)") || lost.contains("data of elements: e"),
+        "{lost}"
+    );
+    let expected = "*HEADING\nmesh\n*NODE\n1, 0.0, 0.0, 0.5\n2, 1.0, 0.0, 1.0\n3, 1.0, 1.0, 1.0\n4, 0.0, 1.0, 1.0\n5, 0.5, 0.5, 1.0\n\
+        6, 2.0, 0.5, 1.0\n*ELEMENT, TYPE=T3D2, ELSET=in_let\n1, 1, 2\n*ELEMENT, TYPE=T3D2, ELSET=wall\n2, 2, 3\n3, 3, 4\n4, 4, 1\n\
+        *ELEMENT, TYPE=S3, ELSET=steel\n5, 1, 2, 5\n6, 2, 3, 5\n7, 3, 4, 5\n8, 4, 1, 5\n*ELEMENT, TYPE=S3, ELSET=set3\n9, 2, 6, 3\n";
+    assert_eq!(inp, expected);
+    let exodus = "*NODE\n1, 0., 0.\n2, 2., 0.\n3, 0., 1e-7\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*NSET, NSET=\"a b\"\n1, 3\n*NSET, NSET=A_B\n2\n";
+    let (inp, lost) = converted("in.inp", exodus, Format::Abaqus);
+    assert_eq!(lost, "");
+    assert!(
+        inp.ends_with(
+            "*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*NSET, NSET=a_b_2\n1, 3\n*NSET, NSET=A_B\n2\n"
+        ),
+        "{inp}"
+    );
+    let grid = "t\n1 3\n1 0 0 0\n2 -0.0012345678901234567 0 0\n3 0 1 0\n1 3 1 2 3\n";
+    let (inp, lost) = converted("fort.14", grid, Format::Abaqus);
+    assert!(
+        lost.starts_with("digits of coordinates, of which 20 characters are written"),
+        "{lost}"
+    );
+    assert!(inp.contains("\n2, -.001234567890123457, 0.0\n"), "{inp}");
 }

@@ -1,5 +1,6 @@
 //! Reading and writing mesh files: what comes back byte for byte, and what each error message says.
 
+mod abaqus;
 mod beside;
 mod binary;
 mod convert;

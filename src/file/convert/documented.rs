@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 23] = [
+const ROWS: [Row; 24] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -236,6 +236,16 @@ const ROWS: [Row; 23] = [
             "section",
             "sections, boundary conditions and their families by name",
             "several zones, structured zones, NGON_n and files in ADF are refused; HDF5 as described below",
+        ],
+    ),
+    row(
+        &[Format::Abaqus],
+        "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances if one part or instance has elements",
+        [
+            "lines, quadrilaterals, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
+            "`ELSET` of its `*ELEMENT`, and section",
+            "element sets, node sets and surfaces by name",
+            "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
         ],
     ),
 ];

@@ -6,6 +6,7 @@ use super::spelling::Spelling;
 use super::tags::{Tags, decides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
+use crate::mesh::Precision;
 
 /// What a format can hold of a mesh.
 #[derive(Clone, Copy)]
@@ -29,6 +30,10 @@ pub(crate) struct Holds {
     pub(crate) negative: bool,
     /// Whether each vertex has the number of a group.
     pub(crate) vertex_groups: bool,
+    /// Whether vertices are in sets with names instead.
+    pub(crate) vertex_sets: bool,
+    /// The precision of coordinates.
+    pub(crate) precision: Precision,
     pub(crate) point_data: Numbers,
     pub(crate) cell_data: Numbers,
 }
@@ -86,6 +91,8 @@ impl Holds {
         own: "",
         negative: true,
         vertex_groups: false,
+        vertex_sets: false,
+        precision: Precision::Double,
         point_data: Numbers::None,
         cell_data: Numbers::None,
     };
@@ -98,6 +105,10 @@ impl Holds {
             lost.push("third coordinates".into());
         }
         let starts = content.first_label().is_some_and(|first| first <= 1);
+        let mut numbers = content.points.as_flattened().iter().chain(&content.heights);
+        if numbers.any(|&x| self.precision.rounded(x).to_bits() != x.to_bits()) {
+            lost.push("digits of coordinates, of which 20 characters are written".into());
+        }
         if !self.labels && !starts {
             lost.push("the vertices' own numbers, which are not consecutive".into());
         }
@@ -117,7 +128,7 @@ impl Holds {
             let groups = listed(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
         }
-        if !self.vertex_groups && !content.vertex_groups.is_empty() {
+        if !self.vertex_groups && !self.vertex_sets && !content.vertex_groups.is_empty() {
             let groups = content.vertex_groups.iter().map(|(group, _)| group);
             lost.push(format!("groups of vertices: {}", listed(groups)));
         }

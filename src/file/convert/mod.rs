@@ -8,6 +8,7 @@ macro_rules! put {
     };
 }
 
+mod abaqus;
 mod collector;
 mod content;
 mod conversion;

@@ -25,7 +25,7 @@ fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
         let dimension = usize::from(group.dimension);
         let is_held = holds.names[dimension] && main[dimension] == Some(&group.what);
         let number = || tags.number(place as u32).to_string();
-        let by_number = || (holds.spelling == Spelling::Word).then(number);
+        let by_number = || holds.spelling.is_word().then(number);
         group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)
     };
     let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();

@@ -11,9 +11,22 @@ pub(crate) enum Spelling {
     Quoted,
     /// As one word, which alone tells what it names from others.
     Word,
+    /// As a word of letters without accents, digits, underscores and hyphens that starts with a letter. Capital and small letters
+    /// are the same.
+    Label,
 }
 
 impl Spelling {
+    /// Whether names alone tell what they name.
+    pub(super) fn is_word(self) -> bool {
+        matches!(self, Spelling::Word | Spelling::Label)
+    }
+
+    /// Returns what is the same for two names that the format does not tell apart.
+    fn key(self, name: &str) -> String {
+        if self == Spelling::Label { name.to_ascii_lowercase() } else { name.to_owned() }
+    }
+
     /// Spells a name as the format can hold it.
     pub(super) fn of(self, name: &str) -> String {
         match self {
@@ -33,6 +46,16 @@ impl Spelling {
                     name.split(is_blank).filter(|word| !word.is_empty()).collect();
                 words.join("_")
             }
+            Spelling::Label => {
+                let is_held = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+                let word: String = name.chars().map(|c| if is_held(c) { c } else { '_' }).collect();
+                match word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+                    || word.is_empty()
+                {
+                    true => word,
+                    false => format!("set{word}"),
+                }
+            }
         }
     }
 }
@@ -47,13 +70,13 @@ pub(super) fn distinct(
     spare: impl Fn(usize) -> String,
 ) -> Vec<String> {
     // Each name that is given, with the number that the next one of that name ends in.
-    let mut given: HashMap<String, usize> =
-        taken.iter().map(|&name| (name.to_owned(), 2)).collect();
+    let key = |name: &str| spelling.key(name);
+    let mut given: HashMap<String, usize> = taken.iter().map(|&name| (key(name), 2)).collect();
     let mut spelled: Vec<Option<String>> = Vec::with_capacity(names.len());
     for &name in names {
         let stays = spelling.of(name) == name && !name.is_empty();
-        let is_new = stays && given.insert(name.to_owned(), 2).is_none();
-        let keeps = is_new || (stays && spelling != Spelling::Word);
+        let is_new = stays && given.insert(key(name), 2).is_none();
+        let keeps = is_new || (stays && !spelling.is_word());
         spelled.push(keeps.then(|| name.to_owned()));
     }
     let name = |(at, kept): (usize, Option<String>)| {
@@ -62,15 +85,15 @@ pub(super) fn distinct(
                 new if new.trim().is_empty() => spare(at),
                 new => new,
             };
-            let Some(next) = given.get(&new).copied() else {
-                given.insert(new.clone(), 2);
+            let Some(next) = given.get(&key(&new)).copied() else {
+                given.insert(key(&new), 2);
                 return new;
             };
-            let free = (next..).find(|end| !given.contains_key(&format!("{new}_{end}")));
+            let free = (next..).find(|end| !given.contains_key(&key(&format!("{new}_{end}"))));
             let end = free.unwrap_or(next);
             let other = format!("{new}_{end}");
-            given.insert(new, end + 1);
-            given.insert(other.clone(), 2);
+            given.insert(key(&new), end + 1);
+            given.insert(key(&other), 2);
             other
         })
     };
@@ -90,6 +113,13 @@ mod tests {
         let names = ["a b", "a_b", "a\tb", "wall", "wall", "a_b_2", "50%", "", " ", "x"];
         let words = ["a_b_3", "a_b", "a_b_4", "wall", "wall_2", "a_b_2", "50", "7", "8", "x_2"];
         assert_eq!(spelled(&names, Spelling::Word), words);
+    }
+
+    #[test]
+    fn labels_are_plain_words_whatever_their_capitals() {
+        let names = ["Wall", "wall", "a b", "a,b", "7", "-x", "_5", "h\u{f6}he", "", "x"];
+        let labels = ["Wall", "wall_2", "a_b", "a_b_2", "set7", "set-x", "_5", "h_he", "8", "x_2"];
+        assert_eq!(spelled(&names, Spelling::Label), labels);
     }
 
     /// Names between quotation marks are given numbers besides, so equal ones stay.

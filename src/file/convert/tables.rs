@@ -32,6 +32,7 @@ pub(crate) fn targets() -> String {
             groups(holds.groups),
             names(holds),
             match (holds.vertex_groups, holds.groups) {
+                _ if holds.vertex_sets => "node sets, with names",
                 (true, Groups::Blocks) => "node sets, with names",
                 (true, _) => "one per vertex",
                 (false, _) => "–",

@@ -3,8 +3,9 @@
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
 use super::spelling::Spelling;
-use super::{exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
+use super::{abaqus, exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
+use crate::mesh::Precision;
 
 /// A format that meshes are converted to: a row of [`TARGETS`].
 pub(crate) struct Target {
@@ -64,7 +65,7 @@ const MEDIT: Holds = Holds {
 };
 
 /// All targets. Of formats whose files end the same way, the usual one comes first.
-pub(crate) static TARGETS: [Target; 16] = [
+pub(crate) static TARGETS: [Target; 17] = [
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
@@ -210,5 +211,22 @@ pub(crate) static TARGETS: [Target; 16] = [
             ..Holds::TRIANGLES
         },
         write: Write::One(medit::write_freefem),
+    },
+    Target {
+        format: Format::Abaqus,
+        name: "abaqus",
+        holds: Holds {
+            lines: Elements::All,
+            quadrilaterals: true,
+            heights: true,
+            labels: true,
+            groups: Groups::One,
+            names: [false, true, true],
+            spelling: Spelling::Label,
+            vertex_sets: true,
+            precision: Precision::Text20,
+            ..Holds::TRIANGLES
+        },
+        write: Write::One(abaqus::write_inp),
     },
 ];

@@ -1,5 +1,6 @@
 //! Meshes in the formats of other programs, each written in several legal ways, and what reading them must give.
 
+mod abaqus;
 pub(crate) mod binary;
 mod exodus;
 mod gmsh;
@@ -85,8 +86,17 @@ pub(crate) fn base() -> Mesh {
 
 /// Every variant of every format. The mesh must have the triangles of [`base`]; its vertices may be elsewhere.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
-    let families =
-        [text::all, grids::all, gmsh::all, ply::all, vtk::all, binary::all, exodus::all, xdmf::all];
+    let families = [
+        text::all,
+        grids::all,
+        gmsh::all,
+        ply::all,
+        vtk::all,
+        binary::all,
+        exodus::all,
+        xdmf::all,
+        abaqus::all,
+    ];
     families.into_iter().flat_map(|all| all(mesh)).collect()
 }
 
