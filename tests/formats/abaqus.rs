@@ -168,6 +168,21 @@ fn vertices_between_sections_are_held() {
     assert!(read(&text).notes()[0].contains("set ELSEWHERE, which is not here"));
 }
 
+/// meshio writes sets without sections, and lists of elements without sets.
+#[test]
+fn sets_alone_tell_regions_apart_where_nothing_else_does() {
+    let plain = deck().replace(", ELSET=Left", "").replace(", ELSET=Right", "");
+    let between = |more: &str| read(&[&plain, more].concat()).interface_vertices().to_vec();
+    assert_eq!(between(""), []);
+    assert_eq!(between("*ELSET, ELSET=all\n1, 2, 3, 4\n"), []);
+    assert_eq!(between("*ELSET, ELSET=a\n1, 2\n"), [4]);
+    assert_eq!(between("*ELSET, ELSET=all, GENERATE\n1, 4\n*ELSET, ELSET=a\n1\n"), [4]);
+    assert_eq!(between("*ELSET, ELSET=a, INTERNAL\n1, 2\n"), []);
+    assert_eq!(between("*ELSET, ELSET=a\n1, 2\n*SOLID SECTION, ELSET=a, MATERIAL=M\n1.\n"), []);
+    let regions = read(&[&plain, "*ELSET, ELSET=a\n1, 3\n*ELSET, ELSET=b\n3, 4\n"].concat());
+    assert_eq!(regions.regions(), Some(&[0, 1, 2, 3][..]));
+}
+
 fn parts() -> String {
     format!(
         "*Part, name=P\n{}*Elset, elset=Set-1\n1\n*Nset, nset=mid\n5\n*End Part\n*Part, name=Q\n*Node\n1, 9., 9.\n*End Part\n*Assembly, name=A\n\
@@ -223,7 +238,7 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
     assert_eq!(with("*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"), Ok(vec![]));
     assert!(
         with("*ELSET, ELSET=a\n1\n").unwrap()[0]
-            .starts_with("sets, sections and surfaces of more.inp")
+            .starts_with("more.inp, which is included, has sets, sections or surfaces")
     );
     for more in ["*NODE\n7, 1., 1.\n", "** rows\n9, 1, 2, 3\n", "*include, input = last.inp\n"] {
         let error = with(more).unwrap_err();
@@ -232,11 +247,33 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
             "{error}"
         );
     }
-    assert!(with("*INCLUDE, INPUT=more.inp\n").is_ok());
+    // Files that include themselves or each other, many times.
+    assert_eq!(
+        with(&"*INCLUDE, INPUT=more.inp\n*INCLUDE, INPUT=a.inp\n".repeat(50)).map_err(drop),
+        Err(())
+    );
+    assert_eq!(with(&"*INCLUDE, INPUT=more.inp\n".repeat(50)), Ok(vec![]));
+    let two = read(&[&main[..], "*INCLUDE, INPUT=other.inp\n*INCLUDE, INPUT=other.inp\n"].concat());
+    assert!(
+        two.notes()[0].starts_with("2 files such as more.inp, which are included, are not there")
+    );
     assert_eq!(
         read(&main).notes(),
-        ["more.inp, which is included, is not there: it is taken to hold no part of the mesh"]
+        ["more.inp, which is included, is not there: no part of the mesh is taken to be in it"]
     );
+}
+
+#[test]
+fn third_coordinates_are_data_if_they_differ() {
+    let raised = deck()
+        .replace("3, 2., 2.\n", "3, 2., 2., 3.D-1, 0., 0., 1.\n")
+        .replace("5, 1., 1.\n", "5, 1., 1., nan\n");
+    let file = read(&raised);
+    assert_eq!(file.data_names(), ["z"]);
+    let [z] = &file.point_fields(None).unwrap()[..] else { panic!() };
+    assert_eq!(z.values()[..4], [0.0, 0.0, 0.3, 0.0]);
+    assert!(z.values()[4].is_nan());
+    assert_eq!(read(&deck()).data_names(), [""; 0]);
 }
 
 /// Neither Abaqus nor CalculiX reads more than 20 characters of a number.
@@ -268,10 +305,13 @@ fn coordinates_are_written_in_20_characters() {
 
 #[test]
 fn sets_of_sets_that_would_take_forever_are_refused() {
-    let mut text = [NODES, "*ELEMENT, TYPE=CPS3\n"].concat();
+    let mut text = [NODES, "*ELEMENT, TYPE=CPS3, ELSET=all\n"].concat();
     (0..4000).for_each(|t| text.push_str(&format!("{}, 1, 2, 5\n", t + 1)));
-    assert!(read(&text).groups().unwrap().is_empty());
+    assert_eq!(read(&text).groups().unwrap().len(), 1);
     (0..4000).for_each(|set| text.push_str(&format!("*ELSET,ELSET=s{set},GENERATE\n1,4000\n")));
     let error = read(&text).groups().unwrap_err().to_string();
+    let of_regions =
+        MeshFile::from_bytes(Path::new("a.inp"), text.replace(", ELSET=all", "").into());
+    assert_eq!(of_regions.unwrap_err().to_string(), error);
     assert!(error.contains("its sets have more members than any mesh of this size"), "{error}");
 }

@@ -4,8 +4,8 @@ use super::blocks::{self, Block};
 use crate::error::ReadError;
 use crate::file::source::Source;
 use crate::file::token::quoted;
-use std::collections::HashMap;
-use std::path::Path;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 /// The keywords of a file, and where each stands.
 pub(super) struct Deck<'a> {
@@ -107,33 +107,42 @@ impl<'a> Deck<'a> {
 
     /// Checks the files that this one includes.
     fn check_included(&mut self, source: &Source) -> Result<(), ReadError> {
-        let mut notes = Vec::new();
+        let mut seen = HashSet::new();
+        let (mut with_sets, mut unknown) = (Vec::new(), Vec::new());
         for (at, (block, _)) in self.blocks.iter().enumerate() {
-            if !block.is("INCLUDE") {
-                continue;
-            }
-            let Some(name) = block.name("INPUT") else { continue };
+            let Some(name) = block.name("INPUT").filter(|_| block.is("INCLUDE")) else { continue };
             let before = at.checked_sub(1).map(|before| &self.blocks[before].0);
             let continues = before.is_some_and(|before| before.is("NODE") || before.is("ELEMENT"));
-            let shown = quoted(name);
-            match included(&source.path, name, continues, DEPTH) {
+            match included(&source.path, (name, continues), &mut seen, DEPTH) {
                 Included::Mesh => {
+                    let shown = quoted(name);
                     let problem =
                         format!("{shown}, which is included here, holds nodes or elements");
                     return Err(block.error(source, problem, "Put its text in place of this line"));
                 }
-                Included::Sets => {
-                    notes.push(format!(
-                        "sets, sections and surfaces of {shown}, which is included, are not read"
-                    ));
-                }
-                Included::Unknown => {
-                    notes.push(format!("{shown}, which is included, is not there: it is taken to hold no part of the mesh"));
-                }
+                Included::Sets => with_sets.push(name),
+                Included::Unknown => unknown.push(name),
                 Included::Other => {}
             }
         }
-        self.notes.append(&mut notes);
+        let told = |names: &[&[u8]], one: &str, several: &str| {
+            let first = names.first().map(|name| quoted(name))?;
+            Some(match names.len() {
+                1 => format!("{first}, which is included, {one}"),
+                count => format!("{count} files such as {first}, which are included, {several}"),
+            })
+        };
+        const NONE: &str = "there: no part of the mesh is taken to be in";
+        self.notes.extend(told(
+            &with_sets,
+            "has sets, sections or surfaces: they are not read",
+            "have sets, sections or surfaces: they are not read",
+        ));
+        self.notes.extend(told(
+            &unknown,
+            &format!("is not {NONE} it"),
+            &format!("are not {NONE} them"),
+        ));
         Ok(())
     }
 }
@@ -182,10 +191,18 @@ enum Included {
     Mesh,
 }
 
-/// Looks into an included file. Its first rows are part of a list if the list `continues` there.
-fn included(path: &Path, name: &[u8], continues: bool, depth: u32) -> Included {
+/// Looks into an included file, once. Its first rows are part of a list if the list `continues` there.
+fn included(
+    path: &Path,
+    (name, continues): (&[u8], bool),
+    seen: &mut HashSet<(PathBuf, bool)>,
+    depth: u32,
+) -> Included {
     let name = String::from_utf8_lossy(name).into_owned();
     let path = path.parent().unwrap_or(Path::new("")).join(name);
+    if !seen.insert((path.clone(), continues)) {
+        return Included::Other;
+    }
     let is_file = std::fs::metadata(&path).is_ok_and(|about| about.is_file());
     let loaded = if is_file && depth > 0 { Source::load(&path).ok() } else { None };
     let Some(source) = loaded else { return Included::Unknown };
@@ -202,7 +219,7 @@ fn included(path: &Path, name: &[u8], continues: bool, depth: u32) -> Included {
                 || GENERATORS.iter().any(|keyword| block.is(keyword));
         let is_set = ["ELSET", "NSET", "SURFACE"].iter().any(|keyword| block.is(keyword));
         let own = match block.name("INPUT").filter(|_| block.is("INCLUDE")) {
-            Some(name) => included(&path, name, false, depth - 1),
+            Some(name) => included(&path, (name, false), seen, depth - 1),
             None if is_mesh => return Included::Mesh,
             None if is_set || is_section(block) => Included::Sets,
             None => Included::Other,

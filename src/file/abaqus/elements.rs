@@ -12,12 +12,12 @@ use crate::file::sink::{Element, Kind, Sink, Within};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
 use crate::file::token::quoted;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.
 #[derive(Default)]
 pub(super) struct Found {
-    /// The number of the section of each element, counted from 1.
+    /// The number of the section of each element, or of the sets that it is in, counted from 1.
     sections: Vec<u32>,
     /// The names of the sets that are groups.
     names: Vec<Vec<u8>>,
@@ -42,9 +42,8 @@ impl Found {
             names.map(<[u8]>::to_ascii_uppercase).collect()
         };
         let (listed, of_lists) = (names("ELSET"), names("ELEMENT"));
-        let mut of_sections = sections.iter().filter_map(|block| block.name("ELSET"));
-        let mut of_sections = of_sections.by_ref().map(<[u8]>::to_ascii_uppercase);
-        let of_sections: Vec<Vec<u8>> = of_sections.by_ref().collect();
+        let of_sections = sections.iter().filter_map(|block| block.name("ELSET"));
+        let of_sections: Vec<Vec<u8>> = of_sections.map(<[u8]>::to_ascii_uppercase).collect();
         if let Some(name) =
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
@@ -53,9 +52,12 @@ impl Found {
         }
         // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
+        // Where nothing else tells regions apart, sets do.
+        let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
         let has_surfaces =
             deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
-        if !by_sets && !has_surfaces && !sink.asks_for_groups() {
+        let has_groups = sink.asks_for_groups();
+        if !by_sets && !by_members && !has_surfaces && !has_groups {
             return Ok(found);
         }
         let mut tags = Vec::new();
@@ -85,7 +87,7 @@ impl Found {
                 }
             }
         }
-        if sink.asks_for_groups() {
+        if has_groups || by_members {
             for (number, name) in sets.named() {
                 let group = found.names.len() as u32;
                 let members = sets.members(number, all, (source, effort))?;
@@ -93,6 +95,19 @@ impl Found {
                 found.names.push(name);
             }
             found.within.sort_unstable();
+        }
+        if by_members {
+            found.sections = vec![0; tags.len()];
+            let mut numbers: HashMap<Vec<u32>, u32> = HashMap::new();
+            for of_element in found.within.chunk_by(|a, b| a.0 == b.0) {
+                let groups = of_element.iter().map(|&(_, group)| group).collect();
+                let next = numbers.len() as u32 + 1;
+                let number = *numbers.entry(groups).or_insert(next);
+                found.sections[of_element[0].0 as usize] = number;
+            }
+        }
+        if !has_groups {
+            found.within.clear();
         }
         found.find_sides((source, deck), &sets, all, effort)?;
         Ok(found)
@@ -152,11 +167,17 @@ impl Found {
         // The groups that the sink was told of last.
         let mut told: &[(u32, u32)] = &[];
         let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
+        // How many elements hold their nodes, and the types of these.
+        let (mut holding, mut types_of) = (0, BTreeSet::new());
         for List { block, of, kind, set, of_assembly } in lists {
             let rows = &mut rows::of(&mut cursor, block);
             let Some(kind) = *kind else {
                 tell(&self.names, &mut told, &[], sink);
-                held(rows, of, Some(deck).filter(|_| *of_assembly), sink)?;
+                let count = held(rows, Some(deck).filter(|_| *of_assembly), sink)?;
+                if count > 0 {
+                    holding += count;
+                    types_of.insert(of);
+                }
                 continue;
             };
             let ahead = sink.takes_ahead();
@@ -181,6 +202,10 @@ impl Found {
                 place += 1;
                 Ok(())
             })?;
+        }
+        if let Some(first) = types_of.first() {
+            let word = if types_of.len() == 1 { "the type" } else { "types such as" };
+            sink.note(&fixed_note(holding, "element", &format!(" of {word} {}", quoted(first))));
         }
         lines.sort_by_key(|&(surface, _)| surface);
         for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {
@@ -219,13 +244,12 @@ fn tell<'f>(
     *told = now;
 }
 
-/// Hands on the nodes of elements that hold them; `assembly` is given for elements of an assembly.
+/// Hands on the nodes of elements that hold them, and counts the elements. `assembly` is given for elements of an assembly.
 fn held(
     rows: &mut Cursor<'_>,
-    of: &[u8],
     assembly: Option<&Deck<'_>>,
     sink: &mut dyn Sink,
-) -> Result<(), ReadError> {
+) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
     rows::each_held(rows, assembly, |cursor, tag, node| {
         let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
@@ -233,8 +257,5 @@ fn held(
         count += u64::from(last.replace(tag) != Some(tag));
         Ok(())
     })?;
-    if count > 0 {
-        sink.note(&fixed_note(count, "element", &format!(" of the type {}", quoted(of))));
-    }
-    Ok(())
+    Ok(count)
 }

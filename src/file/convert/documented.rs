@@ -243,7 +243,7 @@ const ROWS: [Row; 24] = [
         "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances if one part or instance has elements",
         [
             "lines, quadrilaterals, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
-            "`ELSET` of its `*ELEMENT`, and section",
+            "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",
             "element sets, node sets and surfaces by name",
             "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
         ],
