@@ -107,7 +107,8 @@ fn only_the_tokens_of_data_change_in_text() {
         file.write_to_with("out".as_ref(), &mut out, &file.mesh().points, &fields).unwrap();
         let tokens = |bytes: &[u8]| -> Vec<String> {
             let text = str::from_utf8(bytes).unwrap();
-            text.split_ascii_whitespace().map(str::to_owned).collect()
+            let is_between = |c: char| c.is_ascii_whitespace() || c == ';';
+            text.split(is_between).map(str::to_owned).collect()
         };
         let (old, new) = (tokens(&made.bytes), tokens(&out));
         assert_eq!(old.len(), new.len());
