@@ -103,6 +103,7 @@ mod metric;
 mod outcome;
 mod parallel;
 mod periodic;
+mod precision;
 mod quality;
 mod resume;
 mod run;
@@ -151,10 +152,11 @@ pub use interpolate::Interpolation;
 pub use measure::{
     Better, Change, Definition, Measure, Measured, QUANTILES, Spread, Statistics, UnknownMeasure,
 };
-pub use mesh::{Mesh, Precision};
+pub use mesh::Mesh;
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
 pub use periodic::{Motion, Periodic};
+pub use precision::Precision;
 pub use quality::Quality;
 pub use run::{
     Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,

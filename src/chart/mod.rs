@@ -7,7 +7,8 @@ use std::collections::HashMap;
 
 use crate::chart::turns::{TURN, Turned, is_pole, pole_of, span, turned};
 use crate::error::MeshError;
-use crate::mesh::{Mesh, Precision};
+use crate::mesh::Mesh;
+use crate::precision::Precision;
 
 /// A mesh in longitude and latitude, in degrees, with longitudes continued across the line where they jump by a full
 /// turn: at 180, or at 0 where they go up to 360. Triangles across that line then get the shape in coordinates that

@@ -1,6 +1,6 @@
 //! Numbers in binary files, in either byte order.
 
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// The byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::file::numbers::{Form, Numbers, Places};
 use crate::file::token::{number_end, skip_to_number};
-use crate::mesh::{Precision, short_text};
+use crate::precision::{Precision, short_text};
 use std::io::Write;
 use std::ops::Range;
 

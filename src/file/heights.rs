@@ -5,7 +5,7 @@ use crate::file::numbers::{Form, Places};
 use crate::file::records::{Field, LONG};
 use crate::file::sink::{Home, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
 /// data.

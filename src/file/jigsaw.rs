@@ -13,7 +13,7 @@ use crate::file::source::Source;
 use crate::file::syntax::Syntax;
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::{integer, quoted};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 pub(crate) struct Jigsaw;
 

@@ -15,7 +15,7 @@ use crate::file::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 pub(crate) struct MeditBinary;
 

@@ -8,8 +8,9 @@ use crate::file::numbers::{Encoded, Numbers, Places};
 use crate::file::parsed::Parsed;
 use crate::file::regions::interface_vertices;
 use crate::file::source::Source;
-use crate::mesh::{Mesh, Precision};
+use crate::mesh::Mesh;
 use crate::periodic::{Motion, Periodic};
+use crate::precision::Precision;
 use std::fmt;
 use std::path::Path;
 

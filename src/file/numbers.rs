@@ -1,7 +1,7 @@
 //! How coordinates and other numbers are stored in a file.
 
 use crate::file::binary::Order;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::ops::Range;
 
 /// How the coordinates of a vertex are stored in its file, from the offset of x on.

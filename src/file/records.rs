@@ -6,8 +6,8 @@
 use crate::file::binary::Order;
 use crate::file::numbers::FoundPlaces;
 use crate::file::tags::{FoundTags, TagMap};
-use crate::mesh::Precision;
 use crate::parallel::{map_parts, map_ranges};
+use crate::precision::Precision;
 use std::ops::Range;
 
 /// Records that one thread reads at a time.

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
     use crate::file::binary::Order;
     use crate::file::numbers::{Form, Numbers, Places};
-    use crate::mesh::Precision;
+    use crate::precision::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let places = Places::List(x_at.to_vec());

@@ -11,7 +11,7 @@ use crate::file::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
 use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 pub(crate) struct Selafin;
 

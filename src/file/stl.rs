@@ -14,7 +14,7 @@ use crate::file::sink::{
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::collections::HashMap;
 
 pub(crate) struct Stl;

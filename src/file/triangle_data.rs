@@ -6,7 +6,7 @@ use crate::file::heights::TextNumbers;
 use crate::file::point_data::{PointData, Wanted};
 use crate::file::source::Source;
 use crate::file::triangle::{attribute_names, rows, vertex_header};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// Reads the wanted attributes of vertices. The file must have been read before.
 pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {

@@ -1,8 +1,8 @@
 //! How far vertices moved in a run, and how sizes of elements changed.
 
 use crate::error::MeshError;
-use crate::mesh::Precision;
 use crate::parallel::collect;
+use crate::precision::Precision;
 use crate::topology::Topology;
 
 /// What is different between two states of a mesh, at its free vertices and at those on lines that have slid.

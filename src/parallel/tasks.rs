@@ -136,4 +136,20 @@ mod tests {
         }
         assert_eq!(map_parts(["a", "b", "c"], |i, part| format!("{i}{part}")), ["0a", "1b", "2c"]);
     }
+
+    /// The calling thread takes part, whether it is one of a pool or not.
+    #[test]
+    fn loops_within_loops_do_each_task_once() {
+        let count = || {
+            let done = AtomicUsize::new(0);
+            for_each(7, &|i| for_each(i, &|j| _ = done.fetch_add(1 + j, Ordering::Relaxed)));
+            done.into_inner()
+        };
+        let expected = (0..7).map(|i| (0..i).map(|j| 1 + j).sum::<usize>()).sum();
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(count), expected);
+        }
+        (0..200).for_each(|_| assert_eq!(count(), expected));
+    }
 }

@@ -2,9 +2,9 @@
 
 use crate::error::SmoothError;
 use crate::layout::Problem;
-use crate::mesh::Precision;
 use crate::metric::Metric;
 use crate::metric::Scheme;
+use crate::precision::Precision;
 use crate::run::line_search::LONGEST;
 use crate::run::plan::Plan;
 use crate::run::step::{Derivatives, Sharpness};

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use crate::run::Step;
 use crate::slide::chains::chains;
 use crate::slide::newton::{self, Reach, Window};
@@ -38,13 +38,7 @@ impl Slide {
         }
         let size =
             moved.iter().flat_map(|&v| before[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()));
-        let digits = match stored {
-            Precision::Single => f64::from(f32::EPSILON),
-            Precision::Double => f64::EPSILON,
-            // Fourteen digits, as negative numbers with an exponent of two digits have.
-            Precision::Text20 => 256.0 * f64::EPSILON,
-        };
-        Sliding::new(before, topology, self).astray(&moved, after, 8.0 * digits * size)
+        Sliding::new(before, topology, self).astray(&moved, after, 8.0 * stored.epsilon() * size)
     }
 }
 

@@ -14,7 +14,8 @@ use std::ops::ControlFlow;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
-use crate::mesh::{Mesh, Precision};
+use crate::mesh::Mesh;
+use crate::precision::Precision;
 use crate::run::regularization::epsilon;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;

@@ -6,7 +6,8 @@ use glam::DVec2;
 use crate::error::SmoothError;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
-use crate::mesh::{Mesh, Precision};
+use crate::mesh::Mesh;
+use crate::precision::Precision;
 use crate::run::{
     Keeper, Keeping, Observer, Options, Plan, Step, Stop, StopRule, line_search, set_guards,
 };
@@ -48,15 +49,9 @@ impl<'s> Limit<'s> {
         problem: &'s Problem,
         (most, stored): (f64, Precision),
     ) -> Self {
-        let digits = match stored {
-            Precision::Single => f64::from(f32::EPSILON),
-            Precision::Double => f64::EPSILON,
-            // Fourteen digits, as negative numbers with an exponent of two digits have.
-            Precision::Text20 => 256.0 * f64::EPSILON,
-        };
         let edges = mean_edges(topology, &mesh.points);
         let bound = |([x, y], edge): (&[f64; 2], &f64)| {
-            let rounding = 2.0 * digits * x.abs().max(y.abs());
+            let rounding = 2.0 * stored.epsilon() * x.abs().max(y.abs());
             (most * edge * (1.0 - 1e-9) - rounding).max(0.0)
         };
         let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();

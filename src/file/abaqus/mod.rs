@@ -21,7 +21,7 @@ use crate::file::source::Source;
 use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use blocks::Block;
 use deck::Deck;
 use elements::Found;

@@ -4,7 +4,7 @@ use super::job::Job;
 use super::spelling::{Spelling, distinct};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
-use crate::mesh::short_text;
+use crate::precision::short_text;
 use std::fmt::Write;
 
 /// How many numbers a row of a set has.

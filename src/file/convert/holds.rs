@@ -6,7 +6,7 @@ use super::spelling::Spelling;
 use super::tags::{Tags, decides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// What a format can hold of a mesh.
 #[derive(Clone, Copy)]

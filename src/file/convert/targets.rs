@@ -5,7 +5,7 @@ use super::job::Job;
 use super::spelling::Spelling;
 use super::{abaqus, exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
 use crate::file::format::Format;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// A format that meshes are converted to: a row of [`TARGETS`].
 pub(crate) struct Target {

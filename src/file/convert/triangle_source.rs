@@ -11,7 +11,7 @@ use crate::file::token::float;
 use crate::file::triangle::{
     Numbers, Segments, attribute_names, header, rows, vertex_header, vertex_number,
 };
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// Reads the description of a mesh from its files.
 pub(super) fn content(

@@ -8,7 +8,7 @@ use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 const ORDER: Order = Order::Big;
 

@@ -4,7 +4,7 @@ use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::hdf5::{Array, Dataset, Hdf5};
 use crate::file::source::Source;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::borrow::Cow;
 use std::ops::Range;
 

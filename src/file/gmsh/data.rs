@@ -6,7 +6,7 @@ use crate::file::heights::TextNumbers;
 use crate::file::numbers::Places;
 use crate::file::sink::{PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// Data of nodes are skipped if fewer than one in this many nodes has them.
 const FEW: u64 = 16;

@@ -28,7 +28,7 @@ use crate::file::source::Source;
 use crate::file::syntax::Syntax;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use model::Model;
 
 /// A remark for the user on parameters that cannot be updated.

@@ -5,8 +5,8 @@ use crate::file::binary::Order;
 use crate::file::sink::Pairs;
 use crate::file::text::Cursor;
 use crate::file::token::{float, integer};
-use crate::mesh::Precision;
 use crate::periodic::Motion;
+use crate::precision::Precision;
 
 /// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;

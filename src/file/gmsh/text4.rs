@@ -8,7 +8,7 @@ use crate::file::heights::{Heights, TextNumbers};
 use crate::file::sink::{Element, Sink};
 use crate::file::syntax::Syntax;
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.

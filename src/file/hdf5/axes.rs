@@ -12,7 +12,7 @@ use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Home, Layout, Sink};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::ops::Range;
 
 /// The coordinates of a mesh, axis by axis. There are at least two.

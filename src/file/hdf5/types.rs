@@ -2,7 +2,7 @@
 
 use super::bytes::{Bytes, Fault};
 use crate::file::binary::Order;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 /// The types of numbers that are told apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use crate::file::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk}
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 mod plain;
 

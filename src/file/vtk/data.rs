@@ -9,7 +9,7 @@ use crate::file::sink::{Column, PointNumbers, Sink, Stored};
 use crate::file::text::Cursor;
 use crate::file::vtk::passed::{array_name, pass, size_of};
 use crate::file::vtk::take;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::borrow::Cow;
 
 /// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own

@@ -22,7 +22,7 @@ use crate::file::sink::{Layout, Sink, Walk, each_row};
 use crate::file::source::Source;
 use crate::file::text::{CORRECT, CUT_OFF, Cursor};
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use data::Regions;
 use lists::{Cells, List};
 

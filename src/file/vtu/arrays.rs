@@ -11,7 +11,7 @@ use crate::file::source::Source;
 use crate::file::text::{CUT_OFF, Cursor};
 use crate::file::token::quoted;
 use crate::file::whole::Whole;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -11,7 +11,7 @@ use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Home, Sink};
 use crate::file::text::{CORRECT, Cursor};
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use std::ops::Range;
 use std::sync::Arc;
 

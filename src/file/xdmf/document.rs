@@ -6,7 +6,7 @@ use crate::file::hdf5::Number;
 use crate::file::source::{Named, Source};
 use crate::file::text::{CORRECT, CUT_OFF};
 use crate::file::token::{ill_formed_xml, quoted, xml_text};
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::ops::Range;

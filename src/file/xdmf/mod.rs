@@ -14,7 +14,7 @@ use crate::file::heights::TextNumbers;
 use crate::file::sink::{Layout, PointNumbers, Sink, Walk};
 use crate::file::source::{Named, Source};
 use crate::file::text::Cursor;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 use document::{Content, Item};
 use heavy::Heavy;
 use std::ops::Range;

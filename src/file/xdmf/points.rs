@@ -12,7 +12,7 @@ use crate::file::records::{Field, NodeRecords, Tags};
 use crate::file::sink::{Home, Layout, Sink};
 use crate::file::text::CORRECT;
 use crate::file::token::quoted;
-use crate::mesh::Precision;
+use crate::precision::Precision;
 
 impl File<'_> {
     /// Hands on the points. Returns how they stand, and how many there are.
