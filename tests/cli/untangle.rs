@@ -44,6 +44,26 @@ fn a_tangled_mesh_is_refused_with_the_option_that_mends_it() {
     assert_eq!(proof.code, Some(0), "{}{}", proof.out, proof.err);
 }
 
+/// The majority of the triangles does not tell then which side is up.
+#[test]
+fn a_mesh_with_more_than_half_of_its_triangles_inverted_is_proved_to_be_mended() {
+    let mut mesh = support::lattice(14, 14);
+    let held = check::held(&mesh);
+    for (point, _) in mesh.points.iter_mut().zip(held).filter(|(_, held)| !held) {
+        // The lattice is 14 wide; its inside is mirrored.
+        point[0] = 14.0 - point[0];
+    }
+    let folder = folder(&mesh);
+    let run = folder.line("in.node out.node --untangle --engine cpu --report run.json").clean();
+    assert_holds(&run.out, &["\nuntangled ", "\ninverted ", "           0\n"]);
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path("run.json")).unwrap()).unwrap();
+    let bad = report["untangled"]["bad_before"].as_u64().unwrap_or_default();
+    assert!(2 * bad > mesh.triangles.len() as u64, "{report}");
+    assert_eq!(report["certificate"]["inverted"], 0);
+    folder.line("compare in.node out.node").clean();
+}
+
 #[test]
 fn a_sound_mesh_is_smoothed_as_without_the_option() {
     let folder = folder(&disturbed());

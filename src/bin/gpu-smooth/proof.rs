@@ -50,6 +50,10 @@ impl Proof {
                 held = astray;
             }
             bad = topology.bad_triangles(new)?;
+            if !bad.is_empty() {
+                // Where more than half of the triangles were inverted before, windings are those of the wrong half.
+                bad = Topology::new(after.mesh())?.bad_triangles(new)?;
+            }
         }
         Ok(Self { difference, moved, held, slid, pairs, bad })
     }
