@@ -63,6 +63,8 @@ pub(crate) fn any_triangle_files(folder: &Path, bytes: &[u8]) {
     match MeshFile::read(&folder.join("fuzzed.node")) {
         Ok(file) => {
             use_file(&file);
+            // Of an earlier mesh, whose lines are not those of this one.
+            drop(fs::remove_file(folder.join("again.poly")));
             file.write(&folder.join("again.node"), &file.mesh().points).unwrap();
             for ending in ["node", "ele"] {
                 let [own, again] = ["fuzzed", "again"]
@@ -104,7 +106,10 @@ fn use_file(file: &MeshFile) {
         let Some(text) = conversion.text() else { continue };
         match MeshFile::from_bytes(Path::new("fuzzed"), text.into_bytes()) {
             Ok(again) => {
-                assert!(again.mesh().points == mesh.points, "other points, written as {name}");
+                // Some formats hold fewer digits.
+                let stored = |point: &[f64; 2]| point.map(|x| again.precision().rounded(x));
+                let points: Vec<_> = mesh.points.iter().map(stored).collect();
+                assert!(again.mesh().points == points, "other points, written as {name}");
                 let mut lists = [&again.mesh().triangles, &mesh.triangles].map(Vec::clone);
                 if conversion.lost().iter().any(|lost| lost.starts_with("the order of triangles")) {
                     lists.iter_mut().for_each(|list| list.sort_unstable());
@@ -205,12 +210,15 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     let topology = smoother.topology();
     let bad = validity::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    // Without a line to slide along, this lists fixed vertices that have moved.
     let slide = slide.unwrap_or_else(|| {
         let held = (0..mesh.points.len() as u32).collect();
         Slide { held, ..Slide::default() }
     });
     let astray = slide.astray(topology, &mesh.points, &outcome.points, options.stored);
-    assert!(astray.is_empty(), "vertices {astray:?} have moved otherwise than along their lines");
+    // Where edges are no longer than some roundings of coordinates, these alone take vertices past one another.
+    let is_told = options.stored == Precision::Double || !slide.held.is_empty();
+    assert!(astray.is_empty() || !is_told, "vertices {astray:?} have left their lines");
     let f = |points: &[[f64; 2]]| smoother.f(options.scheme.base(), points).unwrap();
     let (start, end) = (f(&mesh.points), f(&outcome.points));
     let rises = options.improve_worst.is_some();
