@@ -51,7 +51,7 @@ fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
     let is_it = before.eq_ignore_ascii_case(key.as_bytes());
     match number.and_then(integer).filter(|_| is_it) {
         Some(count) => Ok(count),
-        None => Err(cursor.error(format!("the row `{key} = ` and a number is missing"), CORRECT)),
+        None => Err(cursor.error(format!("the row `{key} = ` with a number is missing"), CORRECT)),
     }
 }
 

@@ -34,7 +34,7 @@ impl Walk for Mike {
         }
         sink.end_nodes(cursor)?;
         heights.send("z", Numbers::TEXT.into(), sink);
-        cursor.row(0, 1, "lines of the number of elements")?;
+        cursor.row(0, 1, "lines of the count of elements")?;
         let elements = cursor.integer("the number of elements")?;
         let most = cursor.integer("the largest number of nodes of an element")?;
         if most > 4 {

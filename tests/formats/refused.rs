@@ -116,6 +116,35 @@ fn other_contents_of_known_formats_are_refused() {
     assert_refused("a.2dm", other, &["a.2dm:3: a node string has node 0"]);
 }
 
+#[test]
+fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
+    let head = "100079 1000 4 UTM-32\n1 0 0 0 1\n2 1 0 0 1\n3 1 1 0 1\n4 0 1 0 1\n";
+    let mike =
+        |rest: &str, parts: &[&str]| assert_refused("a.mesh", format!("{head}{rest}"), parts);
+    mike("2 5 25\n1 1 2 3 4 0\n", &["a.mesh:6: elements have up to 5 nodes. Elements of three"]);
+    mike("2 3 21\n1 1 2 9\n", &["a.mesh:7: triangle 1 has node 9, which the list of nodes "]);
+    mike("2 3 21\n1 1 2\n", &["a.mesh:7: a vertex of a triangle is missing. "]);
+    mike("", &["a.mesh:5: the file ends after 0 of 1 lines of the count of elements. "]);
+    let fvcom = |text: &str, parts: &[&str]| assert_refused("a_grd.dat", text, parts);
+    fvcom("Node Number = 4\n1 1 2 3 1\n", &["a_grd.dat:2: the row `Cell Number = ` with a number"]);
+    fvcom("1 2 3\n", &["a_grd.dat:1: the row `Node Number = ` with a number is missing. "]);
+    let cells = "Node Number = 4\nCell Number = 1\n1 1 2 3 1\n1 0 0\n2 1 0\n3 1 1\n";
+    fvcom(cells, &["a_grd.dat:6: the file ends after 3 of 4 nodes. The file is cut off"]);
+    let jigsaw = |text: &str, parts: &[&str]| assert_refused("a.msh", text, parts);
+    jigsaw("MSHID=3;EUCLIDEAN-GRID\n", &["a.msh:1: a mesh of the kind EUCLIDEAN-GRID is not read"]);
+    jigsaw("MSHID=3\nPOINT=four\n", &["a.msh:2: POINT= is followed by `four`, not a whole number"]);
+    jigsaw("MSHID=3\nNDIMS=4\nPOINT=1\n", &["a.msh:3: the points have 4 coordinates. Points of 2"]);
+    jigsaw("MSHID=3\nPOINT=1\n0;x;0\n", &["a.msh:3: y of a point is `x`, not a finite number"]);
+    jigsaw("MSHID=3\nPOINT=0\nPOINT=0\n", &["a.msh:3: this is the second list of POINT"]);
+    jigsaw("MSHID=3\nTRIA4=1\n0;1;2;3;0\n", &["a.msh:2: TRIA4 make this a volume mesh. "]);
+    jigsaw("MSHID=3\nTRIA3=1\n0;1;2;0\n", &["a.msh: it has no POINT. Save the mesh again"]);
+    let points = "MSHID=3\nPOINT=3\n0;0;0\n1;0;0\n0;1;0\n";
+    jigsaw(
+        &format!("{points}TRIA3=1\n0;1;3;0\n"),
+        &["a.msh:7: triangle 0 has node 3, which POINT "],
+    );
+}
+
 /// The name of a format's list of vertices in messages.
 fn list_of(made: &Made) -> &'static str {
     match made.format {
