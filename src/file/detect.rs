@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 27] = [
+        let cases: [(&[u8], &str); 28] = [
             (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
             (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
             (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
@@ -224,7 +224,8 @@ mod tests {
             (b"CDF\x02\0\0", "Exodus II"),
             (b"\x89HDF\r\n", "HDF5"),
             (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
-            (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM is not read"),
+            (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM"),
+            (b"MFEM NC mesh v1.0\n", "nonconforming, NURBS or inline MFEM is not read"),
             (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI)"),
             (b"100000 1014 4 PROJCS[\"WGS 84 / UTM zone 32N\"]\n1 0 0 -5e0 1\n", "MIKE (DHI)"),
             (b"4 LONG/LAT\n 1 4.5 55.5 -3 0\n", "MIKE (DHI)"),

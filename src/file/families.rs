@@ -5,7 +5,7 @@ use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
     abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb,
-    mike, obj, off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
+    mfem, mike, obj, off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -52,6 +52,7 @@ impl Family {
             Format::Sms2dm => &SMS,
             Format::Mike => &MIKE,
             Format::Fvcom => &FVCOM,
+            Format::Mfem => &MFEM,
             Format::Jigsaw => &JIGSAW,
             Format::FreeFem => &FREEFEM,
             Format::Selafin => &SELAFIN,
@@ -128,6 +129,7 @@ static SMS: Family =
     family("SMS 2dm", &[".2dm"], &[b"MESH2D", b"mesh2d", b"Mesh2D"], reader::<sms::Sms>());
 pub(crate) static MIKE: Family =
     family("MIKE (DHI)", &[".mesh"], &[b"100079 ", b"100079\t"], reader::<mike::Mike>());
+static MFEM: Family = family("MFEM", &[".mesh"], &[b"MFEM mesh"], reader::<mfem::Mfem>());
 static FVCOM: Family = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
 static JIGSAW: Family =
     family("JIGSAW", &[".msh"], &[b"MSHID", b"mshid"], reader::<jigsaw::Jigsaw>());
@@ -188,8 +190,12 @@ static LS_DYNA: Family =
     unread("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
 static FLUENT: Family =
     unread("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
-static MFEM: Family =
-    unread("MFEM", &[], &[b"MFEM mesh", b"MFEM NC mesh"], "Save it as VTK: Mesh::PrintVTK of MFEM");
+static MFEM_OTHER: Family = unread(
+    "nonconforming, NURBS or inline MFEM",
+    &[],
+    &[b"MFEM NC mesh", b"MFEM NURBS", b"MFEM INLINE"],
+    "Save it as VTK: Mesh::PrintVTK of MFEM",
+);
 static DOLFIN: Family = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
 static COMSOL: Family =
     unread("COMSOL", &[".mphtxt", ".mphbin"], &[b"# Created by COMSOL"], "Export the mesh as VTK");
@@ -216,7 +222,7 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 42] = [
+pub(crate) static FAMILIES: [&Family; 43] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -229,6 +235,7 @@ pub(crate) static FAMILIES: [&Family; 42] = [
     &SMS,
     &MIKE,
     &FVCOM,
+    &MFEM,
     &JIGSAW,
     &FREEFEM,
     &SELAFIN,
@@ -247,7 +254,7 @@ pub(crate) static FAMILIES: [&Family; 42] = [
     &UNV,
     &LS_DYNA,
     &FLUENT,
-    &MFEM,
+    &MFEM_OTHER,
     &DOLFIN,
     &COMSOL,
     &TECPLOT,

@@ -51,6 +51,8 @@ pub enum Format {
     Mike,
     /// FVCOM's grid, `CASE_grd.dat`.
     Fvcom,
+    /// MFEM's `.mesh`.
+    Mfem,
     /// JIGSAW's `.msh`.
     Jigsaw,
     /// FreeFem's `.msh`.
@@ -75,7 +77,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 32] = [
+    pub const ALL: [Format; 33] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -98,6 +100,7 @@ impl Format {
         Format::Sms2dm,
         Format::Mike,
         Format::Fvcom,
+        Format::Mfem,
         Format::Jigsaw,
         Format::FreeFem,
         Format::Selafin,
@@ -135,6 +138,7 @@ impl Format {
             Format::Sms2dm => "SMS 2dm",
             Format::Mike => "MIKE mesh",
             Format::Fvcom => "FVCOM grid",
+            Format::Mfem => "MFEM mesh",
             Format::Jigsaw => "JIGSAW .msh",
             Format::FreeFem => "FreeFem .msh",
             Format::Selafin => "SELAFIN",

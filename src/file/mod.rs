@@ -38,6 +38,7 @@ mod med;
 mod medit;
 mod meditb;
 mod mesh_file;
+mod mfem;
 mod mike;
 mod named;
 mod numbered_nodes;

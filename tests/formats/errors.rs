@@ -156,7 +156,7 @@ fn gmsh_errors_name_line_and_remedy() {
 fn files_of_formats_that_are_not_read_are_refused_by_name() {
     let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
                    Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, MIKE (DHI), FVCOM, \
-                   JIGSAW, FreeFem .msh, SELAFIN";
+                   MFEM, JIGSAW, FreeFem .msh, SELAFIN";
     assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "--weld"]);
     assert_error(&[("a.bdf", "BEGIN BULK\n")], &["Nastran is not read. Convert it "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);

@@ -130,6 +130,15 @@ fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     fvcom("1 2 3\n", &["a_grd.dat:1: the row `Node Number = ` with a number is missing. "]);
     let cells = "Node Number = 4\nCell Number = 1\n1 1 2 3 1\n1 0 0\n2 1 0\n3 1 1\n";
     fvcom(cells, &["a_grd.dat:6: the file ends after 3 of 4 nodes. The file is cut off"]);
+    let mfem = |rest: &str, parts: &[&str]| {
+        assert_refused("a.mesh", format!("MFEM mesh v1.0\ndimension\n{rest}"), parts);
+    };
+    mfem("3\n", &["a.mesh:3: three dimensions make this a volume mesh"]);
+    mfem("2\nelements\n1\n1 9 0 1 2\n", &["a.mesh:6: 9 is no geometry"]);
+    mfem("2\nelements\n1\n1 4 0 1 2 3\n", &["a.mesh:6: elements of a volume make this"]);
+    mfem("2\nelements\n0\nknots\n", &["a.mesh:6: a section `knots` is not read. "]);
+    mfem("2\nvertices\n3\n\nnodes\nFiniteElementSpace\n", &["a.mesh:7: the points are those of a"]);
+    mfem("2\nelements\n0\n", &["a.mesh: it has no vertices. Save the mesh again"]);
     let jigsaw = |text: &str, parts: &[&str]| assert_refused("a.msh", text, parts);
     jigsaw("MSHID=3;EUCLIDEAN-GRID\n", &["a.msh:1: a mesh of the kind EUCLIDEAN-GRID is not read"]);
     jigsaw("MSHID=3\nPOINT=four\n", &["a.msh:2: POINT= is followed by `four`, not a whole number"]);
@@ -155,7 +164,9 @@ fn list_of(made: &Made) -> &'static str {
         Format::Obj => "the list of v rows",
         Format::Adcirc | Format::Mike | Format::Fvcom => "the list of nodes",
         Format::Sms2dm => "the list of ND rows",
-        Format::FreeFem | Format::Off | Format::Ply | Format::PlyBinary => "the list of vertices",
+        Format::FreeFem | Format::Mfem | Format::Off | Format::Ply | Format::PlyBinary => {
+            "the list of vertices"
+        }
         Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",
         Format::Selafin => "the list of points",
         Format::Xdmf => "Geometry",

@@ -144,3 +144,18 @@ fn line_ends_of_old_systems_are_refused_with_a_remedy() {
                          Triangles\n2\n1 2 3 5\n1 3 4 5\nEnd\n";
     assert_same("a.mesh", MEDIT, &MEDIT.replace('\n', "\r"));
 }
+
+const MFEM: &str = "MFEM mesh v1.0\ndimension\n2\nelements\n2\n5 2 0 1 2\n5 2 0 2 3\nboundary\n1\n7 1 0 1\nvertices\n4\n2\n0 0\n1 0\n\
+1 1.25\n0 1\n";
+
+#[test]
+fn a_mesh_of_mfem_is_read_word_by_word_wherever_lines_end() {
+    let (head, body) = MFEM.split_once('\n').unwrap();
+    for (from, to) in
+        [("\n", " "), (" ", "\n"), ("\n", "\t\r\n\n"), ("\n", " # a comment\n"), ("2 0 ", "2\n0 ")]
+    {
+        assert_same("a.mesh", MFEM, &format!("{head}\n{}", body.replace(from, to)));
+    }
+    let broken = MFEM.replace("5 2 0 2 3\n", "5 2 0 2\n");
+    assert_refused("a.mesh", &broken, &["a.mesh:7: a vertex of a triangle is `boundary`"]);
+}

@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 24] = [
+const ROWS: [Row; 25] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -171,6 +171,16 @@ const ROWS: [Row; 24] = [
             "–",
             "nothing",
             "other files of a case, which may repeat coordinates (`_dep.dat`, `_cor.dat`, `_spg.dat`), stay as they are",
+        ],
+    ),
+    row(
+        &[Format::Mfem],
+        "versions 1.0 to 1.3 of conforming meshes with straight edges, items anywhere on lines",
+        [
+            "points, segments, quadrilaterals",
+            "attribute",
+            "attributes of elements and of the boundary",
+            "no points in a finite element space, as curved and periodic meshes have them",
         ],
     ),
     row(

@@ -21,6 +21,8 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
         mike_of_2011(mesh),
         fvcom(mesh),
         fvcom_of_fortran(mesh),
+        mfem(mesh),
+        mfem_of_words(mesh),
         jigsaw(mesh),
         jigsaw_in_space(mesh),
         freefem(mesh),
@@ -169,6 +171,50 @@ fn fvcom_of_fortran(mesh: &Mesh) -> Made {
     );
     let probes = [(142, vertices[VERTEX]), (9 + 2 * TRIANGLE as u64, triangles[TRIANGLE])];
     text.made("with commas", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
+}
+
+/// A mesh as MFEM writes it, with a quadrilateral and named sets of attributes.
+fn mfem(mesh: &Mesh) -> Made {
+    let head = "MFEM mesh v1.3\n\n#\n# TRIANGLE    = 2\n#\n\ndimension\n2\n\nelements\n";
+    let mut text = Text::new(head);
+    let cells = cells(mesh);
+    text.count(cells.len());
+    text.put("\n");
+    let mut triangle = 0;
+    let triangles = text.rows(cells.iter().map(|cell| {
+        let (attribute, kind) = (region(triangle), cell.len() - 1);
+        triangle += usize::from(kind == 2);
+        format!("{attribute} {kind} {}", joined(cell, 0))
+    }));
+    text.put("\nattribute_sets\n1\n\"steel\" 1 5\n\nboundary\n");
+    text.count(2);
+    text.put("\n");
+    text.rows([format!("7 1 {}", joined(&LINE, 0)), "8 1 0 1".into()]);
+    text.put("\nvertices\n");
+    text.count(mesh.points.len());
+    text.put("\n3\n");
+    let vertices = text.rows(points(mesh).map(|(i, at)| format!("{at} {}", z(i))));
+    text.put("mfem_mesh_end\n");
+    let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (CELL as u64, triangles[CELL])];
+    let regions = regions(mesh);
+    let mesh = fixing(mesh, QUADRILATERAL.into_iter().chain(LINE).chain([0, 1]));
+    Made { regions, ..text.made("with a quadrilateral", "in.mesh", Format::Mfem, mesh, probes) }
+}
+
+/// A mesh with its words on few lines.
+fn mfem_of_words(mesh: &Mesh) -> Made {
+    let mut text = Text::new("MFEM mesh v1.0\n dimension 2 elements ");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(t, c)| format!(" {}\t2  {}", region(t), joined(c, 0))));
+    text.put("boundary 0 vertices ");
+    text.count(mesh.points.len());
+    text.put(" 2\n");
+    let vertices = text.rows(points(mesh).map(|(_, at)| at));
+    let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (17, triangles[TRIANGLE])];
+    let regions = regions(mesh);
+    Made { regions, ..text.made("of words", "in.mesh", Format::Mfem, mesh.clone(), probes) }
 }
 
 /// A mesh with an edge, a quadrilateral, tags and values of points, with lists of elements before the points.
