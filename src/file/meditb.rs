@@ -132,7 +132,9 @@ impl Walk for MeditBinary {
             if next == 0 {
                 break;
             }
-            let place = usize::try_from(next).ok().filter(|&place| place > list.at_byte());
+            // Lists that share bytes could not be rewritten one without the other.
+            let end = cursor.at_byte().max(list.at_byte() + 1);
+            let place = usize::try_from(next).ok().filter(|&place| place >= end);
             match place {
                 Some(place) if place <= source.bytes.len() => {
                     *cursor = list;

@@ -292,3 +292,24 @@ fn odd_rows_in_long_lists_are_read_in_their_order() {
         }
     }
 }
+
+/// Vertices that moved would change the bytes of the other list.
+#[test]
+fn lists_of_a_binary_medit_that_share_bytes_are_refused() {
+    let file = |next: i32| {
+        let x = |x: f32| x.to_bits() as i32;
+        let vertices = [[x(0.0), x(0.0), 0], [x(1.0), x(0.0), 0], [x(0.0), x(1.0), 0]];
+        let head = [1, 1, 3, 20, 2, 4, next, 3];
+        let numbers = [&head[..], vertices.as_flattened(), &[6, 0, 1, 1, 2, 3, 0]].concat();
+        let folder = Folder::new(&[]);
+        let bytes: Vec<u8> = numbers.into_iter().flat_map(i32::to_le_bytes).collect();
+        std::fs::write(folder.path("a.meshb"), bytes).unwrap();
+        MeshFile::read(&folder.path("a.meshb")).map(|file| file.mesh().points.len())
+    };
+    assert_eq!(file(68).map_err(|error| error.to_string()), Ok(3));
+    for next in [32, 56, 64] {
+        let error = file(next).unwrap_err().to_string();
+        let problem = format!("the next list is announced at byte {next}, which is not behind");
+        assert!(error.contains(&problem), "{error}");
+    }
+}
