@@ -6,7 +6,8 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::heights::{Heights, NO_HEIGHT, TextNumbers};
+use crate::file::heights::TextNumbers;
+use crate::file::numbered_nodes::counted_nodes;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::file::source::Source;
@@ -38,7 +39,6 @@ impl Walk for Jigsaw {
         let cursor = &mut Cursor::new(source).of(Syntax::SEMICOLONS);
         let mut lists = Lists::default();
         let (mut dimensions, mut points) = (2, None);
-        let mut heights = Heights::new(sink);
         while cursor.next_row() {
             // Rows of lists that are read later, or not at all.
             if !cursor.is_at_letter() {
@@ -59,8 +59,11 @@ impl Walk for Jigsaw {
                         return Err(cursor.error(problem, CORRECT));
                     }
                     let count = number(cursor, &key, first)?;
-                    points = Some(List { cursor: cursor.clone(), count });
-                    read_points(cursor, (count, dimensions), &mut heights, sink)?;
+                    cursor.check_vertex_count(count)?;
+                    let start = cursor.clone();
+                    let named = ("a point", "points");
+                    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
+                    points = Some((List { cursor: start, count }, heights));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
                     let kind = match key[0] {
@@ -85,7 +88,7 @@ impl Walk for Jigsaw {
                 _ => {}
             }
         }
-        let Some(points) = points else {
+        let Some((points, heights)) = points else {
             return Err(source.error("it has no POINT", "Save the mesh again"));
         };
         if sink.asks_for_groups() {
@@ -130,37 +133,6 @@ fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadErro
         let (key, value) = (quoted(key), quoted(value));
         cursor.error(format!("{key}= is followed by `{value}`, not a whole number"), CORRECT)
     })
-}
-
-/// Reads the points, of two or three coordinates each.
-fn read_points(
-    cursor: &mut Cursor<'_>,
-    (count, dimensions): (u64, u64),
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
-) -> Result<(), ReadError> {
-    cursor.check_vertex_count(count)?;
-    if !(2..=3).contains(&dimensions) {
-        let problem = format!("the points have {dimensions} coordinates");
-        return Err(cursor.error(problem, "Points of 2 and 3 coordinates are read"));
-    }
-    sink.expect_nodes(cursor.capacity(count, "0;0;0\n".len()));
-    each_row(
-        cursor,
-        count,
-        "points",
-        sink,
-        |cursor| {
-            let point = cursor.point("a point")?;
-            let z = if dimensions == 3 { cursor.height("a point")? } else { NO_HEIGHT };
-            Ok((point, z))
-        },
-        |cursor, sink, index, ((x_at, at), z)| {
-            sink.node(cursor, index, 2, x_at, at);
-            heights.see(z);
-            Ok(())
-        },
-    )
 }
 
 /// Hands on the tags of points that are not 0.

@@ -5,7 +5,7 @@
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::heights::{Heights, NO_HEIGHT};
+use crate::file::numbered_nodes::counted_nodes;
 use crate::file::numbers::Numbers;
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::file::source::Source;
@@ -86,28 +86,8 @@ fn vertices(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErro
         return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
     }
     let dimensions = cursor.integer("the number of coordinates")?;
-    if !(2..=3).contains(&dimensions) {
-        let problem = format!("the vertices have {dimensions} coordinates");
-        return Err(cursor.error(problem, "Vertices of 2 and 3 coordinates are read"));
-    }
-    sink.expect_nodes(cursor.capacity(count, "0 0\n".len()));
-    let mut heights = Heights::new(sink);
-    each_row(
-        cursor,
-        count,
-        "vertices",
-        sink,
-        |cursor| {
-            let point = cursor.point("a vertex")?;
-            let z = if dimensions == 3 { cursor.height("a vertex")? } else { NO_HEIGHT };
-            Ok((point, z))
-        },
-        |cursor, sink, done, ((x_at, at), z)| {
-            sink.node(cursor, done, 2, x_at, at);
-            heights.see(z);
-            Ok(())
-        },
-    )?;
+    let named = ("a vertex", "vertices");
+    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
     sink.end_nodes(cursor)?;
     heights.send("z", Numbers::TEXT.into(), sink);
     Ok(())

@@ -142,7 +142,7 @@ fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     let jigsaw = |text: &str, parts: &[&str]| assert_refused("a.msh", text, parts);
     jigsaw("MSHID=3;EUCLIDEAN-GRID\n", &["a.msh:1: a mesh of the kind EUCLIDEAN-GRID is not read"]);
     jigsaw("MSHID=3\nPOINT=four\n", &["a.msh:2: POINT= is followed by `four`, not a whole number"]);
-    jigsaw("MSHID=3\nNDIMS=4\nPOINT=1\n", &["a.msh:3: the points have 4 coordinates. Points of 2"]);
+    jigsaw("MSHID=3\nNDIMS=4\nPOINT=1\n", &["a.msh:3: the points have 4 coordinates. Those of 2"]);
     jigsaw("MSHID=3\nPOINT=1\n0;x;0\n", &["a.msh:3: y of a point is `x`, not a finite number"]);
     jigsaw("MSHID=3\nPOINT=0\nPOINT=0\n", &["a.msh:3: this is the second list of POINT"]);
     jigsaw("MSHID=3\nTRIA4=1\n0;1;2;3;0\n", &["a.msh:2: TRIA4 make this a volume mesh. "]);
