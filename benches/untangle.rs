@@ -1,7 +1,7 @@
 //! How many tangled meshes are untangled, and how long that takes.
 //!
-//! `cargo bench --bench untangle -- [VERTICES...]`, 2,000 and 57,000 by default. Ten seeds of each kind. Seconds are of the
-//! clock; those of the processor are of all threads, a mean over the seeds, and depend less on what else the machine does (Linux only).
+//! `cargo bench --bench untangle -- [VERTICES...] [WORD...]`, 2,000 and 57,000 by default; only the kinds whose name has one of the
+//! words, if there are any. Ten seeds of each kind. Seconds are of the clock; those of the processor are of all threads, a mean over the seeds, and depend less on what else the machine does (Linux only).
 
 #![allow(clippy::print_stdout)]
 
@@ -17,7 +17,7 @@ use support::{boundaries, tangle};
 const SEEDS: u64 = 10;
 
 fn main() {
-    let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
+    let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![2_000, 57_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     println!(
@@ -78,6 +78,11 @@ fn moved_boundaries(vertices: usize) {
 
 /// Untangles meshes of one kind and prints a row on all of them.
 fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
+    let is_word = |arg: &String| !arg.starts_with("--") && arg.parse::<usize>().is_err();
+    let words: Vec<String> = std::env::args().skip(1).filter(is_word).collect();
+    if !words.is_empty() && !words.iter().any(|word| kind.contains(word)) {
+        return;
+    }
     let (mut bad, mut sweeps, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
     let (mut done, mut vertices, mut processor) = (0, 0, Some(0.0));
     for mesh in meshes {

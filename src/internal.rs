@@ -36,8 +36,7 @@ pub fn run_on_gpu<'a>(
 /// Returns the energy that untangling lowers, for a triangle spanned by `edges` from a corner, which should have the
 /// area `target`: its value, gradient (x, y) and Hessian (xx, xy, yy) by the position of the corner.
 pub fn untangling_energy(edges: [[f64; 2]; 2], target: f64, epsilon: f64) -> [f64; 6] {
-    let corner = Corner { edges: edges.map(DVec2::from), target };
-    let found = corner.expansion(epsilon);
-    let [xx, xy, yy] = found.hessian;
-    [found.value, found.gradient.x, found.gradient.y, xx, xy, yy]
+    let corner = Corner { edges, inverse_target: 1.0 / target };
+    let Dual { value, gradient: [x, y], hessian: [xx, xy, yy] } = corner.expansion(epsilon);
+    [value, x, y, xx, xy, yy]
 }

@@ -51,24 +51,33 @@ macro_rules! with_lanes {
                 );
             }
             let $f = $metric.formulas();
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            match level.as_avx2() {
-                Some($simd) => fearless_simd::Simd::vectorize(
-                    $simd,
-                    #[inline(always)]
-                    || $body,
-                ),
-                None => {
-                    let $simd = fearless_simd::Fallback::new();
-                    $body
-                }
-            }
-            #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-            fearless_simd::dispatch!(level, $simd => $body)
+            $crate::cpu::lanes::with_instructions!(level, $simd => $body)
         }
     };
 }
 pub(crate) use with_lanes;
+
+/// Evaluates an expression with `$simd` bound to the instruction set that it is compiled for: AVX2 on x86 if the processor has it.
+macro_rules! with_instructions {
+    ($level:expr, $simd:ident => $body:expr) => {{
+        let level = $level;
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match level.as_avx2() {
+            Some($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            None => {
+                let $simd = fearless_simd::Fallback::new();
+                $body
+            }
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        fearless_simd::dispatch!(level, $simd => $body)
+    }};
+}
+pub(crate) use with_instructions;
 
 /// Number of lanes.
 pub(crate) const LANES: usize = 4;

@@ -2,7 +2,7 @@
 
 mod differences;
 mod engine;
-mod lanes;
+pub(crate) mod lanes;
 mod newton;
 mod objective;
 mod patch;
@@ -11,6 +11,8 @@ mod sweep;
 mod vcycle;
 
 pub(crate) use engine::CpuEngine;
+pub(crate) use newton::descent;
 pub(crate) use objective::mean_excess;
+pub(crate) use patch::points;
 pub(crate) use sweep::held_back;
 pub(crate) use vcycle::correction;

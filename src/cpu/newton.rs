@@ -124,7 +124,7 @@ fn newton_step<S: Simd, const MAPPED: bool>(
 /// eigenvalues become absolute, and at least `floor` times the largest. There is no descent where the objective is flat
 /// or not finite.
 #[inline(always)]
-fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Mask<S>) {
+pub(crate) fn descent<S: Simd>(at: &Dual<Lanes<S>>, floor: f64) -> (Points<S>, Lanes<S>, Mask<S>) {
     let [xx, xy, yy] = at.hessian;
     let scale = Real::max(Real::max(xx.abs(), xy.abs()), yy.abs());
     let one = scale.constant(1.0);

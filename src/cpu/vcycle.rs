@@ -230,4 +230,29 @@ mod tests {
         let share = (left.sum::<f64>() / whole).sqrt();
         assert!(share < most, "{share} of the wave is left");
     }
+
+    /// A line of held vertices from side to side parts the square. Nothing of one part reaches the other one.
+    #[test]
+    fn corrections_do_not_reach_across_held_vertices() {
+        let problem = square();
+        let positions = &problem.positions()[..problem.free_count()];
+        let most = positions.iter().map(|p| p.x).fold(0.0, f64::max);
+        let line = positions.iter().map(|p| p.x).filter(|x| *x > 0.5 * most).fold(most, f64::min);
+        let held: Vec<bool> = positions.iter().map(|p| p.x == line).collect();
+        let areas = vec![1.0; problem.positions().len()];
+        let hierarchy = Hierarchy::of_sizes(&problem, &areas, &held);
+        assert_eq!(held.iter().filter(|held| **held).count(), 79);
+        let in_none = hierarchy.aggregate_of().iter().map(|&of| of == NONE);
+        assert!(in_none.eq(held.iter().copied()));
+        let on_the_left = |v: usize| positions[v].x < line;
+        let mut gradient = noise(problem.free_count(), 0.37);
+        for (_, g) in gradient.iter_mut().enumerate().filter(|(v, _)| !on_the_left(*v)) {
+            *g = Vec2::ZERO;
+        }
+        let correction = correction(&hierarchy, &problem, &gradient);
+        assert!(dot(&gradient, &correction) < 0.0);
+        for (v, step) in correction.iter().enumerate().filter(|(v, _)| !held[*v]) {
+            assert_eq!(on_the_left(v), *step != Vec2::ZERO, "vertex {v} at {}", positions[v]);
+        }
+    }
 }

@@ -292,15 +292,20 @@ impl<'p> Cutter<'p> {
 
     /// Counts the edges from the vertices of a piece to its boundaries, and forgets what paths cost there.
     fn measure_depths(&mut self, piece: &[u32]) {
+        // The piece has each vertex once for each of its triangles there.
+        const UNSEEN: u32 = u32::MAX;
         for v in self.pieces.inside(piece) {
-            self.depth[v as usize] = 0;
-            self.cost[v as usize] = u64::MAX;
+            self.depth[v as usize] = UNSEEN;
         }
         let mut front = Vec::new();
         for v in self.pieces.inside(piece) {
-            let touches = || self.problem.ring_of(v).iter().any(|&k| self.pieces.is_held(k));
-            if self.depth[v as usize] == 0 && touches() {
-                self.depth[v as usize] = 1;
+            if self.depth[v as usize] != UNSEEN {
+                continue;
+            }
+            self.cost[v as usize] = u64::MAX;
+            let touches = self.problem.ring_of(v).iter().any(|&k| self.pieces.is_held(k));
+            self.depth[v as usize] = u32::from(touches);
+            if touches {
                 front.push(v);
             }
         }

@@ -4,16 +4,12 @@ use glam::{DVec2, Vec2};
 
 use crate::cpu::correction;
 use crate::layout::Problem;
-use crate::parallel::{collect, map_parts, map_ranges};
+use crate::parallel::{collect, for_each_chunk, map_parts, map_ranges};
 use crate::run::multilevel::{Hierarchy, Search};
 use crate::untangle::cuts::{Short, cut};
-use crate::untangle::energy::{Corner, Expansion};
+use crate::untangle::patches::{Four, Tangle, fours};
 
-/// The most lengths that are tried along a Newton step.
-const TRIALS: u32 = 10;
-/// Share of the predicted decrease that a trial must reach (Armijo).
-const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// Number of triangles of one task.
+/// Number of vertices or triangles of one task.
 const CHUNK: usize = 1 << 12;
 
 /// Positions and what they are judged by.
@@ -46,7 +42,7 @@ impl Assessment {
 /// The vertices that move, and the triangles that they change.
 pub(crate) struct Region {
     /// By color.
-    vertices: Vec<Vec<u32>>,
+    vertices: Vec<Vec<Four>>,
     /// By number in the problem.
     triangles: Vec<u32>,
 }
@@ -79,7 +75,7 @@ impl Region {
             vertices: problem
                 .colors()
                 .iter()
-                .map(|c| c.clone().filter(|&v| moves(v)).collect())
+                .map(|color| fours(problem, color.clone().filter(|&v| moves(v))))
                 .collect(),
             triangles: (0..triangles.len() as u32)
                 .filter(|&t| triangles[t as usize].iter().any(|&v| moves(v)))
@@ -90,7 +86,7 @@ impl Region {
     /// All free vertices.
     pub(crate) fn whole(problem: &Problem) -> Region {
         Region {
-            vertices: problem.colors().iter().map(|color| color.clone().collect()).collect(),
+            vertices: problem.colors().iter().map(|c| fours(problem, c.clone())).collect(),
             triangles: (0..problem.triangles().len() as u32).collect(),
         }
     }
@@ -101,36 +97,14 @@ impl<'p> State<'p> {
         Self { problem, positions: problem.positions().to_vec(), targets, length: 0.1 }
     }
 
-    /// The triangle of a vertex at `at` and two others.
-    #[inline]
-    fn corner(&self, v: u32, [k, l]: [u32; 2], at: DVec2) -> Corner {
-        let target = |v: u32| self.targets[v as usize];
-        Corner {
-            edges: [k, l].map(|v| self.positions[v as usize] - at),
-            target: (target(v) + target(k) + target(l)) / 3.0,
-        }
-    }
-
-    /// The triangle of this number in the problem, at some positions.
-    #[inline]
-    fn triangle(&self, t: u32, at: impl Fn(u32) -> DVec2) -> Corner {
-        let corners = self.problem.triangles()[t as usize];
-        let [p, q, r] = corners.map(at);
-        let target = corners.map(|v| self.targets[v as usize]).iter().sum::<f64>() / 3.0;
-        Corner { edges: [q - p, r - p], target }
-    }
-
-    /// The triangles around a free vertex, with the vertex at `at`.
-    #[inline]
-    fn patch(&self, v: u32, at: DVec2) -> impl Iterator<Item = Corner> + '_ {
-        let ring = self.problem.ring_of(v);
-        let next = ring.iter().skip(1).chain(ring.first());
-        ring.iter().zip(next).map(move |(&k, &l)| self.corner(v, [k, l], at))
+    fn tangle<'a>(&'a self, positions: &'a [DVec2]) -> Tangle<'a> {
+        Tangle { problem: self.problem, positions, targets: &self.targets }
     }
 
     /// How far the region is from being untangled.
     pub(crate) fn assess(&self, region: &Region) -> Assessment {
-        let area = |&t: &u32| self.triangle(t, |v| self.positions[v as usize]).area();
+        let tangle = self.tangle(&self.positions);
+        let area = |&t: &u32| tangle.triangle(&self.problem.triangles()[t as usize]).area();
         let parts = map_parts(region.triangles.chunks(CHUNK), |_, part| {
             part.iter().map(area).fold(Assessment::EMPTY, |all, area| {
                 all.and(Assessment { least: area, bad: usize::from(area.is_nan() || area <= 0.0) })
@@ -141,34 +115,14 @@ impl<'p> State<'p> {
 
     /// Visits every vertex of the region once, color by color.
     pub(crate) fn sweep(&mut self, region: &Region, epsilon: f64) {
-        for vertices in &region.vertices {
-            let moved = collect(vertices.len(), |i| self.visited(vertices[i], epsilon));
-            for (&v, to) in vertices.iter().zip(moved) {
-                self.positions[v as usize] = to;
-            }
-        }
-    }
-
-    /// Where a Newton step with a line search takes a vertex.
-    fn visited(&self, v: u32, epsilon: f64) -> DVec2 {
-        let at = self.positions[v as usize];
-        let mut here = Expansion::default();
-        self.patch(v, at).for_each(|corner| here.add(&corner.expansion(epsilon)));
-        let direction = here.descent();
-        let slope = direction.dot(here.gradient);
-        // Not so where the direction is not finite.
-        if slope < 0.0 && slope.is_finite() {
-            let mut length = 1.0;
-            for _ in 0..TRIALS {
-                let to = at + direction * length;
-                let there: f64 = self.patch(v, to).map(|corner| corner.energy(epsilon)).sum();
-                if there <= here.value + SUFFICIENT_DECREASE * length * slope {
-                    return to;
+        for fours in &region.vertices {
+            let moved = self.tangle(&self.positions).steps(fours, epsilon);
+            for (four, to) in fours.iter().zip(moved) {
+                for (&v, to) in four.iter().zip(to) {
+                    self.positions[v as usize] = to;
                 }
-                length *= 0.5;
             }
         }
-        at
     }
 
     /// Cuts the mesh and puts vertices on the cuts. Returns which vertices are to be held: those, and all that are not free.
@@ -179,34 +133,30 @@ impl<'p> State<'p> {
     }
 
     /// The coarser levels for [`global_step`](Self::global_step) and [`make_harmonic`](Self::make_harmonic).
-    pub(crate) fn hierarchy(&self) -> Hierarchy {
-        Hierarchy::of_sizes(self.problem, &self.targets)
+    pub(crate) fn hierarchy(&self, held: &[bool]) -> Hierarchy {
+        Hierarchy::of_sizes(self.problem, &self.targets, held)
     }
 
-    /// Moves all free vertices along a correction from the coarser levels, as far as the energy falls.
-    pub(crate) fn global_step(&mut self, hierarchy: &Hierarchy, epsilon: f64) {
-        let gradient: Vec<DVec2> = collect(self.problem.free_count(), |v| {
-            let corners = self.patch(v as u32, self.positions[v]);
-            corners.map(|corner| corner.expansion(epsilon).gradient).sum()
-        });
+    /// Moves all free vertices along a correction from the coarser levels, as far as the energy falls. The region is the whole mesh.
+    pub(crate) fn global_step(&mut self, region: &Region, hierarchy: &Hierarchy, epsilon: f64) {
+        let gradient = self.gradient(region, epsilon);
         // The levels compute in single precision, and near flat triangles the gradient may be beyond it.
-        let most = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs().max_element()));
+        let most = largest(&gradient);
         let unit = if most > 0.0 && most.is_finite() { 1.0 / most } else { return };
-        let scaled: Vec<Vec2> = gradient.iter().map(|g| (g * unit).as_vec2()).collect();
+        let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] * unit).as_vec2());
         let direction = correction(hierarchy, self.problem, &scaled);
         let along = |v: usize| direction.get(v).map_or(DVec2::ZERO, |d| d.as_dvec2() * most);
-        let slope: f64 = gradient.iter().enumerate().map(|(v, g)| g.dot(along(v))).sum();
+        let slopes = map_ranges(gradient.len(), CHUNK, |range| {
+            range.map(|v| gradient[v].dot(along(v))).sum::<f64>()
+        });
+        let slope: f64 = slopes.into_iter().sum();
         if !(slope < 0.0 && slope.is_finite()) {
             return;
         }
         let energy = |length: f64| {
             let there: Vec<DVec2> =
                 collect(self.positions.len(), |v| self.positions[v] + along(v) * length);
-            let at = |v: u32| there[v as usize];
-            let sums = map_ranges(self.problem.triangles().len(), CHUNK, |range| {
-                range.map(|t| self.triangle(t as u32, at).energy(epsilon)).sum::<f64>()
-            });
-            sums.into_iter().sum::<f64>()
+            self.tangle(&there).energy(epsilon)
         };
         let mut search = Search::new(energy(0.0), slope);
         let mut next = Some((2.0 * self.length).clamp(1e-6, 1e3));
@@ -214,11 +164,24 @@ impl<'p> State<'p> {
             next = search.tried(length, Some(energy(length)));
         }
         if let Some((length, _)) = search.best() {
-            for v in 0..self.problem.free_count() {
-                self.positions[v] += along(v) * length;
-            }
+            let free = self.problem.free_count();
+            update(&mut self.positions[..free], |v, at| *at += along(v) * length);
             self.length = length;
         }
+    }
+
+    /// The gradient of the energy by the positions of the free vertices, zero outside of the region.
+    fn gradient(&self, region: &Region, epsilon: f64) -> Vec<DVec2> {
+        let mut gradient = vec![DVec2::ZERO; self.problem.free_count()];
+        for fours in &region.vertices {
+            let found = self.tangle(&self.positions).gradients(fours, epsilon);
+            for (four, found) in fours.iter().zip(found) {
+                for (&v, found) in four.iter().zip(found) {
+                    gradient[v as usize] = found;
+                }
+            }
+        }
+        gradient
     }
 
     /// Puts every vertex that is not held at the weighted mean of its neighbors. Within convex boundaries of held vertices no
@@ -237,11 +200,11 @@ impl<'p> State<'p> {
             ring.map(|k| (here - at(k)) * f64::from(hierarchy.weight(v, k))).sum()
         };
         let preconditioned = |residual: &[DVec2]| -> Vec<DVec2> {
-            let most = residual.iter().fold(0.0, |most: f64, r| most.max(r.abs().max_element()));
+            let most = largest(residual);
             if most == 0.0 {
                 return vec![DVec2::ZERO; residual.len()];
             }
-            let scaled: Vec<Vec2> = residual.iter().map(|r| (r / most).as_vec2()).collect();
+            let scaled: Vec<Vec2> = collect(residual.len(), |v| (residual[v] / most).as_vec2());
             let coarse = correction(hierarchy, problem, &scaled);
             let diagonal = hierarchy.inverse_diagonal();
             collect(free, |v| match held[v] {
@@ -250,7 +213,12 @@ impl<'p> State<'p> {
             })
         };
         // Both coordinates at once, each with step lengths of its own.
-        let dot = |a: &[DVec2], b: &[DVec2]| -> DVec2 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let dot = |a: &[DVec2], b: &[DVec2]| -> DVec2 {
+            let parts = map_ranges(free, CHUNK, |range| {
+                a[range.clone()].iter().zip(&b[range]).map(|(a, b)| a * b).sum::<DVec2>()
+            });
+            parts.into_iter().sum()
+        };
         let ratio = |a: DVec2, b: DVec2| {
             DVec2::new(
                 if b.x == 0.0 { 0.0 } else { a.x / b.x },
@@ -269,17 +237,28 @@ impl<'p> State<'p> {
             let of = |k: usize| direction.get(k).copied().unwrap_or(DVec2::ZERO);
             let applied: Vec<DVec2> = collect(free, |v| differences(v, &of));
             let length = ratio(norm, dot(&direction, &applied));
-            for v in 0..free {
-                self.positions[v] += length * direction[v];
-                residual[v] -= length * applied[v];
-            }
+            update(&mut self.positions[..free], |v, at| *at += length * direction[v]);
+            update(&mut residual, |v, residual| *residual -= length * applied[v]);
             z = preconditioned(&residual);
             let next = dot(&residual, &z);
             let share = ratio(next, norm);
             norm = next;
-            for (d, z) in direction.iter_mut().zip(&z) {
-                *d = *z + share * *d;
-            }
+            update(&mut direction, |v, direction| *direction = z[v] + share * *direction);
         }
     }
+}
+
+/// The largest coordinate of some vectors, without its sign.
+fn largest(vectors: &[DVec2]) -> f64 {
+    let parts = map_parts(vectors.chunks(CHUNK), |_, part| {
+        part.iter().fold(0.0, |most: f64, v| most.max(v.abs().max_element()))
+    });
+    parts.into_iter().fold(0.0, f64::max)
+}
+
+/// Changes each of some vectors, given its index.
+fn update(vectors: &mut [DVec2], change: impl Fn(usize, &mut DVec2) + Sync) {
+    for_each_chunk(vectors, CHUNK, |first, vectors| {
+        vectors.iter_mut().enumerate().for_each(|(i, vector)| change(first + i, vector));
+    });
 }

@@ -60,21 +60,26 @@ impl Hierarchy {
     /// Builds the levels. `roots` has the square root of the objective's stiffness at each free vertex. The weight of
     /// an edge is the product of the roots at its ends.
     pub(crate) fn new(problem: &Problem, roots: Vec<f32>) -> Self {
-        Self::with_roots(problem, || usable(roots))
+        Self::with_roots(problem, |_| true, || usable(roots))
     }
 
     /// Builds the levels for untangling. The weights are the reciprocals of the areas that elements should have at each
-    /// vertex.
-    pub(crate) fn of_sizes(problem: &Problem, areas: &[f64]) -> Self {
-        Self::with_roots(problem, || {
-            areas[..problem.free_count()].iter().map(|area| (0.5 / area).sqrt() as f32).collect()
-        })
+    /// vertex. Free vertices that are `held` are not moved by corrections.
+    pub(crate) fn of_sizes(problem: &Problem, areas: &[f64], held: &[bool]) -> Self {
+        let root = |area: &f64| (0.5 / area).sqrt() as f32;
+        let roots = || areas[..problem.free_count()].iter().map(root).collect();
+        Self::with_roots(problem, |v| !held[v], roots)
     }
 
-    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices.
-    fn with_roots(problem: &Problem, roots: impl FnOnce() -> Vec<f32> + Send) -> Self {
+    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices, of which only those
+    /// that `moves` names are unknowns.
+    fn with_roots(
+        problem: &Problem,
+        moves: impl Fn(usize) -> bool + Sync,
+        roots: impl FnOnce() -> Vec<f32> + Send,
+    ) -> Self {
         // Aggregation is serial, so the weights are computed at the same time.
-        let (aggregates, root) = rayon::join(|| aggregates(problem), roots);
+        let (aggregates, root) = rayon::join(|| aggregates(problem, &moves), roots);
         let (member_start, member) = aggregates.members();
         let mut hierarchy = Self {
             aggregates,
@@ -86,7 +91,7 @@ impl Hierarchy {
             levels: Vec::new(),
         };
         hierarchy.inverse_diagonal = hierarchy.diagonal_inverted(problem);
-        hierarchy.levels = levels(hierarchy.first_coarse_operator(problem));
+        hierarchy.levels = levels(hierarchy.first_coarse_operator(problem, &moves));
         hierarchy
     }
 
@@ -143,17 +148,26 @@ impl Hierarchy {
 
     /// Returns the Galerkin operator on the aggregates. The prolongation to the vertices is not stored, as it follows
     /// from the aggregates and the one-rings.
-    fn first_coarse_operator(&self, problem: &Problem) -> Sparse {
+    fn first_coarse_operator(
+        &self,
+        problem: &Problem,
+        moves: &(impl Fn(usize) -> bool + Sync),
+    ) -> Sparse {
         let free = problem.free_count();
         let of = &self.aggregates.of;
-        let free_neighbors =
-            |v: usize| neighbors(problem, v).map(|k| k as usize).filter(move |&k| k < free);
+        let free_neighbors = |v: usize| {
+            let neighbors = neighbors(problem, v).map(|k| k as usize);
+            neighbors.filter(move |&k| k < free && moves(k))
+        };
         // The weight of an edge is the product of two roots, so A = R (E - N) R, with R the diagonal matrix of the
         // roots, E diagonal, and N the adjacency matrix. Therefore `prolongation` is R P here, and the matrix in the
         // product is E - N, with entries -1 off the diagonal.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {
+            if !moves(v) {
+                return;
+            }
             if of[v] != NONE {
                 sum.add(of[v], (1.0 - SMOOTHING) * root[v]);
             }
@@ -256,10 +270,14 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
 /// Makes the aggregates of the free vertices. With equal weights, the share that [`STRONG`] bounds is the inverse of
 /// the geometric mean of the numbers of neighbors. So a vertex with fifty neighbors does not form one aggregate with
 /// all of them: they would share one correction, and the prolongation to that vertex could not be smoothed.
-fn aggregates(problem: &Problem) -> Aggregates {
+fn aggregates(problem: &Problem, moves: &(impl Fn(usize) -> bool + Sync)) -> Aggregates {
     let free = problem.free_count();
     let degree = |v: u32| problem.ring_of(v).len() as f32;
-    let free_neighbors = |v: usize| neighbors(problem, v).filter(move |&k| (k as usize) < free);
+    // A vertex that does not move has none, and so is in no aggregate.
+    let free_neighbors = |v: usize| {
+        let joins = move |&k: &u32| (k as usize) < free && moves(k as usize) && moves(v);
+        neighbors(problem, v).filter(joins)
+    };
     let strong_neighbors = |v: usize| {
         let most = 1.0 / (STRONG * STRONG * degree(v as u32));
         free_neighbors(v).filter(move |&k| degree(k) <= most)
@@ -321,7 +339,7 @@ mod tests {
         let hub = (0..problem.free_count())
             .find(|&v| problem.ring_of(v as u32).len() == around as usize)
             .unwrap();
-        let groups = aggregates(&problem);
+        let groups = aggregates(&problem, &|_| true);
         assert!(groups.of.iter().all(|&group| group != NONE));
         let with_hub = groups.of.iter().filter(|&&group| group == groups.of[hub]).count();
         assert!(with_hub < around as usize / 2, "{with_hub} vertices");

@@ -1,0 +1,220 @@
+//! Loops of untangling over vertices and triangles, four at a time.
+
+use fearless_simd::Level;
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_instructions};
+use crate::cpu::{descent, points};
+use crate::layout::Problem;
+use crate::metric::{Dual, Real};
+use crate::parallel::{for_each_chunk, map_parts};
+use crate::untangle::energy::{Corner, EIGENVALUE_FLOOR};
+
+/// The most lengths that are tried along a Newton step.
+const TRIALS: u32 = 10;
+/// Share of the predicted decrease that a trial must reach (Armijo).
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+/// Number of fours of vertices of one task.
+const FOURS: usize = 256;
+/// Number of triangles of one task.
+const TRIANGLES: usize = 1 << 12;
+
+/// Four free vertices with the same number of neighbors. Where there are fewer, the last one is repeated.
+pub(super) type Four = [u32; LANES];
+
+/// Some free vertices in fours, in their order.
+pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> Vec<Four> {
+    let vertices: Vec<u32> = vertices.collect();
+    let alike = vertices.chunk_by(|&v, &k| problem.ring_of(v).len() == problem.ring_of(k).len());
+    let fours = alike.flat_map(|alike| alike.chunks(LANES));
+    fours.map(|four| std::array::from_fn(|lane| four[lane.min(four.len() - 1)])).collect()
+}
+
+/// A mesh while it is untangled.
+#[derive(Clone, Copy)]
+pub(super) struct Tangle<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) positions: &'a [DVec2],
+    /// The area that triangles should have at each vertex.
+    pub(super) targets: &'a [f64],
+}
+
+impl Tangle<'_> {
+    /// Where a Newton step with a line search takes each vertex. No two of them may be neighbors.
+    pub(super) fn steps(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+        self.visits::<true>(fours, epsilon)
+    }
+
+    /// The gradient of the energy at each vertex.
+    pub(super) fn gradients(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+        self.visits::<false>(fours, epsilon)
+    }
+
+    /// Where steps take vertices if `STEPS`, and the gradients if not.
+    fn visits<const STEPS: bool>(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+        let mut found = vec![[DVec2::ZERO; LANES]; fours.len()];
+        for_each_chunk(&mut found, FOURS, |first, found| {
+            with_instructions!(Level::new(), simd => {
+                let mut room = Vec::new();
+                for (found, &four) in found.iter_mut().zip(&fours[first..]) {
+                    let at = points(simd, self.positions, four);
+                    let patches = Patches::gather(simd, self, four, &mut room);
+                    let [x, y] = match STEPS {
+                        true => patches.step(at, epsilon),
+                        false => patches.expansion(at, epsilon).gradient,
+                    };
+                    for lane in 0..LANES {
+                        found[lane] = DVec2::new(x[lane], y[lane]);
+                    }
+                }
+            });
+        });
+        found
+    }
+
+    /// The energy of all triangles, summed in an order that does not depend on the number of threads.
+    pub(super) fn energy(&self, epsilon: f64) -> f64 {
+        let sums = map_parts(
+            self.problem.triangles().chunks(TRIANGLES),
+            |_, triangles| with_instructions!(Level::new(), simd => self.energy_of(simd, triangles, epsilon)),
+        );
+        sums.into_iter().sum()
+    }
+
+    #[inline(always)]
+    fn energy_of<S: Simd>(&self, simd: S, triangles: &[[u32; 3]], epsilon: f64) -> f64 {
+        let (fours, rest) = triangles.as_chunks::<LANES>();
+        let mut sum = Lanes::splat(simd, 0.0);
+        for [t, u, v, w] in fours {
+            let first = [t[0], u[0], v[0], w[0]];
+            let second = [t[1], u[1], v[1], w[1]];
+            let third = [t[2], u[2], v[2], w[2]];
+            let p = points(simd, self.positions, first);
+            let q = points(simd, self.positions, second);
+            let r = points(simd, self.positions, third);
+            let targets = lanes(simd, self.targets, first)
+                + lanes(simd, self.targets, second)
+                + lanes(simd, self.targets, third);
+            sum += corner(p, [q, r], targets).energy(epsilon);
+        }
+        let last: f64 = rest.iter().map(|t| self.triangle(t).energy(epsilon)).sum();
+        (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
+    }
+
+    /// A triangle, given its vertices.
+    #[inline]
+    pub(super) fn triangle(&self, vertices: &[u32; 3]) -> Corner<f64> {
+        let [p, q, r] = vertices.map(|v| self.positions[v as usize].to_array());
+        let [a, b, c] = vertices.map(|v| self.targets[v as usize]);
+        corner(p, [q, r], a + b + c)
+    }
+}
+
+/// The triangles with one corner at `at` and others at `ends`, given three times the areas that they should have.
+#[inline(always)]
+fn corner<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2], targets: T) -> Corner<T> {
+    Corner { edges: edges(at, [p, q]), inverse_target: at[0].constant(3.0) / targets }
+}
+
+#[inline(always)]
+fn edges<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2]) -> [[T; 2]; 2] {
+    [[p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]]
+}
+
+/// The numbers of some vertices, one in each lane.
+#[inline(always)]
+fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> {
+    let [a, b, c, d] = vertices;
+    let (a, b) = (numbers[a as usize], numbers[b as usize]);
+    Lanes::simd_from(simd, [a, b, numbers[c as usize], numbers[d as usize]])
+}
+
+/// The one-rings of four vertices.
+struct Patches<'r, S: Simd> {
+    /// The neighbors of each vertex, counter-clockwise, with the first repeated at the end: where they are, and one over the area
+    /// that the triangle with the next one should have.
+    ring: &'r [(Points<S>, Lanes<S>)],
+}
+
+impl<'r, S: Simd> Patches<'r, S> {
+    /// Reads the one-rings into `room`.
+    #[inline(always)]
+    fn gather(
+        simd: S,
+        tangle: &Tangle<'_>,
+        four: Four,
+        room: &'r mut Vec<(Points<S>, Lanes<S>)>,
+    ) -> Self {
+        let [a, b, c, d] = four;
+        let a = tangle.problem.ring_of(a);
+        let degree = a.len();
+        let b = &tangle.problem.ring_of(b)[..degree];
+        let c = &tangle.problem.ring_of(c)[..degree];
+        let d = &tangle.problem.ring_of(d)[..degree];
+        room.clear();
+        for i in 0..degree {
+            let neighbors = [a[i], b[i], c[i], d[i]];
+            let target = lanes(simd, tangle.targets, neighbors);
+            room.push((points(simd, tangle.positions, neighbors), target));
+        }
+        room.push(room[0]);
+        let own = lanes(simd, tangle.targets, four);
+        for i in 0..degree {
+            room[i].1 = own.constant(3.0) / (own + room[i].1 + room[i + 1].1);
+        }
+        Self { ring: room }
+    }
+
+    /// The triangle between the neighbors `i` and `i` + 1 with the vertices at `at`.
+    #[inline(always)]
+    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+        let ((p, inverse_target), (q, _)) = (self.ring[i], self.ring[i + 1]);
+        Corner { edges: edges(at, [p, q]), inverse_target }
+    }
+
+    /// The energies of the patches with their derivatives.
+    #[inline(always)]
+    fn expansion(&self, at: Points<S>, epsilon: f64) -> Dual<Lanes<S>> {
+        let zero = at[0].constant(0.0);
+        let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
+        for i in 0..self.ring.len() - 1 {
+            sum = sum + self.corner(i, at).expansion(epsilon);
+        }
+        sum
+    }
+
+    /// The energies of the patches.
+    #[inline(always)]
+    fn energy(&self, at: Points<S>, epsilon: f64) -> Lanes<S> {
+        let mut sum = at[0].constant(0.0);
+        for i in 0..self.ring.len() - 1 {
+            sum += self.corner(i, at).energy(epsilon);
+        }
+        sum
+    }
+
+    /// Where a Newton step with a line search takes the vertices.
+    #[inline(always)]
+    fn step(&self, at: Points<S>, epsilon: f64) -> Points<S> {
+        let here = self.expansion(at, epsilon);
+        let ([dx, dy], slope, descends) = descent(&here, EIGENVALUE_FLOOR);
+        let wanted = slope * SUFFICIENT_DECREASE;
+        // Not so where the slope is not finite.
+        let mut searching: Mask<S> = descends & slope.simd_gt(f64::NEG_INFINITY);
+        let mut end = at;
+        let mut length = 1.0;
+        for _ in 0..TRIALS {
+            if searching.all_false() {
+                break;
+            }
+            let to = [at[0] + dx * length, at[1] + dy * length];
+            let most = here.value + wanted * length;
+            let taken = searching & self.energy(to, epsilon).simd_le(most);
+            end = [taken.select(to[0], end[0]), taken.select(to[1], end[1])];
+            searching &= !taken;
+            length *= 0.5;
+        }
+        end
+    }
+}
