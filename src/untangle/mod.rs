@@ -6,66 +6,33 @@
 
 mod cuts;
 pub(crate) mod energy;
+mod judge;
 mod patches;
 mod pieces;
+mod stages;
 mod state;
 
-use std::collections::HashSet;
 use std::ops::ControlFlow;
+
+use glam::DVec2;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
 use crate::mesh::Mesh;
 use crate::precision::Precision;
+use crate::run::multilevel::Hierarchy;
 use crate::run::regularization::epsilon;
 use crate::topology::Topology;
-use crate::topology::overlapping_star;
-use crate::topology::predicates::{bad_triangles, not_positive};
-use cuts::Short;
-use state::{Assessment, Region, State};
-
-/// What is done in turn until the mesh is untangled. Cuts by each rule untangle some meshes that the other rules do not.
-const STAGES: [Stage; 15] = [
-    Stage { start: Start::Near(2), sweeps: 10 },
-    Stage { start: Start::Near(6), sweeps: 20 },
-    Stage { start: Start::Means, sweeps: 10 },
-    Stage { start: Start::Cut(Short::Line), sweeps: 50 },
-    Stage { start: Start::Cut(Short::Both), sweeps: 100 },
-    Stage { start: Start::Cut(Short::Path), sweeps: 150 },
-    Stage { start: Start::Cut(Short::ByChance(1)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(2)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(3)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(4)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(5)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(6)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(7)), sweeps: 100 },
-    Stage { start: Start::Cut(Short::ByChance(8)), sweeps: 100 },
-    Stage { start: Start::Means, sweeps: 100 },
-];
-
-/// After a cut, sweeps go on beyond those of the stage while the least area comes this much nearer to 0 in so many of them.
-const GOES_ON: (u32, f64) = (50, 0.5);
-/// The most sweeps after a cut, in units of those of the stage.
-const LONGEST: u32 = 4;
+use crate::topology::predicates::not_positive;
+use judge::{Judge, Judgment};
+use stages::{STAGES, Stage, Start};
+use state::{Region, State};
 
 /// If more than this share of the triangles are bad, all vertices move from the start.
 const MANY: f64 = 0.05;
 
-struct Stage {
-    start: Start,
-    /// The number of sweeps after which the next stage begins. After a cut it is a multiple of those of [`GOES_ON`].
-    sweeps: u32,
-}
-
-/// Where vertices are when a stage begins, and which of them move.
-enum Start {
-    /// Those move that are within so many edges of bad triangles, from where they are.
-    Near(u32),
-    /// All move, from the means of their neighbors.
-    Means,
-    /// The same, from their means within the pieces into which the mesh is [cut](cuts).
-    Cut(Short),
-}
+/// The number of ends of stages that are kept to go on from.
+const ENDS: usize = 3;
 
 /// The progress of [`untangle`], for a display.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +84,8 @@ pub fn untangle(
 ) -> Result<Untangled, MeshError> {
     let topology = Topology::by_area(mesh)?;
     let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
-    let mut work = Work { mesh, topology: &topology, problem: &problem, stored };
-    let before = work.bad_triangles(&mesh.points);
+    let judge = Judge { mesh, topology: &topology, problem: &problem, stored };
+    let before = judge.bad_triangles(&mesh.points);
     if !before.is_empty()
         && let Some(triangle) = topology.closed_part()
     {
@@ -138,138 +105,36 @@ pub fn untangle(
     if result.left.len() == result.hopeless.len() {
         return Ok(result);
     }
-    work.run(&mut result, observe);
+    Work::new(judge).run(&mut result, observe);
     let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
     result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
     Ok(result)
 }
 
 struct Work<'m> {
-    mesh: &'m Mesh,
-    topology: &'m Topology<'m>,
+    judge: Judge<'m>,
     problem: &'m Problem,
-    stored: Precision,
+    state: State<'m>,
+    /// The coarser levels of all free vertices, once they are needed.
+    levels: Option<Hierarchy>,
+    /// The vertices held by each cut so far.
+    tried: Vec<Vec<bool>>,
+    /// Positions at the ends of stages after cuts, and how far they were from the goal; the nearest first.
+    ends: Vec<(f64, Vec<DVec2>)>,
 }
 
-impl Work<'_> {
-    fn run(
-        &mut self,
-        result: &mut Untangled,
-        observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
-    ) {
-        let targets = target_areas(self.problem, self.problem.positions());
-        let mut state = State::new(self.problem, targets);
-        let mut hierarchy = None;
-        let mut tried = Vec::new();
-        let nobody = vec![false; self.problem.free_count()];
-        for stage in &STAGES {
-            let (region, levels) = match stage.start {
-                Start::Near(rings) => {
-                    let share = result.left.len() as f64 / self.topology.triangles().len() as f64;
-                    // Sweeps that have left no fewer bad triangles are not worth going on with.
-                    let in_vain = result.sweeps > 0 && result.left.len() == result.bad_before;
-                    if share > MANY || in_vain {
-                        continue;
-                    }
-                    (Region::around(self.problem, &self.bad(&state), rings), None)
-                }
-                Start::Means | Start::Cut(_) => {
-                    let held = match stage.start {
-                        Start::Cut(short) => {
-                            let held = state.cut(short);
-                            // Without holes all rules find the same cuts, or none.
-                            if tried.contains(&held) {
-                                continue;
-                            }
-                            tried.push(held.clone());
-                            held
-                        }
-                        _ => nobody.clone(),
-                    };
-                    // Where vertices are held, levels of the others alone find the means in a fifth of the iterations.
-                    let of_others = held.contains(&true).then(|| state.hierarchy(&held));
-                    let levels = &*hierarchy.get_or_insert_with(|| state.hierarchy(&nobody));
-                    state.make_harmonic(of_others.as_ref().unwrap_or(levels), &held);
-                    if self.judge(&state, result) {
-                        return;
-                    }
-                    (Region::whole(self.problem), Some(levels))
-                }
-            };
-            let mut least = state.assess(&region).least;
-            let (often, share) = GOES_ON;
-            let most = match stage.start {
-                Start::Cut(_) => LONGEST * stage.sweeps,
-                Start::Near(_) | Start::Means => stage.sweeps,
-            };
-            let mut before = f64::NEG_INFINITY;
-            for sweep in 0..most {
-                if sweep % often == 0 {
-                    if sweep >= stage.sweeps && least < share * before {
-                        break;
-                    }
-                    before = least;
-                }
-                let epsilon = epsilon(least);
-                state.sweep(&region, epsilon);
-                if let Some(levels) = levels {
-                    state.global_step(&region, levels, epsilon);
-                }
-                result.sweeps += 1;
-                let Assessment { least: now, bad } = state.assess(&region);
-                least = now;
-                // The exact judgment takes a pass over the whole mesh.
-                if bad <= result.hopeless.len() && self.judge(&state, result) {
-                    return;
-                }
-                if observe(&Untangling { sweep: result.sweeps, bad }).is_break() {
-                    self.judge(&state, result);
-                    return;
-                }
-            }
-            if self.judge(&state, result) {
-                return;
-            }
-        }
+impl<'m> Work<'m> {
+    fn new(judge: Judge<'m>) -> Self {
+        let problem = judge.problem;
+        let targets = target_areas(problem, problem.positions());
+        let state = State::new(problem, targets);
+        Self { judge, problem, state, levels: None, tried: Vec::new(), ends: Vec::new() }
     }
 
-    /// The triangles of the problem that are inverted or flat, or so by rounding.
-    fn bad(&self, state: &State<'_>) -> Vec<u32> {
-        let points: Vec<[f64; 2]> = state.positions.iter().map(|p| p.to_array()).collect();
-        let mut bad = not_positive(&points, self.problem.triangles());
-        bad.extend(self.problem.beyond_precision(&state.positions));
-        bad
-    }
-
-    /// The triangles of the mesh that are inverted or flat with the vertices at `points`, and those with a free vertex that
-    /// are so flat that double precision cannot judge them. In ascending order.
-    fn bad_triangles(&self, points: &[[f64; 2]]) -> Vec<BadTriangle> {
-        let triangles = self.topology.triangles();
-        let mut bad = bad_triangles(points, triangles);
-        let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
-        let beyond = self.problem.beyond_precision(&self.problem.normalized(points, Vec::new()));
-        for triangle in self.problem.in_mesh(&beyond, triangles) {
-            if !exact.contains(&triangle) && self.topology.can_move(triangle) {
-                bad.push(BadTriangle { triangle, vertices: triangles[triangle], flat: true });
-            }
-        }
-        bad.sort_unstable_by_key(|bad| bad.triangle);
-        bad
-    }
-
-    /// Takes the positions if fewer triangles are bad than in the result. Returns whether none is left that could be
+    /// Takes the positions into the result if fewer triangles are bad than there. Returns whether none is left that could be
     /// mended.
-    fn judge(&self, state: &State<'_>, result: &mut Untangled) -> bool {
-        let mut points = self.problem.denormalize(self.mesh, &state.positions);
-        for x in points.as_flattened_mut() {
-            *x = self.stored.rounded(*x);
-        }
-        let triangles = self.topology.triangles();
-        let left = self.bad_triangles(&points);
-        let overlapping = match left.is_empty() {
-            true => overlapping_star(&points, triangles, self.topology.free()).map(|(v, _)| v),
-            false => None,
-        };
+    fn is_done(&self, result: &mut Untangled) -> bool {
+        let Judgment { points, left, overlapping } = self.judge.judged(&self.state.positions);
         let separates = result.overlapping.is_some() && overlapping.is_none();
         if left.len() < result.left.len() || left.is_empty() && separates {
             result.points = points;
@@ -277,5 +142,107 @@ impl Work<'_> {
             result.overlapping = overlapping;
         }
         result.left.len() == result.hopeless.len() && result.overlapping.is_none()
+    }
+
+    fn run(
+        &mut self,
+        result: &mut Untangled,
+        observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
+    ) {
+        for stage in &STAGES {
+            let Some(region) = self.begin(&stage.start, result) else { continue };
+            if self.is_done(result) || self.sweep(stage, &region, result, observe).is_break() {
+                return;
+            }
+        }
+    }
+
+    /// Brings the vertices where a stage starts. Returns those that it moves; `None` if there is no reason for the stage.
+    fn begin(&mut self, start: &Start, result: &Untangled) -> Option<Region> {
+        match *start {
+            Start::Near(rings) => {
+                let share = result.left.len() as f64 / self.problem.triangles().len() as f64;
+                // Sweeps that have left no fewer bad triangles are not worth going on with.
+                let in_vain = result.sweeps > 0 && result.left.len() == result.bad_before;
+                let is_useful = share <= MANY && !in_vain;
+                return is_useful.then(|| Region::around(self.problem, &self.bad(), rings));
+            }
+            Start::Means => {
+                let nobody = vec![false; self.problem.free_count()];
+                let levels = self.levels.take().unwrap_or_else(|| self.state.hierarchy(&nobody));
+                self.state.make_harmonic(&levels, &nobody);
+                self.levels = Some(levels);
+            }
+            Start::Cut(short) => {
+                let held = self.state.cut(short);
+                // Without holes all rules find the same cuts, or none.
+                if self.tried.contains(&held) {
+                    return None;
+                }
+                // The levels of the others alone find the means in a fifth of the iterations.
+                self.state.make_harmonic(&self.state.hierarchy(&held), &held);
+                self.tried.push(held);
+            }
+            Start::Nearest if self.ends.is_empty() => return None,
+            Start::Nearest => self.state.positions = self.ends.remove(0).1,
+        }
+        Some(Region::whole(self.problem))
+    }
+
+    /// Sweeps until the stage ends. Breaks if nothing is left to do, or if `observe` wants so.
+    fn sweep(
+        &mut self,
+        stage: &Stage,
+        region: &Region,
+        result: &mut Untangled,
+        observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let patience = stage.patience();
+        let mut now = self.state.assess(region);
+        let mut before = None;
+        for sweep in 0..patience.most {
+            if sweep % patience.often == 0 {
+                let goes_on =
+                    before.replace(now).is_none_or(|before| patience.goes_on(before, now));
+                if sweep >= patience.fewest && !goes_on {
+                    break;
+                }
+            }
+            let epsilon = epsilon(now.least);
+            self.state.sweep(region, epsilon);
+            if !matches!(stage.start, Start::Near(_))
+                && let Some(levels) = &self.levels
+            {
+                self.state.global_step(region, levels, epsilon);
+            }
+            result.sweeps += 1;
+            now = self.state.assess(region);
+            // The exact judgment takes a pass over the whole mesh.
+            if now.bad <= result.hopeless.len() && self.is_done(result) {
+                return ControlFlow::Break(());
+            }
+            if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
+                self.is_done(result);
+                return ControlFlow::Break(());
+            }
+        }
+        if self.is_done(result) {
+            return ControlFlow::Break(());
+        }
+        if matches!(stage.start, Start::Cut(_)) {
+            self.ends.push((now.far(), self.state.positions.clone()));
+            self.ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            self.ends.truncate(ENDS);
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The triangles of the problem that are inverted or flat, or so by rounding.
+    fn bad(&self) -> Vec<u32> {
+        let positions = &self.state.positions;
+        let points: Vec<[f64; 2]> = positions.iter().map(|p| p.to_array()).collect();
+        let mut bad = not_positive(&points, self.problem.triangles());
+        bad.extend(self.problem.beyond_precision(positions));
+        bad
     }
 }

@@ -34,6 +34,11 @@ pub(crate) struct Assessment {
 impl Assessment {
     const EMPTY: Self = Self { least: f64::INFINITY, bad: 0 };
 
+    /// About how much area is inverted, in units of that of a triangle.
+    pub(crate) fn far(&self) -> f64 {
+        -self.least.min(0.0) * self.bad as f64
+    }
+
     fn and(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), bad: self.bad + other.bad }
     }
