@@ -165,6 +165,6 @@ pub use run::{
 pub use slide::Slide;
 pub use smoother::{Backend, Smoother, smooth};
 pub use targets::{Outside, Surface, TargetField, Targets};
-pub use topology::{HangingNode, Topology, signed_area};
+pub use topology::{Crossing, HangingNode, Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};
 pub use wgpu;

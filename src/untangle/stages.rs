@@ -79,8 +79,10 @@ impl Stage {
 }
 
 impl Patience {
-    /// Whether sweeps have gained enough to go on.
+    /// Whether sweeps have gained enough to go on. Where no triangle is inverted, but some wind twice around a vertex, there is
+    /// nothing to gain.
     pub(super) fn goes_on(&self, before: Assessment, now: Assessment) -> bool {
-        now.least >= self.area * before.least || now.bad as f64 <= self.bad * before.bad as f64
+        let nearer = now.least >= self.area * before.least;
+        now.bad > 0 && (nearer || now.bad as f64 <= self.bad * before.bad as f64)
     }
 }

@@ -114,6 +114,48 @@ fn a_tangle_that_remains_is_listed_and_written_only_if_asked_for() {
     assert_eq!(run.code, Some(2), "{}", run.err);
 }
 
+/// A square of twelve by twelve vertices, and the number of one in the middle of its lower side.
+fn bed() -> (Mesh, usize) {
+    let side = 12u32;
+    let points = (0..side * side).map(|k| [f64::from(k % side), f64::from(k / side)]);
+    let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
+    let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
+    let (points, triangles) = (points.collect(), triangles.collect());
+    (Mesh { points, triangles, fixed: Vec::new() }, side as usize / 2)
+}
+
+#[test]
+fn edges_that_cross_and_cannot_move_are_listed_and_the_mesh_refused() {
+    let (mut mesh, middle) = bed();
+    // Two vertices of the lower side change places, but for some distance.
+    mesh.points[middle] = [7.0, 2.5];
+    mesh.points[middle + 1] = [6.0, 2.0];
+    let folder = folder(&mesh);
+    let crosses = "\n  in.node:8: the edge between vertices 6 and 7 crosses that between 8 and 9\n";
+    let parts = &["triangles overlap there wherever free vertices are. Correct them", crosses];
+    folder.line("in.node out.node --untangle").refused(parts);
+    assert!(!folder.path("out.node").exists());
+    // No triangle stays inverted, but they lie over one another.
+    let run = folder.line("in.node out.node --untangle --keep-going --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &[crosses]);
+    assert!(check::orientations(&folder.mesh("out.node")).iter().all(|&sign| sign > 0));
+}
+
+#[test]
+fn triangles_that_wind_twice_around_a_vertex_are_told_where_untangling_fails() {
+    let (mut mesh, middle) = bed();
+    mesh.points[middle] = [6.0, 7.5];
+    mesh.points[middle + 1] = [1.5, 10.0];
+    let folder = folder(&mesh);
+    let parts = &[
+        "no triangle is inverted, but those around vertex ",
+        " wind more than once around it. Perhaps fixed vertices leave no room",
+        "\n  The best mesh found was written: out.node",
+    ];
+    folder.line("in.node out.node --untangle --keep-going").refused(parts);
+}
+
 #[test]
 fn the_time_limit_ends_untangling() {
     let folder = folder(&support::tangle::turned_hole(60, 0.5));

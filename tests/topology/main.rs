@@ -4,6 +4,7 @@
 mod support;
 
 mod boundary;
+mod crossings;
 mod hanging;
 mod hubs;
 mod requests;

@@ -1,7 +1,7 @@
 //! Words what is wrong with a mesh in the terms of its file.
 
 use gpu_smooth::{
-    BadTriangle, Format, HangingNode, Location, MeshError, MeshFile, Place, Topology,
+    BadTriangle, Crossing, Format, HangingNode, Location, MeshError, MeshFile, Place, Topology,
 };
 use serde::Serialize;
 use std::collections::HashSet;
@@ -69,6 +69,24 @@ pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Stri
         text.push_str(&format!("\n  and {} more; {all} lists all", count - TOLD));
     }
     text
+}
+
+/// Words that edges cross and cannot move, tells the remedy, and lists the first pairs, one a line; `None` if there are none.
+pub(crate) fn crossings(file: &MeshFile, topology: &Topology<'_>, remedy: &str) -> Option<String> {
+    let found = topology.crossings(&file.mesh().points, TOLD + 1).ok()?;
+    let places = file.vertex_places(found.iter().flat_map(|crossing| crossing.edges).flatten());
+    let line = |crossing: &Crossing| {
+        let [[a, b], [c, d]] = crossing.edges;
+        let place = &places[&a];
+        let [a, b, c, d] = [a, b, c, d].map(|v| places[&v].label);
+        format!(
+            "\n  {place}: the edge between vertices {a} and {b} crosses that between {c} and {d}"
+        )
+    };
+    let list: String = found.iter().take(TOLD).map(line).collect();
+    let more = if found.len() > TOLD { "\n  and more" } else { "" };
+    let all = "edges between vertices that are not free, such as boundary edges, cross: triangles overlap there wherever free vertices are";
+    (!found.is_empty()).then(|| format!("{all}{remedy}{list}{more}"))
 }
 
 /// Whether triangles seem inverted because they reach across the line where longitudes start again.

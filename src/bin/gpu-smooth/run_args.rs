@@ -146,7 +146,8 @@ pub(crate) struct SmoothArgs {
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long, help_heading = "Untangling")]
     pub(crate) untangle: bool,
-    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1
+    /// If a mesh cannot be untangled, write the best mesh found all the same. The exit code is 1. A mesh whose boundary crosses
+    /// itself is untangled as far as its triangles go, and is not refused
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 

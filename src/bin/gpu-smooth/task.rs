@@ -128,6 +128,9 @@ pub(crate) fn carry_out<T>(
         (taken, _) => taken,
     };
     let points = mending.map_or(&mesh.points, |mended| &mended.mesh.points);
+    if let Some(remark) = mending.and_then(|mended| mended.remark.as_ref()) {
+        follow.remark(remark);
+    }
     let hanging = smoother.topology().hanging_nodes(&mesh.points).map_err(told)?;
     if let Some(remark) = explain::hanging(&file, &hanging) {
         follow.remark(&remark);

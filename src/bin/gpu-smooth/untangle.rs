@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use gpu_smooth::{BadTriangle, Mesh, MeshError, MeshFile, Smoother, Untangled, Untangling};
+use gpu_smooth::{
+    BadTriangle, Mesh, MeshError, MeshFile, Smoother, Topology, Untangled, Untangling,
+};
 
 use crate::cli::OutputArgs;
 use crate::explain;
@@ -18,6 +20,8 @@ pub(crate) struct Mended {
     pub(crate) bad_before: usize,
     pub(crate) sweeps: u32,
     pub(crate) moved: usize,
+    /// What is wrong with the mesh still.
+    pub(crate) remark: Option<String>,
 }
 
 /// Untangles a mesh that cannot be smoothed as it is.
@@ -31,6 +35,18 @@ pub(crate) fn mend(
     out: &Path,
 ) -> Result<Mended, String> {
     let mesh = file.mesh();
+    let told = |error: MeshError| explain::mesh_error(file, &error);
+    let topology = Topology::by_area(mesh).map_err(told)?;
+    let remedy = match args.keep_going {
+        true => "",
+        false => {
+            ". Correct them, or untangle a mesh that is meant to lie over itself with --keep-going"
+        }
+    };
+    let crossings = explain::crossings(file, &topology, remedy);
+    if let (Some(crossings), false) = (&crossings, args.keep_going) {
+        return Err(format!("{}: {crossings}", file.path().display()));
+    }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
         if show.verbose {
@@ -48,14 +64,16 @@ pub(crate) fn mend(
             None => ControlFlow::Continue(()),
         }
     };
-    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe)
-        .map_err(|error| explain::mesh_error(file, &error))?;
-    let Untangled { points, bad_before, left, hopeless, sweeps, moved, .. } = untangled;
-    if left.is_empty() {
-        let mesh = Mesh { points, ..mesh.clone() };
-        return Ok(Mended { mesh, bad_before, sweeps, moved });
-    }
-    let mut message = still_tangled(file, (&left, &hopeless), sweeps, ended.is_some());
+    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(told)?;
+    let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
+    let mut message = match overlapping {
+        None if left.is_empty() => {
+            let mesh = Mesh { points, ..mesh.clone() };
+            return Ok(Mended { mesh, bad_before, sweeps, moved, remark: crossings });
+        }
+        Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
+        _ => still_tangled(file, (&left, &hopeless), sweeps, ended.is_some()),
+    };
     if let Some(ended) = ended {
         message = format!("{ended}. {message}");
     }
@@ -66,6 +84,20 @@ pub(crate) fn mend(
         Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
         Err(error) => Err(format!("{message}\n  {error}")),
     }
+}
+
+const KEPT: &str = "; --keep-going writes the best mesh found";
+const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary winds around itself";
+
+/// Words that no triangle is inverted, but that those around a vertex wind more than once around it.
+fn overlaps(file: &MeshFile, vertex: u32, sweeps: u32) -> String {
+    let place = file.vertex_place(vertex);
+    let vertex = place.label;
+    format!(
+        "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
+         it{PERHAPS}{KEPT}",
+        counted(sweeps)
+    )
 }
 
 /// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
@@ -79,15 +111,10 @@ fn still_tangled(
     let name = file.path().display();
     let (shown, count, why) = match hopeless.len() {
         0 => {
-            let sweeps =
-                if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") };
-            let perhaps = match was_ended {
-                true => "",
-                false => ". Perhaps the boundary crosses itself, or fixed vertices leave no room",
-            };
-            let why = format!(
-                "stayed inverted or flat after {sweeps} of untangling{perhaps}; --keep-going writes the best mesh found"
-            );
+            let perhaps = if was_ended { "" } else { PERHAPS };
+            let sweeps = counted(sweeps);
+            let why =
+                format!("stayed inverted or flat after {sweeps} of untangling{perhaps}{KEPT}");
             (left, left.len(), why)
         }
         count => {
@@ -106,6 +133,10 @@ fn still_tangled(
         "{name}: {triangles} {why}{}",
         explain::list(&first, count, "gpu-smooth quality --json")
     )
+}
+
+fn counted(sweeps: u32) -> String {
+    if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") }
 }
 
 /// Whether a mesh was refused for inverted or flat triangles, or has some that double precision cannot judge, which

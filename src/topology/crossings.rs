@@ -1,0 +1,90 @@
+//! Edges that cross and cannot move: a mesh that has them is not valid wherever its free vertices are.
+
+use crate::error::MeshError;
+use crate::topology::Topology;
+use crate::topology::predicates::orientation;
+
+/// Two edges that cross, each as its ends, ascending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Crossing {
+    /// The edges, ascending.
+    pub edges: [[u32; 2]; 2],
+}
+
+/// An edge with the range of its coordinates along an axis.
+struct Span {
+    ends: [u32; 2],
+    low: f64,
+    high: f64,
+}
+
+impl Topology<'_> {
+    /// Returns pairs of edges between vertices that are not free, such as boundary edges, that cross in a point inside both, by
+    /// exact predicates. No move of free vertices makes such a mesh valid, unless it is meant to lie over itself. At most
+    /// `most` pairs are returned, ascending.
+    ///
+    /// Edges that touch in an end of one of them, or lie on one another, do not cross: both sides of a slit have such edges.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    pub fn crossings(&self, points: &[[f64; 2]], most: usize) -> Result<Vec<Crossing>, MeshError> {
+        self.check_count(points)?;
+        let mut found = Vec::new();
+        let edges = self.held_edges();
+        // Along the axis in which they reach farther, fewer edges are side by side.
+        let axis = if extent(points, &edges, 0) >= extent(points, &edges, 1) { 0 } else { 1 };
+        let mut spans: Vec<Span> = edges.iter().map(|&ends| span(points, ends, axis)).collect();
+        spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.ends.cmp(&b.ends)));
+        let mut open: Vec<Span> = Vec::new();
+        for next in spans {
+            open.retain(|span| span.high >= next.low);
+            for span in &open {
+                if found.len() < most && cross(points, span.ends, next.ends) {
+                    let (one, other) = (span.ends.min(next.ends), span.ends.max(next.ends));
+                    found.push(Crossing { edges: [one, other] });
+                }
+            }
+            open.push(next);
+        }
+        found.sort_unstable();
+        Ok(found)
+    }
+
+    /// The edges of which neither end is free, each once.
+    fn held_edges(&self) -> Vec<[u32; 2]> {
+        let is_held = |edge: &[u32; 2]| edge.iter().all(|&v| !self.free()[v as usize]);
+        let sides = self.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let ascending = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let mut edges: Vec<[u32; 2]> = sides.filter(is_held).map(ascending).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+}
+
+fn span(points: &[[f64; 2]], ends: [u32; 2], axis: usize) -> Span {
+    let [a, b] = ends.map(|v| points[v as usize][axis]);
+    Span { ends, low: a.min(b), high: a.max(b) }
+}
+
+/// How far all edges reach along an axis.
+fn extent(points: &[[f64; 2]], edges: &[[u32; 2]], axis: usize) -> f64 {
+    let spans = || edges.iter().map(|&ends| span(points, ends, axis));
+    let low = spans().map(|span| span.low).fold(f64::INFINITY, f64::min);
+    spans().map(|span| span.high).fold(low, f64::max) - low
+}
+
+fn cross(points: &[[f64; 2]], one: [u32; 2], other: [u32; 2]) -> bool {
+    if one.iter().any(|v| other.contains(v)) {
+        return false;
+    }
+    let boxes_meet = (0..2).all(|axis| {
+        let (one, other) = (span(points, one, axis), span(points, other, axis));
+        one.low <= other.high && other.low <= one.high
+    });
+    let parts = |[a, b]: [u32; 2], [c, d]: [u32; 2]| {
+        let (c, d) = (orientation(points, &[a, b, c]), orientation(points, &[a, b, d]));
+        c > 0.0 && d < 0.0 || c < 0.0 && d > 0.0
+    };
+    boxes_meet && parts(one, other) && parts(other, one)
+}
