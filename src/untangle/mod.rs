@@ -151,7 +151,11 @@ impl<'m> Work<'m> {
     ) {
         for stage in &STAGES {
             let Some(region) = self.begin(&stage.start, result) else { continue };
-            if self.is_done(result) || self.sweep(stage, &region, result, observe).is_break() {
+            let has_moved = !matches!(stage.start, Start::Near(_));
+            if has_moved && self.is_done(result) {
+                return;
+            }
+            if self.sweep(stage, &region, result, observe).is_break() {
                 return;
             }
         }
