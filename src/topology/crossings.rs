@@ -38,11 +38,13 @@ impl Topology<'_> {
         let mut open: Vec<Span> = Vec::new();
         for next in spans {
             open.retain(|span| span.high >= next.low);
-            for span in &open {
-                if found.len() < most && cross(points, span.ends, next.ends) {
-                    let (one, other) = (span.ends.min(next.ends), span.ends.max(next.ends));
-                    found.push(Crossing { edges: [one, other] });
-                }
+            let crossed = open.iter().filter(|span| cross(points, span.ends, next.ends));
+            found.extend(crossed.take(most - found.len()).map(|span| {
+                let (one, other) = (span.ends.min(next.ends), span.ends.max(next.ends));
+                Crossing { edges: [one, other] }
+            }));
+            if found.len() == most {
+                break;
             }
             open.push(next);
         }

@@ -143,5 +143,7 @@ mod tests {
             let gradient = DVec2::from(found.gradient);
             assert!(descent(gradient, found.hessian, EIGENVALUE_FLOOR).dot(gradient) < 0.0);
         }
+        let flat = descent(DVec2::ZERO, [1.0, 0.0, 1.0], EIGENVALUE_FLOOR);
+        assert_eq!(flat, DVec2::ZERO);
     }
 }
