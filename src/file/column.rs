@@ -21,8 +21,8 @@ pub(crate) struct Column<'a> {
 
 /// Where the items of a column start.
 enum At<'a> {
-    /// Each item starts this many bytes after one of these places.
-    After(&'a Places, usize),
+    /// Each item starts this many bytes after one of these places; before it, if that is negative.
+    After(&'a Places, isize),
     /// Each item is two numbers: one at one of these places, and the next token after it.
     Pairs(&'a Places),
 }
@@ -75,7 +75,7 @@ impl<'a> Column<'a> {
 
     fn start(&self, item: usize) -> usize {
         match self.at {
-            At::After(places, shift) => places.at(item) + shift,
+            At::After(places, shift) => places.at(item).saturating_add_signed(shift),
             At::Pairs(places) => places.at(item),
         }
     }

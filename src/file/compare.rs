@@ -133,7 +133,11 @@ impl MeshFile {
             }
             Numbers::Binary { precision, y_after, .. } => {
                 let size = precision.bytes();
-                ranges.extend(places.flat_map(|x| [x, x + y_after].map(|at| at..at + size)));
+                ranges.extend(
+                    places.flat_map(|x| {
+                        [x, x.saturating_add_signed(y_after)].map(|at| at..at + size)
+                    }),
+                );
                 ranges.sort_unstable_by_key(|range| range.start);
             }
         }

@@ -1,4 +1,4 @@
-//! Files of HDF5, of which the content tells the format.
+//! Files of HDF5 and netCDF, of which the content tells the format.
 
 use crate::error::ReadError;
 use crate::file::cgns::{self, Cgns};
@@ -6,6 +6,7 @@ use crate::file::exodus::Exodus;
 use crate::file::med::{self, Med};
 use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
+use crate::file::ugrid::{self, Ugrid};
 
 pub(crate) struct Container;
 
@@ -16,6 +17,7 @@ impl Walk for Container {
         match med::is_in(source)? {
             true => Med::walk(source, sink),
             false if cgns::is_in(source)? => Cgns::walk(source, sink),
+            false if ugrid::is_in(source)? => Ugrid::walk(source, sink),
             false => Exodus::walk(source, sink),
         }
     }

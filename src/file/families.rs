@@ -5,7 +5,7 @@ use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
     abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb,
-    mfem, mike, obj, off, packed, ply, selafin, sms, stl, su2, vtk, vtu, xdmf,
+    mfem, mike, obj, off, packed, ply, selafin, sms, stl, su2, ugrid, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -58,6 +58,7 @@ impl Family {
             Format::Selafin => &SELAFIN,
             Format::Stl | Format::StlBinary => &STL,
             Format::Exodus => &EXODUS,
+            Format::Ugrid => &UGRID,
             Format::Med => &MED,
             Format::Cgns => &CGNS,
             Format::Xdmf => &XDMF,
@@ -150,14 +151,24 @@ pub(crate) static STL: Family =
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
 static EXODUS: Family = family(
     "Exodus II",
-    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".h5", ".hdf5"],
+    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".nc4", ".h5", ".hdf5"],
     &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
     reader::<exodus::Exodus>(),
 );
+static UGRID: Family = family(
+    "UGRID",
+    &[".nc", ".nc4", ".h5", ".hdf5"],
+    &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
+    reader::<ugrid::Ugrid>(),
+);
 static MED: Family = family("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
-/// Any of these, where the ending does not tell which.
-static HDF: Family =
-    family("HDF5", &[".h5", ".hdf5"], &[b"\x89HDF"], reader::<container::Container>());
+/// Any of those in HDF5 or netCDF, where the ending does not tell which.
+static CONTAINER: Family = family(
+    "HDF5 or netCDF",
+    &[".h5", ".hdf5", ".nc", ".nc4"],
+    &[b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05"],
+    reader::<container::Container>(),
+);
 static CGNS: Family =
     family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
 static XDMF: Family =
@@ -205,7 +216,7 @@ static AVS: Family = unread("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
 static NETGEN: Family = unread("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
 static FLAC: Family = unread("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
 static PERMAS: Family = unread("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
-static UGRID: Family = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
+static AFLR3: Family = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
 static RADIOSS: Family =
     unread("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
 static X3D: Family = unread("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
@@ -222,7 +233,7 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
 /// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 43] = [
+pub(crate) static FAMILIES: [&Family; 44] = [
     &TRIANGLE,
     &GMSH,
     &VTK,
@@ -243,8 +254,9 @@ pub(crate) static FAMILIES: [&Family; 43] = [
     &VTK_XML_POLYGONS,
     &STL,
     &PLY,
-    &HDF,
+    &CONTAINER,
     &EXODUS,
+    &UGRID,
     &MED,
     &CGNS,
     &XDMF,
@@ -262,7 +274,7 @@ pub(crate) static FAMILIES: [&Family; 43] = [
     &NETGEN,
     &FLAC,
     &PERMAS,
-    &UGRID,
+    &AFLR3,
     &RADIOSS,
     &X3D,
     &GEOMETRY,

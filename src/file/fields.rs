@@ -22,6 +22,7 @@ impl MeshFile {
     /// | PLY | properties of vertices of the types float and double but x and y |
     /// | SELAFIN | variables, in all time steps |
     /// | Exodus II | `z`, and variables of nodes, in all time steps |
+    /// | UGRID | variables of nodes, in all time steps and layers |
     /// | CGNS | `z`, and solutions at vertices |
     /// | XDMF | `z`, and attributes of nodes of the type Float |
     /// | Triangle | `attribute` of vertices, `attribute1` and so on if there are several |

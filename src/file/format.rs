@@ -65,6 +65,8 @@ pub enum Format {
     StlBinary,
     /// Exodus II, in netCDF's classic formats and in netCDF-4.
     Exodus,
+    /// UGRID, in netCDF's classic formats and in netCDF-4.
+    Ugrid,
     /// MED, of Salome and Code_Aster, versions 3 and 4.
     Med,
     /// CGNS, in HDF5.
@@ -77,7 +79,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 33] = [
+    pub const ALL: [Format; 34] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -107,6 +109,7 @@ impl Format {
         Format::Stl,
         Format::StlBinary,
         Format::Exodus,
+        Format::Ugrid,
         Format::Med,
         Format::Cgns,
         Format::Xdmf,
@@ -145,6 +148,7 @@ impl Format {
             Format::Stl => "STL ASCII",
             Format::StlBinary => "STL binary",
             Format::Exodus => "Exodus II",
+            Format::Ugrid => "UGRID",
             Format::Med => "MED",
             Format::Cgns => "CGNS",
             Format::Xdmf => "XDMF",

@@ -9,8 +9,8 @@ use std::ops::Range;
 pub(crate) enum Numbers {
     /// As text. y is the token after x. Programs that read the format may know only single precision.
     Text { precision: Precision },
-    /// In binary. y is `y_after` bytes after x.
-    Binary { order: Order, precision: Precision, y_after: usize },
+    /// In binary. y is `y_after` bytes after x; before x, if that is negative.
+    Binary { order: Order, precision: Precision, y_after: isize },
 }
 
 impl Numbers {
@@ -19,7 +19,7 @@ impl Numbers {
 
     /// Numbers in binary, with y right after x.
     pub(crate) fn adjacent(order: Order, precision: Precision) -> Numbers {
-        Numbers::Binary { order, precision, y_after: precision.bytes() }
+        Numbers::Binary { order, precision, y_after: precision.bytes() as isize }
     }
 
     pub(crate) fn precision(self) -> Precision {

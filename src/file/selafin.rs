@@ -66,7 +66,7 @@ impl Walk for Selafin {
         let xs = record(cursor, order, "the x of all points", Some(numbers))?;
         let x_at = cursor.taken();
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
-        let y_after = cursor.taken() - x_at;
+        let y_after = (cursor.taken() - x_at) as isize;
         let after_mesh = cursor.clone();
         sink.expect_nodes(points as usize);
         let number = |bytes: &[u8]| order.real(precision, bytes);

@@ -25,6 +25,7 @@ fn ending(format: Format) -> &'static str {
         Format::Ply => "ply",
         Format::Sms2dm => "2dm",
         Format::Exodus => "e",
+        Format::Ugrid => "nc",
         Format::Abaqus => "inp",
         _ => "gr3",
     }

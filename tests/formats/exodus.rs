@@ -77,7 +77,7 @@ fn files_that_are_no_exodus_mesh_are_refused_with_a_remedy() {
     assert!(made.bytes.starts_with(b"CDF\x02"));
     refused(
         &replaced(&made.bytes, b"num_nodes", b"num_points"[..9].into()),
-        &["so it is not Exodus"],
+        &["no mesh of Exodus II", "num_nodes", "or UGRID"],
     );
     refused(&replaced(&made.bytes, b"TRI3", b"TET4"), &["this a volume mesh"]);
     refused(&replaced(&made.bytes, b"TRI3", b"WORD"), &["elements of the type WORD", "TRI3"]);

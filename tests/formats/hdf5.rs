@@ -15,7 +15,7 @@ pub(crate) struct Sample {
     is_plain: bool,
 }
 
-pub(crate) const SAMPLES: [Sample; 9] = [
+pub(crate) const SAMPLES: [Sample; 11] = [
     Sample { name: "dolfin.xdmf", beside: &["dolfin.h5"], is_plain: true },
     Sample { name: "meshio.xdmf", beside: &["meshio.h5"], is_plain: false },
     Sample { name: "latest.xdmf", beside: &["latest.h5"], is_plain: false },
@@ -25,6 +25,8 @@ pub(crate) const SAMPLES: [Sample; 9] = [
     Sample { name: "gmsh.med", beside: &[], is_plain: true },
     Sample { name: "netcdf4.exo", beside: &[], is_plain: true },
     Sample { name: "zlib.exo", beside: &[], is_plain: false },
+    Sample { name: "ugrid.nc", beside: &[], is_plain: false },
+    Sample { name: "h5netcdf.nc", beside: &[], is_plain: true },
 ];
 
 pub(crate) fn made(name: &str) -> PathBuf {
@@ -262,8 +264,12 @@ fn sections_and_boundaries_of_cgns_are_groups() {
 /// Under an ending of HDF5, or none, the content tells what it is, and in place it keeps its name.
 #[test]
 fn any_file_of_hdf5_is_known_by_its_content() {
-    let all =
-        [("gmsh.med", Format::Med), ("gmsh.cgns", Format::Cgns), ("zlib.exo", Format::Exodus)];
+    let all = [
+        ("gmsh.med", Format::Med),
+        ("gmsh.cgns", Format::Cgns),
+        ("zlib.exo", Format::Exodus),
+        ("ugrid.nc", Format::Ugrid),
+    ];
     for (name, format) in all {
         let folder = Folder::new(&[]);
         for under in ["in.h5", "in.hdf5", "in", "in.dat"] {
@@ -276,7 +282,7 @@ fn any_file_of_hdf5_is_known_by_its_content() {
     }
     refused(
         MeshFile::read(&made("dolfin.h5")),
-        &["no mesh of Exodus II, MED or CGNS", "name the .xdmf"],
+        &["no mesh of Exodus II, UGRID, MED or CGNS", "name the .xdmf"],
     );
 }
 

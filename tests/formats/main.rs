@@ -27,6 +27,7 @@ mod stl;
 mod strings;
 #[path = "../support/mod.rs"]
 mod support;
+mod ugrid;
 mod vtu;
 mod words;
 

@@ -171,6 +171,7 @@ fn list_of(made: &Made) -> &'static str {
         Format::Selafin => "the list of points",
         Format::Xdmf => "Geometry",
         Format::Exodus => "the list of coordinates",
+        Format::Ugrid => "the list of nodes",
         Format::Abaqus => "*NODE",
         other => panic!("no list of {other}"),
     }

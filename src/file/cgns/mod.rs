@@ -9,7 +9,7 @@ mod sections;
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::hdf5::{Array, Axes, Dataset, Encoding, Hdf5, Number, Object};
+use crate::file::hdf5::{Array, Axes, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
 use crate::file::numbers::{Encoded, Form, Places};
 use crate::file::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::file::source::Source;
@@ -27,9 +27,10 @@ struct File<'a> {
     zone: &'a Object,
 }
 
-/// Whether a file of HDF5 is CGNS.
+/// Whether a file is CGNS in HDF5.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
-    Ok(Hdf5::open(source)?.find(b"CGNSLibraryVersion").is_some())
+    Ok(source.bytes.starts_with(SIGNATURE)
+        && Hdf5::open(source)?.find(b"CGNSLibraryVersion").is_some())
 }
 
 impl Walk for Cgns {
@@ -66,7 +67,7 @@ impl<'a> File<'a> {
 
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.axes()?;
-        let layout = axes.send(Format::Cgns, count, sink)?;
+        let layout = axes.send(Format::Cgns, (count, 1), sink)?;
         let boundaries = match sink.asks_for_groups() {
             true => self.boundaries(count, sink),
             false => Boundaries::default(),

@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 25] = [
+const ROWS: [Row; 26] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -226,6 +226,16 @@ const ROWS: [Row; 25] = [
             "block",
             "blocks, side sets and node sets, with their names",
             "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; netCDF-4 as described for HDF5 below",
+        ],
+    ),
+    row(
+        &[Format::Ugrid],
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
+        [
+            "quadrilaterals, polygons",
+            "–",
+            "nothing; variables of nodes for `--fix-array`",
+            "one mesh of faces; places of edges and faces that a file has as well are not changed, which a note says; netCDF-4 as described for HDF5 below",
         ],
     ),
     row(

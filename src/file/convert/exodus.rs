@@ -4,11 +4,14 @@
 
 use super::content::Group;
 use super::job::Job;
-use super::netcdf::{NetCdf, RECORDS, Values};
+use super::netcdf::{NetCdf, Values};
 use super::sides::{pair, sides};
 use crate::file::label::Label;
 use crate::file::sink::Kind;
 use std::collections::{HashMap, HashSet};
+
+/// The dimension of time steps.
+const RECORDS: &str = "time_step";
 
 /// Elements of one kind and group.
 struct Block {
@@ -55,7 +58,8 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
         groups.filter_map(Group::name).chain(data.map(|data| data.name.as_str()))
     };
     let longest = names().map(str::len).max().unwrap_or(0).max(32);
-    let mut out = NetCdf::new();
+    let mut out = NetCdf::default();
+    out.dimension(RECORDS, 0);
     out.attribute("api_version", Values::Single(5.1));
     out.attribute("version", Values::Single(5.1));
     out.attribute("floating_point_word_size", Values::Whole(vec![8]));
@@ -67,7 +71,7 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
     out.dimension("four", 4);
     let has_data = job.point_data().chain(job.cell_data()).next().is_some();
     let times = if has_data { vec![0.0] } else { Vec::new() };
-    out.variable("time_whole", &[RECORDS], None, Values::Real(times));
+    out.variable("time_whole", &[RECORDS], Vec::new(), Values::Real(times));
     points(&mut out, job, longest + 1);
     elements(&mut out, job, &blocks, longest + 1);
     sets(&mut out, job, &side_sets, longest + 1);
@@ -133,6 +137,11 @@ fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<Sid
     sets
 }
 
+/// Makes an attribute.
+fn text(name: &'static str, content: &str) -> (&'static str, Values) {
+    (name, Values::Text(content.as_bytes().to_vec()))
+}
+
 fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
     let content = job.content;
     let count = content.points.len();
@@ -145,10 +154,10 @@ fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
             2 => content.z(vertex),
             _ => content.points[vertex][axis],
         };
-        out.variable(name, &["num_nodes"], None, Values::Real((0..count).map(of).collect()));
+        out.variable(name, &["num_nodes"], Vec::new(), Values::Real((0..count).map(of).collect()));
     }
     let names = Values::names(["x", "y", "z"].into_iter().take(axes), width);
-    out.variable("coor_names", &["num_dim", "len_name"], None, names);
+    out.variable("coor_names", &["num_dim", "len_name"], Vec::new(), names);
 }
 
 /// Gives groups distinct numbers. A group keeps its own number unless an earlier group has it.
@@ -177,9 +186,9 @@ fn named(
     width: usize,
 ) {
     out.dimension(count, numbers.len());
-    out.variable(status, &[count], None, Values::Whole(vec![1; numbers.len()]));
-    out.variable(property, &[count], Some(("name", "ID")), Values::Whole(numbers));
-    out.variable(names, &[count, "len_name"], None, Values::names(texts, width));
+    out.variable(status, &[count], Vec::new(), Values::Whole(vec![1; numbers.len()]));
+    out.variable(property, &[count], vec![text("name", "ID")], Values::Whole(numbers));
+    out.variable(names, &[count, "len_name"], Vec::new(), Values::names(texts, width));
 }
 
 fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
@@ -197,7 +206,7 @@ fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
         out.dimension(&each, nodes);
         let vertices = block.cells.iter().flat_map(|&cell| content.cells.of(cell));
         let vertices = Values::Whole(vertices.map(|&vertex| vertex as i32 + 1).collect());
-        let kind = Some(("elem_type", type_name));
+        let kind = vec![text("elem_type", type_name)];
         out.variable(format!("connect{place}"), &[&count, &each], kind, vertices);
     }
 }
@@ -215,7 +224,7 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
         out.dimension(&count, set.elements.len());
         for (name, numbers) in [("elem_ss", &set.elements), ("side_ss", &set.sides)] {
             let numbers = Values::Whole(numbers.clone());
-            out.variable(format!("{name}{place}"), &[&count], None, numbers);
+            out.variable(format!("{name}{place}"), &[&count], Vec::new(), numbers);
         }
     }
     let groups = &content.vertex_groups;
@@ -232,7 +241,7 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
         let count = format!("num_nod_ns{place}");
         out.dimension(&count, vertices.len());
         let vertices = Values::Whole(vertices.iter().map(|&vertex| vertex as i32 + 1).collect());
-        out.variable(format!("node_ns{place}"), &[&count], None, vertices);
+        out.variable(format!("node_ns{place}"), &[&count], Vec::new(), vertices);
     }
 }
 
@@ -241,26 +250,26 @@ fn data(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
     if !of_points.is_empty() {
         out.dimension("num_nod_var", of_points.len());
         let names = Values::names(of_points.iter().map(|data| data.name.as_str()), width);
-        out.variable("name_nod_var", &["num_nod_var", "len_name"], None, names);
+        out.variable("name_nod_var", &["num_nod_var", "len_name"], Vec::new(), names);
         for (data, place) in of_points.iter().zip(1..) {
             let values = Values::Real(data.values.clone());
             let name = format!("vals_nod_var{place}");
-            out.variable(name, &[RECORDS, "num_nodes"], None, values);
+            out.variable(name, &[RECORDS, "num_nodes"], Vec::new(), values);
         }
     }
     let of_cells: Vec<_> = job.cell_data().collect();
     if !of_cells.is_empty() {
         out.dimension("num_elem_var", of_cells.len());
         let names = Values::names(of_cells.iter().map(|data| data.name.as_str()), width);
-        out.variable("name_elem_var", &["num_elem_var", "len_name"], None, names);
+        out.variable("name_elem_var", &["num_elem_var", "len_name"], Vec::new(), names);
         let all = Values::Whole(vec![1; blocks.len() * of_cells.len()]);
-        out.variable("elem_var_tab", &["num_el_blk", "num_elem_var"], None, all);
+        out.variable("elem_var_tab", &["num_el_blk", "num_elem_var"], Vec::new(), all);
         for (data, place) in of_cells.iter().zip(1..) {
             for (block, own) in blocks.iter().zip(1..) {
                 let values = block.cells.iter().map(|&cell| data.values[cell]).collect();
                 let name = format!("vals_elem_var{place}eb{own}");
                 let count = format!("num_el_in_blk{own}");
-                out.variable(name, &[RECORDS, &count], None, Values::Real(values));
+                out.variable(name, &[RECORDS, &count], Vec::new(), Values::Real(values));
             }
         }
     }

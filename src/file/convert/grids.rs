@@ -7,8 +7,9 @@ use crate::file::sink::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
-/// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS and MIKE z is positive upwards,
-/// and SMS opens a grid of ADCIRC with minus its depths as z.
+/// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS, MIKE and UGRID z is positive
+/// upwards, and SMS opens a grid of ADCIRC with minus its depths as z. In UGRID z is a variable of nodes, of this name or one that
+/// ends in `node_z`.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
@@ -23,11 +24,37 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
             let vertices = 0..content.points.len();
             let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
             (content.heights, content.height) = (Vec::new(), 0.0);
-            let name = "depth".to_owned();
-            content.point_data.push(Data { name, components: 1, is_real: true, values });
+            content.point_data.push(of_vertices("depth", values));
+        }
+        (Format::Ugrid, Format::Sms2dm) => {
+            if let Some(heights) = take_heights(content) {
+                content.heights = heights;
+            }
+        }
+        (Format::Ugrid, Format::Adcirc) => {
+            if let Some(heights) = take_heights(content) {
+                let values = heights.into_iter().map(minus).collect();
+                content.point_data.push(of_vertices("depth", values));
+            }
+        }
+        (_, Format::Ugrid) if !content.heights.is_empty() => {
+            let values = std::mem::take(&mut content.heights);
+            content.point_data.push(of_vertices("z", values));
         }
         _ => {}
     }
+}
+
+fn of_vertices(name: &str, values: Vec<f64>) -> Data {
+    Data { name: name.to_owned(), components: 1, is_real: true, values }
+}
+
+/// Takes the variable of nodes out that is z.
+fn take_heights(content: &mut Content) -> Option<Vec<f64>> {
+    let is_z =
+        |data: &Data| data.components == 1 && (data.name == "z" || data.name.ends_with("node_z"));
+    let at = content.point_data.iter().position(is_z)?;
+    Some(content.point_data.remove(at).values)
 }
 
 pub(crate) fn write_sms(job: &Job<'_>) -> String {

@@ -33,6 +33,7 @@ mod tags;
 mod targets;
 mod triangle;
 mod triangle_source;
+mod ugrid;
 mod vtk;
 mod xdmf;
 

@@ -4,6 +4,7 @@ use super::content::{Content, Group};
 use super::holds::{Holds, first};
 use super::spelling::{Spelling, distinct};
 use super::tags::Tags;
+use super::ugrid;
 use crate::file::label::Label;
 use std::collections::HashMap;
 
@@ -65,8 +66,12 @@ fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
 }
 
 fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
-    // The coordinates are properties of vertices like data of one number.
-    let taken: &[&str] = if holds.spelling == Spelling::Word { &["x", "y", "z"] } else { &[] };
+    let mut taken: Vec<String> = match holds.spelling {
+        // The coordinates are properties of vertices like data of one number.
+        Spelling::Word => ["x", "y", "z"].map(String::from).to_vec(),
+        Spelling::Variable => ugrid::NAMES.map(String::from).to_vec(),
+        _ => Vec::new(),
+    };
     let mut changed = Vec::new();
     for (what, held, data) in [
         ("data of vertices", holds.point_data, &mut content.point_data),
@@ -74,7 +79,12 @@ fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
     ] {
         let mut data: Vec<_> = data.iter_mut().filter(|data| held.holds(data)).collect();
         let names: Vec<&str> = data.iter().map(|data| data.name.as_str()).collect();
-        let new = distinct(&names, holds.spelling, taken, |at| format!("data{}", at + 1));
+        let all: Vec<&str> = taken.iter().map(String::as_str).collect();
+        let new = distinct(&names, holds.spelling, &all, |at| format!("data{}", at + 1));
+        if holds.spelling == Spelling::Variable {
+            // Variables of vertices and of elements stand side by side.
+            taken.extend_from_slice(&new);
+        }
         let mut told = Vec::new();
         for (data, new) in data.iter_mut().zip(new).filter(|(data, new)| data.name != *new) {
             told.push(format!("`{}` to `{new}`", data.name));

@@ -17,8 +17,9 @@ pub(super) struct NetCdf {
 
 struct Variable {
     name: String,
-    /// The indices of the variable's dimensions. The record dimension has index 0.
+    /// The indices of the variable's dimensions.
     dimensions: Vec<usize>,
+    is_record: bool,
     attributes: Vec<(&'static str, Values)>,
     values: Values,
 }
@@ -58,48 +59,43 @@ impl Values {
     }
 }
 
-/// The name of the record dimension, which every file has.
-pub(super) const RECORDS: &str = "time_step";
-
 impl NetCdf {
-    pub(super) fn new() -> NetCdf {
-        let mut file = NetCdf::default();
-        file.dimension(RECORDS, 0);
-        file
-    }
-
     pub(super) fn attribute(&mut self, name: &'static str, values: Values) {
         self.attributes.push((name, values));
     }
 
-    /// Adds a dimension, which must not be of length zero but for that of records.
+    /// Adds a dimension. That of length zero is the dimension of records.
     pub(super) fn dimension(&mut self, name: impl Into<String>, length: usize) {
         let name = name.into();
         self.places.insert(name.clone(), self.dimensions.len());
         self.dimensions.push((name, length));
     }
 
-    /// Adds a variable of these dimensions. `text` is an attribute of it, if it has one.
+    pub(super) fn has_dimension(&self, name: &str) -> bool {
+        self.places.contains_key(name)
+    }
+
+    /// Adds a variable of these dimensions, none for a single value.
     pub(super) fn variable(
         &mut self,
         name: impl Into<String>,
         dimensions: &[&str],
-        attribute: Option<(&'static str, &str)>,
+        attributes: Vec<(&'static str, Values)>,
         values: Values,
     ) {
         let place = |name: &&str| self.places.get(*name).copied();
-        let dimensions = dimensions.iter().filter_map(place).collect();
-        let text = |(name, text): (_, &str)| (name, Values::Text(text.as_bytes().to_vec()));
-        let attributes = attribute.map(text).into_iter().collect();
-        self.variables.push(Variable { name: name.into(), dimensions, attributes, values });
+        let dimensions: Vec<usize> = dimensions.iter().filter_map(place).collect();
+        let is_record = dimensions.first().is_some_and(|&first| self.dimensions[first].1 == 0);
+        let name = name.into();
+        self.variables.push(Variable { name, dimensions, is_record, attributes, values });
     }
 
     /// Returns the bytes of the file.
     pub(super) fn bytes(mut self) -> Vec<u8> {
         // Variables with records come after all others.
-        self.variables.sort_by_key(Variable::is_record);
+        self.variables.sort_by_key(|variable| variable.is_record);
         let has_records =
-            self.variables.iter().any(|v| v.is_record() && !v.values.encoded().2.is_empty());
+            self.variables.iter().any(|v| v.is_record && !v.values.encoded().2.is_empty());
         let contents: Vec<Vec<u8>> = self.variables.iter().map(Variable::content).collect();
         let header = self.header(has_records, &contents, 0).len();
         let mut bytes = self.header(has_records, &contents, header);
@@ -133,10 +129,6 @@ impl NetCdf {
 }
 
 impl Variable {
-    fn is_record(&self) -> bool {
-        self.dimensions.first() == Some(&0)
-    }
-
     /// Returns the bytes of the values, padded to a multiple of four.
     fn content(&self) -> Vec<u8> {
         let mut content = self.values.encoded().2;

@@ -11,6 +11,8 @@ pub(crate) enum Spelling {
     Quoted,
     /// As one word, which alone tells what it names from others.
     Word,
+    /// As the name of a variable of netCDF: a word without slashes that starts with a letter, a digit or an underscore.
+    Variable,
     /// As a word of letters without accents, digits, underscores and hyphens that starts with a letter. Capital and small letters
     /// are the same.
     Label,
@@ -19,7 +21,7 @@ pub(crate) enum Spelling {
 impl Spelling {
     /// Whether names alone tell what they name.
     pub(super) fn is_word(self) -> bool {
-        matches!(self, Spelling::Word | Spelling::Label)
+        matches!(self, Spelling::Word | Spelling::Variable | Spelling::Label)
     }
 
     /// Returns what is the same for two names that the format does not tell apart.
@@ -45,6 +47,17 @@ impl Spelling {
                 let words: Vec<&str> =
                     name.split(is_blank).filter(|word| !word.is_empty()).collect();
                 words.join("_")
+            }
+            Spelling::Variable => {
+                let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '/';
+                let words: Vec<&str> =
+                    name.split(is_blank).filter(|word| !word.is_empty()).collect();
+                let word = words.join("_");
+                match word.starts_with(|c: char| c.is_alphanumeric() || c == '_') || word.is_empty()
+                {
+                    true => word,
+                    false => format!("_{word}"),
+                }
             }
             Spelling::Label => {
                 let is_held = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');

@@ -3,7 +3,7 @@
 use super::holds::{Elements, Groups, Holds, Numbers};
 use super::job::Job;
 use super::spelling::Spelling;
-use super::{abaqus, exodus, gmsh, grids, medit, ply, su2, surface, triangle, vtk, xdmf};
+use super::{abaqus, exodus, gmsh, grids, medit, ply, su2, surface, triangle, ugrid, vtk, xdmf};
 use crate::file::format::Format;
 use crate::precision::Precision;
 
@@ -65,7 +65,7 @@ const MEDIT: Holds = Holds {
 };
 
 /// All targets. Of formats whose files end the same way, the usual one comes first.
-pub(crate) static TARGETS: [Target; 17] = [
+pub(crate) static TARGETS: [Target; 18] = [
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
@@ -81,6 +81,19 @@ pub(crate) static TARGETS: [Target; 17] = [
     Target { format: Format::Vtu, name: "vtu", holds: VTK, write: Write::One(vtk::write_xml) },
     Target { format: Format::Xdmf, name: "xdmf", holds: VTK, write: Write::One(xdmf::write_xdmf) },
     Target { format: Format::Vtk, name: "vtk", holds: VTK, write: Write::One(vtk::write_legacy) },
+    Target {
+        format: Format::Ugrid,
+        name: "ugrid",
+        holds: Holds {
+            quadrilaterals: true,
+            polygons: true,
+            spelling: Spelling::Variable,
+            point_data: Numbers::All,
+            cell_data: Numbers::All,
+            ..Holds::TRIANGLES
+        },
+        write: Write::Binary(ugrid::write_ugrid),
+    },
     Target {
         format: Format::Exodus,
         name: "exodus",

@@ -1,9 +1,9 @@
 //! The blocks of elements of an Exodus file.
 
 use super::File;
-use super::netcdf::{Items, Number, Variable};
 use crate::error::ReadError;
 use crate::file::binary::Order;
+use crate::file::netcdf::{Items, Number, Variable};
 use crate::file::records::{Field, Region, TriangleRecords};
 use crate::file::sink::{Element, Kind, Sink, volume};
 use crate::file::text::{CORRECT, Cursor};
@@ -95,8 +95,7 @@ impl<'a> File<'a> {
             let problem = format!("connect{number} is not a table of whole numbers");
             return Err(cursor.error(problem, CORRECT));
         };
-        let given = variable.element_type.as_deref().unwrap_or_default();
-        let given = given.split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
+        let given = variable.text("elem_type").unwrap_or_default();
         let name = String::from_utf8_lossy(given).to_ascii_uppercase();
         let is = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
         let kind = match corners {

@@ -2,11 +2,8 @@
 
 use super::File;
 use super::blocks::Block;
-use super::netcdf::{Number, Variable};
-use crate::file::hdf5::Encoding;
-use crate::file::numbers::{Encoded, Form, Places};
-use crate::file::sink::{Home, PointNumbers, Sink, Stored};
-use std::sync::Arc;
+use crate::file::netcdf::{Parts, PointData, Variable};
+use crate::file::sink::Sink;
 
 impl File<'_> {
     /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
@@ -28,7 +25,7 @@ impl File<'_> {
         let names = self.names("name_nod_var");
         let nodes = self.nodes as u64;
         let each = self.header.numbered("vals_nod_var");
-        let mut encoded = Vec::new();
+        let mut data = PointData::new(&self.header);
         for (place, name) in names.iter().enumerate() {
             if !sink.asks_for_data() {
                 sink.point_array(name, 1, true);
@@ -40,59 +37,18 @@ impl File<'_> {
             // In older files one variable has the numbers of all of these.
             let all = self.header.variable("vals_nod_var");
             let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
-            let Some((variable, part)) =
-                own.map(|&(_, own)| (own, 0)).or_else(|| Some((all?, place)))
-            else {
-                continue;
-            };
-            let share = if own.is_some() { 1 } else { names.len() };
-            self.point_steps(name, variable, (part, share), &mut encoded, sink);
-        }
-    }
-
-    /// Hands on one of so many parts of each record of a variable. What is encoded of one is shared by all of its parts and records.
-    fn point_steps<'v>(
-        &self,
-        name: &[u8],
-        variable: &'v Variable,
-        (part, share): (usize, usize),
-        encoded: &mut Vec<(&'v [u8], Arc<Encoding>)>,
-        sink: &mut dyn Sink,
-    ) {
-        let Number::Real(precision) = variable.number else { return };
-        let mut items = None;
-        for step in 0..self.header.steps(variable) {
-            if !sink.point_array(name, 1, true) {
-                continue;
-            }
-            if items.is_none() {
-                let Ok(mut own) = self.header.items(variable) else { return };
-                let is_known = encoded.iter().any(|(known, _)| *known == variable.name);
-                if own.place().is_none()
-                    && !is_known
-                    && let (Some(file), Some(array)) = (&self.header.hdf5, own.take_array())
-                {
-                    encoded.push((&variable.name, Arc::new(Encoding::new(file, vec![array]))));
+            let found = match (own, all) {
+                (Some(&(_, own)), _) => Some((own, Parts::WHOLE)),
+                (None, Some(all)) => {
+                    let parts =
+                        Parts { wanted: place..place + 1, all: names.len(), ..Parts::WHOLE };
+                    Some((all, parts))
                 }
-                items = Some(own);
-            }
-            let Some(items) = &items else { return };
-            let encoding = encoded.iter().find(|(known, _)| *known == variable.name);
-            let bytes = encoding.map_or(&items.bytes[..], |(_, encoding)| encoding.bytes());
-            let mut range = items.range(step);
-            let size = range.len() / share;
-            range = range.start + part * size..range.start + (part + 1) * size;
-            let (start, home) = match encoding {
-                None => (items.byte_of(range.start), Home::File),
-                Some((_, encoding)) => {
-                    (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
-                }
+                (None, None) => None,
             };
-            let places = Places::Regular { start, stride: precision.bytes() };
-            let form = Form::Binary(variable.order, precision);
-            let numbers = reals(variable, bytes.get(range).unwrap_or_default());
-            let stored = Some(Stored { places, form, home, part: 0 });
-            sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            if let Some((variable, parts)) = found {
+                data.send(name, variable, &parts, None, sink);
+            }
         }
     }
 
@@ -127,7 +83,7 @@ impl File<'_> {
     fn steps(&self, variable: &Variable) -> Vec<Vec<f64>> {
         let Ok(items) = self.header.items(variable) else { return Vec::new() };
         let steps = 0..self.header.steps(variable);
-        let own = |step| reals(variable, items.bytes.get(items.range(step)).unwrap_or_default());
+        let own = |step| variable.reals(items.bytes.get(items.range(step)).unwrap_or_default());
         steps.map(own).collect()
     }
 
@@ -171,11 +127,4 @@ impl File<'_> {
             sink.leaves_out("distribution factors of sets");
         }
     }
-}
-
-/// The numbers of a variable in these bytes; none if they are not real.
-fn reals(variable: &Variable, bytes: &[u8]) -> Vec<f64> {
-    let Number::Real(precision) = variable.number else { return Vec::new() };
-    let numbers = bytes.chunks_exact(precision.bytes());
-    numbers.map(|number| variable.order.real(precision, number)).collect()
 }

@@ -4,20 +4,17 @@
 //! are numbered through all of them from one. A side set lists sides of elements, a node set nodes.
 
 mod blocks;
-mod classic;
 mod data;
-mod netcdf;
-mod netcdf4;
 mod sets;
 
 use crate::error::ReadError;
 use crate::file::format::Format;
-use crate::file::hdf5::{Axes, Hdf5, SIGNATURE};
+use crate::file::hdf5::{Axes, Hdf5};
 use crate::file::label::Label;
+use crate::file::netcdf::{self, Header, Number, Variable};
 use crate::file::sink::{Column, Layout, Sink, Walk};
 use crate::file::source::Source;
 use crate::file::text::Cursor;
-use netcdf::{Header, Items, Number, Variable};
 
 pub(crate) struct Exodus;
 
@@ -36,23 +33,20 @@ impl Walk for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let header = match source.bytes.starts_with(SIGNATURE) {
-            true => netcdf4::read(source)?,
-            false => classic::read(source)?,
-        };
+        let header = netcdf::open(source)?;
         let start = Cursor::at_byte_of(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
             if header.hdf5.is_some() {
-                let problem = "HDF5 that holds no mesh of Exodus II, MED or CGNS";
+                let problem = "HDF5 that holds no mesh of Exodus II, UGRID, MED or CGNS";
                 let remedy = "If it has the numbers of an XDMF, name the .xdmf";
                 return Err(start.error(problem, remedy));
             }
-            let problem = "netCDF without the dimension num_nodes, so it is not Exodus";
-            return Err(start.error(problem, "Convert it to Exodus or another format that is read"));
+            let problem = "netCDF that holds no mesh of Exodus II (it has no dimension num_nodes) or UGRID (no variable with the cf_role mesh_topology)";
+            return Err(start.error(problem, "Save the mesh as one of these, or in another format"));
         };
         start.check_vertex_count(nodes)?;
         let file = File { source, header, nodes: nodes as usize };
-        let layout = file.axes()?.send(Format::Exodus, file.nodes, sink)?;
+        let layout = file.axes()?.send(Format::Exodus, (file.nodes, 1), sink)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
         sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
         let blocks = file.blocks(sink)?;
@@ -96,17 +90,6 @@ impl<'a> File<'a> {
             let start = Cursor::at_byte_of(self.source, 0);
             return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
         };
-        let mut items =
-            variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
-        let form = (order, precision);
-        let Some(file) = &header.hdf5 else {
-            let length = self.nodes * precision.bytes();
-            let of_each = count / items.len().max(1);
-            let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
-            let starts: Vec<usize> = items.iter().filter_map(Items::place).flat_map(of).collect();
-            return Ok(Axes::in_place(self.source, form, &starts, self.nodes));
-        };
-        let arrays = items.iter_mut().filter_map(Items::take_array).collect();
-        Ok(Axes::of_arrays(file, form, arrays, (count, self.nodes)))
+        netcdf::axes(header, &variables, (order, precision), (count, self.nodes))
     }
 }

@@ -6,6 +6,7 @@ use super::file::{Hdf5, Object};
 use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
 use super::heap::Heap;
 use super::raw::Raw;
+use super::strings;
 use super::types::{Number, Space};
 
 /// The content of an attribute.
@@ -18,14 +19,19 @@ pub(in crate::file) struct Attribute<'a> {
 impl<'a> Hdf5<'a> {
     /// The attribute of this name; none if there is none that can be read.
     pub(in crate::file) fn attribute(&self, object: &Object, name: &[u8]) -> Option<Attribute<'a>> {
-        let header = object.header.as_ref().ok()?;
+        let mut all = self.attributes(object).into_iter();
+        all.find(|(own, _)| *own == name).map(|(_, attribute)| attribute)
+    }
+
+    /// All attributes that can be read, by name.
+    pub(in crate::file) fn attributes(&self, object: &Object) -> Vec<(&'a [u8], Attribute<'a>)> {
+        let Ok(header) = &object.header else { return Vec::new() };
         let raw = &self.raw;
         let own = header.of(ATTRIBUTE).filter_map(|message| {
             let bytes = raw.at(message.content.start, "an attribute");
-            read(bytes.within(message.content.clone())).ok()
+            read(raw, bytes.within(message.content.clone())).ok()
         });
-        let mut all = own.chain(elsewhere(raw, header).unwrap_or_default());
-        all.find(|(own, _)| *own == name).map(|(_, attribute)| attribute)
+        own.chain(elsewhere(raw, header).unwrap_or_default()).collect()
     }
 }
 
@@ -56,7 +62,7 @@ fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attrib
         if let (Some(heap), Some(tree)) = (bytes.address()?, bytes.address()?) {
             let heap = Heap::read(raw, heap)?;
             for record in btree::records(raw, tree)? {
-                all.extend(heap.object(raw, record).and_then(read).ok());
+                all.extend(heap.object(raw, record).and_then(|own| read(raw, own)).ok());
             }
         }
     }
@@ -64,7 +70,7 @@ fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attrib
 }
 
 /// The name and the content of an attribute message.
-fn read(mut bytes: Bytes<'_>) -> Result<(&[u8], Attribute<'_>), Fault> {
+fn read<'a>(raw: &Raw<'a>, mut bytes: Bytes<'a>) -> Result<(&'a [u8], Attribute<'a>), Fault> {
     let version = bytes.byte()?;
     let flags = bytes.byte()?;
     let sizes = [bytes.count(2)?, bytes.count(2)?, bytes.count(2)?];
@@ -81,6 +87,10 @@ fn read(mut bytes: Bytes<'_>) -> Result<(&[u8], Attribute<'_>), Fault> {
     let name = name.take(sizes[0])?;
     let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
     let (number, space) = (Number::read(number)?, Space::read(space)?);
+    if number == Number::TextElsewhere(number.bytes()) && space.count() == Some(1) {
+        let text = strings::read(raw, bytes)?;
+        return Ok((name, Attribute { number: Number::Text(text.len()), bytes: text }));
+    }
     let size = space.count().and_then(|count| usize::try_from(count).ok());
     let size = size.and_then(|size| size.checked_mul(number.bytes())).unwrap_or(usize::MAX);
     let bytes = bytes.take(size)?;

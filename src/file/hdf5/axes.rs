@@ -25,7 +25,7 @@ pub(in crate::file) struct Axes<'a> {
 }
 
 impl<'a> Axes<'a> {
-    /// Of which those of each axis start at one of these bytes of the file, in ascending order, as many as `count`.
+    /// Of which those of each axis start at one of these bytes of the file, as many as `count`.
     pub(in crate::file) fn in_place(
         source: &'a Source,
         form: (Order, Precision),
@@ -47,9 +47,9 @@ impl<'a> Axes<'a> {
         let source = file.source;
         let length = count * form.1.bytes();
         let of_each = axes / arrays.len().max(1);
-        // In the file itself, if they stand there one after another; else as what is written anew.
+        // In the file itself, if they stand there as they are; else as what is written anew.
         let places: Option<Vec<usize>> = arrays.iter().map(Array::place).collect();
-        if let Some(places) = places.filter(|places| places.is_sorted()) {
+        if let Some(places) = places {
             let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
             let starts: Vec<usize> = places.into_iter().flat_map(of).collect();
             return Axes::in_place(source, form, &starts, count);
@@ -58,11 +58,11 @@ impl<'a> Axes<'a> {
         Axes { source, form, ranges, encoded: Some(Encoding::new(file, arrays)) }
     }
 
-    /// Hands on the nodes, numbered from one, of which there are `count`. Returns how the format has them.
+    /// Hands on the nodes, of which there are `count`, numbered from `first` on. Returns how the format has them.
     pub(in crate::file) fn send(
         self,
         format: Format,
-        count: usize,
+        (count, first): (usize, u64),
         sink: &mut dyn Sink,
     ) -> Result<Layout, ReadError> {
         let Axes { source, form: (order, precision), ranges, encoded } = self;
@@ -75,17 +75,14 @@ impl<'a> Axes<'a> {
             None => Cursor::at_byte_of(source, at),
             Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
         };
-        let Some(y_after) = y.start.checked_sub(x.start).filter(|_| y.len() == x.len()) else {
-            let problem = "the y of the nodes stand before their x";
-            return Err(place(y.start).error(problem, "Write the mesh again"));
-        };
+        let y_after = y.start as isize - x.start as isize;
         sink.expect_nodes(count);
         let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
-        let (x_at, tags) = (x.start, Tags::From(1));
+        let (x_at, tags) = (x.start, Tags::From(first));
         let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
         for index in sink.node_records(&records)..count {
             let x_at = x.start + index * size;
-            let (tag, at) = (index as u64 + 1, [number(x_at), number(x_at + y_after)]);
+            let (tag, at) = (index as u64 + first, [x_at, y.start + index * size].map(number));
             if !at.iter().all(|x| x.is_finite()) {
                 let problem = format!("a coordinate of node {tag} is not a finite number");
                 return Err(place(x_at).error(problem, "Write the mesh again"));

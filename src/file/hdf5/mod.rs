@@ -19,6 +19,7 @@ mod header;
 mod heap;
 mod layout;
 mod raw;
+mod strings;
 mod sum;
 #[cfg(test)]
 mod tests;

@@ -87,9 +87,15 @@ impl<'a> Raw<'a> {
         if range.end > self.bytes.len() {
             return Err(of.damaged());
         }
-        let left = self.left.get().checked_sub(range.len());
-        self.left.set(left.ok_or_else(|| of.damaged())?);
+        self.spend(range.len(), of)?;
         self.taken.borrow_mut().push((range.clone(), range.start));
+        Ok(())
+    }
+
+    /// Notes that so many bytes of metadata were read, so that a file cannot have the same ones read forever.
+    pub(super) fn spend(&self, bytes: usize, of: &Bytes<'_>) -> Result<(), Fault> {
+        let left = self.left.get().checked_sub(bytes);
+        self.left.set(left.ok_or_else(|| of.damaged())?);
         Ok(())
     }
 

@@ -6,14 +6,16 @@ use crate::file::rewrite::Rewrite;
 use crate::file::source::Source;
 use std::path::Path;
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 10] = [
     "chunked.h5",
     "dolfin.h5",
     "gmsh.cgns",
     "gmsh.med",
+    "h5netcdf.nc",
     "latest.h5",
     "meshio.h5",
     "netcdf4.exo",
+    "ugrid.nc",
     "zlib.exo",
 ];
 

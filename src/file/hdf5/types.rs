@@ -12,6 +12,8 @@ pub(in crate::file) enum Number {
     /// Whole numbers of so many bytes.
     Whole(usize, Order),
     Real(Precision, Order),
+    /// The place of a text of any length, in so many bytes.
+    TextElsewhere(usize),
     /// Anything else of this size.
     Other(usize),
 }
@@ -20,7 +22,10 @@ impl Number {
     /// How many bytes an item has.
     pub(in crate::file) fn bytes(self) -> usize {
         match self {
-            Number::Text(bytes) | Number::Whole(bytes, _) | Number::Other(bytes) => bytes,
+            Number::Text(bytes)
+            | Number::Whole(bytes, _)
+            | Number::TextElsewhere(bytes)
+            | Number::Other(bytes) => bytes,
             Number::Real(precision, _) => precision.bytes(),
         }
     }
@@ -51,6 +56,7 @@ impl Number {
                 }
             }
             (3, 1..) => Number::Text(size),
+            (9, 1..) if bits & 15 == 1 => Number::TextElsewhere(size),
             _ => Number::Other(size),
         })
     }

@@ -8,7 +8,7 @@ mod families;
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::format::Format;
-use crate::file::hdf5::{Axes, Hdf5, Number, Object};
+use crate::file::hdf5::{Axes, Hdf5, Number, Object, SIGNATURE};
 use crate::file::label::Label;
 use crate::file::records::{Field, Region, TriangleRecords};
 use crate::file::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
@@ -31,9 +31,9 @@ struct File<'a> {
 /// Where the meshes of a file are.
 const MESHES: &[u8] = b"ENS_MAA";
 
-/// Whether a file of HDF5 has meshes of MED.
+/// Whether a file is HDF5 with meshes of MED.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
-    Ok(Hdf5::open(source)?.find(MESHES).is_some())
+    Ok(source.bytes.starts_with(SIGNATURE) && Hdf5::open(source)?.find(MESHES).is_some())
 }
 
 impl Walk for Med {
@@ -89,7 +89,7 @@ impl<'a> File<'a> {
 
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.nodes()?;
-        let layout = axes.send(Format::Med, count, sink)?;
+        let layout = axes.send(Format::Med, (count, 1), sink)?;
         let label = |family| (family != 0).then_some(Label::Tag(family));
         sink.columns(vec![Column { what: "family".into(), from_dimension: 0, label }]);
         let families = match sink.asks_for_groups() {

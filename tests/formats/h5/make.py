@@ -1,13 +1,14 @@
 """Makes the files of this folder: one mesh in HDF5, as several programs write it.
 
-Run it here with h5py, netCDF4, meshio and gmsh installed (h5py 3.16 on HDF5 2.0, netCDF4 1.7, meshio 5.3 and gmsh 4.15
-made what is in the repository). dolfinx is not needed: its layout is made by h5py.
+Run it here with h5py, netCDF4, h5netcdf, meshio and gmsh installed (h5py 3.16 on HDF5 2.0, netCDF4 1.7, h5netcdf 1.8,
+meshio 5.3 and gmsh 4.15 made what is in the repository). dolfinx is not needed: its layout is made by h5py.
 """
 
 import math
 import os
 
 import gmsh
+import h5netcdf
 import h5py
 import meshio
 import netCDF4
@@ -211,6 +212,40 @@ def exodus(name, form, zlib):
 exodus("classic.exo", "NETCDF3_CLASSIC", False)
 exodus("netcdf4.exo", "NETCDF4", False)
 exodus("zlib.exo", "NETCDF4", True)
+
+# UGRID by netCDF, compressed, with time steps, edges and places of faces; and by h5netcdf, whose texts stand in a heap.
+with netCDF4.Dataset("ugrid.nc", "w") as f:
+    f.Conventions = "CF-1.8 UGRID-1.0"
+    for key, length in dict(time=None, nNodes=n, nFaces=m, nMax=4).items():
+        f.createDimension(key, length)
+    mesh = f.createVariable("mesh", "i4", ())
+    mesh.setncatts(
+        dict(cf_role="mesh_topology", topology_dimension=np.int32(2), node_coordinates="mesh_node_x mesh_node_y",
+             face_node_connectivity="mesh_face_nodes", face_dimension="nFaces", face_coordinates="mesh_face_x")
+    )
+    options = dict(zlib=True, shuffle=True)
+    for axis, key in enumerate("xy"):
+        f.createVariable(f"mesh_node_{key}", "f8", ("nNodes",), **options)[:] = points[:, axis]
+    faces = f.createVariable("mesh_face_nodes", "i4", ("nFaces", "nMax"), fill_value=-999, **options)
+    faces.start_index = np.int32(1)
+    faces[:] = np.c_[triangles + 1, np.full(m, -999)]
+    f.createVariable("mesh_face_x", "f8", ("nFaces",))[:] = points[triangles].mean(axis=1)[:, 0]
+    data = f.createVariable("T", "f8", ("time", "nNodes"), **options)
+    data.setncatts(dict(mesh="mesh", location="node", long_name="température"))
+    data[0] = depth
+    data[1] = 2 * depth
+
+with h5netcdf.File("h5netcdf.nc", "w") as f:
+    f.dimensions = dict(nNodes=n, nFaces=m, three=3)
+    mesh = f.create_variable("mesh", (), "i4", data=0)
+    mesh.attrs.update(
+        cf_role="mesh_topology", topology_dimension=2, node_coordinates="mesh_node_x mesh_node_y",
+        face_node_connectivity="mesh_face_nodes",
+    )
+    for axis, key in enumerate("yx"):
+        f.create_variable(f"mesh_node_{key}", ("nNodes",), "f8", data=points[:, 1 - axis])
+    f.create_variable("mesh_face_nodes", ("nFaces", "three"), "i8", data=triangles)
+    f.create_variable("depth", ("nNodes",), "f8", data=depth).attrs.update(location="node", mesh="mesh")
 
 # MED and CGNS by gmsh.
 gmsh.initialize()

@@ -5,8 +5,10 @@ pub(crate) mod binary;
 mod exodus;
 mod gmsh;
 mod grids;
+mod netcdf;
 mod ply;
 mod text;
+mod ugrid;
 mod vtk;
 pub(crate) mod vtu;
 mod xdmf;
@@ -94,6 +96,7 @@ pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
         vtk::all,
         binary::all,
         exodus::all,
+        ugrid::all,
         xdmf::all,
         abaqus::all,
     ];

@@ -1,5 +1,6 @@
-//! What netCDF gives, whichever format it has its variables in: dimensions and variables by name.
+//! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
 
+use super::attribute::Attribute;
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::hdf5::{Array, Dataset, Hdf5};
@@ -9,28 +10,27 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 /// The dimensions and variables of a file. No two of the variables overlap, and none ends beyond the file.
-pub(super) struct Header<'a> {
-    pub(super) source: &'a Source,
-    pub(super) dimensions: Vec<(Vec<u8>, u64)>,
-    pub(super) variables: Vec<Variable>,
+pub(in crate::file) struct Header<'a> {
+    pub(in crate::file) source: &'a Source,
+    pub(in crate::file) dimensions: Vec<(Vec<u8>, u64)>,
+    pub(in crate::file) variables: Vec<Variable>,
     /// How many records there are.
-    pub(super) records: usize,
+    pub(in crate::file) records: usize,
     /// The file, if it is HDF5.
-    pub(super) hdf5: Option<Hdf5<'a>>,
+    pub(in crate::file) hdf5: Option<Hdf5<'a>>,
 }
 
 /// A variable of a netCDF file.
-pub(super) struct Variable {
-    pub(super) name: Vec<u8>,
+pub(in crate::file) struct Variable {
+    pub(in crate::file) name: Vec<u8>,
     /// Its lengths, but for the record dimension.
-    pub(super) shape: Vec<u64>,
-    pub(super) is_record: bool,
-    pub(super) number: Number,
-    pub(super) order: Order,
-    /// The content of its attribute `elem_type`.
-    pub(super) element_type: Option<Vec<u8>>,
+    pub(in crate::file) shape: Vec<u64>,
+    pub(in crate::file) is_record: bool,
+    pub(in crate::file) number: Number,
+    pub(in crate::file) order: Order,
+    pub(super) attributes: Vec<Attribute>,
     /// How many bytes it has, in each record if it is of records.
-    pub(super) size: usize,
+    pub(in crate::file) size: usize,
     pub(super) content: Content,
 }
 
@@ -46,16 +46,16 @@ pub(super) enum Content {
 
 /// The types of numbers that are told apart.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Number {
+pub(in crate::file) enum Number {
     Text,
     Whole(usize),
     Real(Precision),
-    /// None that Exodus has.
+    /// None of these.
     Other(usize),
 }
 
 impl Number {
-    pub(super) fn bytes(self) -> usize {
+    pub(in crate::file) fn bytes(self) -> usize {
         match self {
             Number::Text => 1,
             Number::Whole(bytes) | Number::Other(bytes) => bytes,
@@ -64,50 +64,89 @@ impl Number {
     }
 }
 
+impl Variable {
+    fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.name == name.as_bytes())
+    }
+
+    /// The text of an attribute, if it has one.
+    pub(in crate::file) fn text(&self, attribute: &str) -> Option<&[u8]> {
+        self.attribute(attribute)?.text()
+    }
+
+    /// The first number of an attribute, if that is whole.
+    pub(in crate::file) fn whole(&self, attribute: &str) -> Option<i64> {
+        self.attribute(attribute)?.whole()
+    }
+
+    /// The number that stands where there is none, if the file names one.
+    pub(in crate::file) fn missing(&self) -> Option<f64> {
+        ["_FillValue", "missing_value"].iter().find_map(|name| self.attribute(name)?.real())
+    }
+
+    /// The real numbers in these bytes of it; none if it has others.
+    pub(in crate::file) fn reals(&self, bytes: &[u8]) -> Vec<f64> {
+        match self.number {
+            Number::Real(_) => self.numbers(bytes),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The numbers in these bytes of it, real or whole; none if it has text.
+    pub(in crate::file) fn numbers(&self, bytes: &[u8]) -> Vec<f64> {
+        let each = bytes.chunks_exact(self.number.bytes().max(1));
+        match self.number {
+            Number::Real(precision) => each.map(|x| self.order.real(precision, x)).collect(),
+            Number::Whole(_) => each.map(|x| self.order.signed(x) as f64).collect(),
+            Number::Text | Number::Other(_) => Vec::new(),
+        }
+    }
+}
+
 /// The content of a variable.
-pub(super) struct Items<'a> {
+pub(in crate::file) struct Items<'a> {
     /// Bytes that it stands in, and where its records start there.
-    pub(super) bytes: Cow<'a, [u8]>,
+    pub(in crate::file) bytes: Cow<'a, [u8]>,
     first: usize,
     stride: usize,
     size: usize,
     /// What these bytes are, if they are not those of the file.
-    pub(super) array: Option<Array<'a>>,
+    pub(in crate::file) array: Option<Array<'a>>,
 }
 
 impl<'a> Items<'a> {
     /// Where a record is among the bytes; of a variable without records all of it.
-    pub(super) fn range(&self, record: usize) -> Range<usize> {
+    pub(in crate::file) fn range(&self, record: usize) -> Range<usize> {
         let start = self.first + record * self.stride;
         start..start + self.size
     }
 
     /// All of a variable without records.
-    pub(super) fn own(&self) -> &[u8] {
+    pub(in crate::file) fn own(&self) -> &[u8] {
         self.bytes.get(self.range(0)).unwrap_or_default()
     }
 
     /// Where in the file it starts, if it stands there as it is.
-    pub(super) fn place(&self) -> Option<usize> {
+    pub(in crate::file) fn place(&self) -> Option<usize> {
         self.array.as_ref().map_or(Some(self.first), Array::place)
     }
 
     /// Takes out what it is, with its bytes, if these are not those of the file.
-    pub(super) fn take_array(&mut self) -> Option<Array<'a>> {
+    pub(in crate::file) fn take_array(&mut self) -> Option<Array<'a>> {
         let mut array = self.array.take()?;
         array.bytes = std::mem::take(&mut self.bytes);
         Some(array)
     }
 
     /// The byte of the file at or near which this one of the bytes stands.
-    pub(super) fn byte_of(&self, at: usize) -> usize {
+    pub(in crate::file) fn byte_of(&self, at: usize) -> usize {
         self.array.as_ref().map_or(at, |array| array.byte_of(at))
     }
 }
 
 impl<'a> Header<'a> {
     /// The content of a variable.
-    pub(super) fn items(&self, variable: &Variable) -> Result<Items<'a>, ReadError> {
+    pub(in crate::file) fn items(&self, variable: &Variable) -> Result<Items<'a>, ReadError> {
         let size = variable.size;
         match (&variable.content, &self.hdf5) {
             (Content::Dataset(dataset), Some(file)) => {
@@ -126,7 +165,7 @@ impl<'a> Header<'a> {
     }
 
     /// Near which byte a variable stands, for messages.
-    pub(super) fn place(&self, variable: &Variable) -> usize {
+    pub(in crate::file) fn place(&self, variable: &Variable) -> usize {
         match &variable.content {
             Content::Bytes { begin, .. } => *begin,
             Content::Dataset(dataset) => dataset.at,
@@ -134,14 +173,14 @@ impl<'a> Header<'a> {
     }
 
     /// The whole numbers of a variable; none if it has others.
-    pub(super) fn integers(&self, variable: &Variable) -> Option<Vec<i64>> {
+    pub(in crate::file) fn integers(&self, variable: &Variable) -> Option<Vec<i64>> {
         let Number::Whole(bytes) = variable.number else { return None };
         let items = self.items(variable).ok()?;
         Some(items.own().chunks_exact(bytes).map(|n| variable.order.signed(n)).collect())
     }
 
     /// The texts of a variable, the rows of a table of letters, without what fills them up.
-    pub(super) fn texts(&self, variable: &Variable) -> Vec<Vec<u8>> {
+    pub(in crate::file) fn texts(&self, variable: &Variable) -> Vec<Vec<u8>> {
         let width = variable.shape.last().map_or(1, |&width| width as usize).max(1);
         let is_table = variable.number == Number::Text && !variable.is_record;
         let Some(items) = is_table.then(|| self.items(variable).ok()).flatten() else {
@@ -155,23 +194,23 @@ impl<'a> Header<'a> {
     }
 
     /// How many records a variable has; one if it has none.
-    pub(super) fn steps(&self, variable: &Variable) -> usize {
+    pub(in crate::file) fn steps(&self, variable: &Variable) -> usize {
         if variable.is_record { self.records } else { 1 }
     }
 
     /// The length of a dimension.
-    pub(super) fn dimension(&self, name: &str) -> Option<u64> {
+    pub(in crate::file) fn dimension(&self, name: &str) -> Option<u64> {
         let found = self.dimensions.iter().find(|(own, _)| own == name.as_bytes());
         found.map(|&(_, length)| length)
     }
 
     /// The variable of a name.
-    pub(super) fn variable(&self, name: &str) -> Option<&Variable> {
+    pub(in crate::file) fn variable(&self, name: &str) -> Option<&Variable> {
         self.variables.iter().find(|variable| variable.name == name.as_bytes())
     }
 
     /// The variables called so with a number after it, in the order of these.
-    pub(super) fn numbered(&self, name: &str) -> Vec<(usize, &Variable)> {
+    pub(in crate::file) fn numbered(&self, name: &str) -> Vec<(usize, &Variable)> {
         let number = |variable: &Variable| -> Option<usize> {
             let digits = variable.name.strip_prefix(name.as_bytes())?;
             let is_number = !digits.is_empty() && digits.iter().all(u8::is_ascii_digit);

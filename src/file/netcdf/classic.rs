@@ -3,7 +3,8 @@
 //! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers have their highest byte
 //! first. Variables of the record dimension come at the end, one record after another.
 
-use super::netcdf::{Content, Header, Number, Variable};
+use super::attribute::Attribute;
+use super::header::{Content, Header, Number, Variable};
 use crate::error::ReadError;
 use crate::file::binary::Order;
 use crate::file::source::Source;
@@ -18,7 +19,7 @@ struct Placed {
     shape: Vec<u64>,
     is_record: bool,
     number: Number,
-    element_type: Option<Vec<u8>>,
+    attributes: Vec<Attribute>,
     begin: usize,
     size: usize,
 }
@@ -26,9 +27,9 @@ struct Placed {
 impl Placed {
     /// The variable, where each record starts so many bytes after the one before.
     fn with(self, stride: usize) -> Variable {
-        let Placed { name, shape, is_record, number, element_type, begin, size } = self;
+        let Placed { name, shape, is_record, number, attributes, begin, size } = self;
         let content = Content::Bytes { begin, stride };
-        Variable { name, shape, is_record, number, order: ORDER, element_type, size, content }
+        Variable { name, shape, is_record, number, order: ORDER, attributes, size, content }
     }
 }
 
@@ -188,13 +189,12 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Takes an attribute. Returns its name and, if it is text, its content.
-    fn attribute(&mut self) -> Result<(Vec<u8>, Option<Vec<u8>>), ReadError> {
+    fn attribute(&mut self) -> Result<Attribute, ReadError> {
         let name = self.name()?;
         let number = self.number_type()?;
         let count = self.number(self.count)?;
-        let content = self.padded(count.saturating_mul(number.bytes() as u64))?;
-        Ok((name, (number == Number::Text).then(|| content.to_vec())))
+        let bytes = self.padded(count.saturating_mul(number.bytes() as u64))?.to_vec();
+        Ok(Attribute { name, number, order: ORDER, bytes })
     }
 
     fn variable(&mut self, dimensions: &[(Vec<u8>, u64)]) -> Result<Placed, ReadError> {
@@ -213,12 +213,9 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        let mut element_type = None;
+        let mut attributes = Vec::new();
         for _ in 0..self.list(12)? {
-            let (name, content) = self.attribute()?;
-            if name == b"elem_type" {
-                element_type = content;
-            }
+            attributes.push(self.attribute()?);
         }
         let number = self.number_type()?;
         // Its size stands here too, but need not be right where it is large.
@@ -226,6 +223,6 @@ impl<'a> Reader<'a> {
         let begin = usize::try_from(self.number(self.offset)?).unwrap_or(usize::MAX);
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
         let size = size.and_then(|size| usize::try_from(size).ok()).unwrap_or(usize::MAX);
-        Ok(Placed { name, shape, is_record, number, element_type, begin, size })
+        Ok(Placed { name, shape, is_record, number, attributes, begin, size })
     }
 }

@@ -1,0 +1,49 @@
+//! Texts of attributes that stand elsewhere in the file, in a collection of a global heap, as h5py and h5netcdf write them.
+
+use super::bytes::{Bytes, Fault};
+use super::raw::Raw;
+
+const WHAT: &str = "a text in the HDF5 file";
+
+/// Follows the place of a text: its length, the address of a collection, and its number there. Returns the text.
+pub(super) fn read<'a>(raw: &Raw<'a>, mut place: Bytes<'_>) -> Result<&'a [u8], Fault> {
+    let length = place.count(4)?;
+    let collection = place.address()?;
+    let number = place.count(4)?;
+    match collection {
+        // An empty text has no place.
+        None | Some(0) if length == 0 => Ok(&[]),
+        None => Err(place.damaged()),
+        Some(at) => object(raw, at, number)?.take(length),
+    }
+}
+
+/// Finds an object of a collection.
+fn object<'a>(raw: &Raw<'a>, at: usize, number: usize) -> Result<Bytes<'a>, Fault> {
+    let mut bytes = raw.at(at, WHAT);
+    bytes.expect(b"GCOL\x01")?;
+    bytes.skip(3)?;
+    let size = bytes.length()?;
+    let end = at.checked_add(size).ok_or_else(|| bytes.damaged())?;
+    let start = bytes.at();
+    raw.take(at..start, &bytes)?;
+    let mut bytes = bytes.within(start..end);
+    loop {
+        let start = bytes.at();
+        let own = bytes.count(2)?;
+        bytes.skip(2 + 4)?;
+        let length = bytes.length()?;
+        // Number 0 is the free space, which ends the collection.
+        if own == 0 {
+            return Err(bytes.damaged());
+        }
+        let content = bytes.at()..bytes.at().saturating_add(length);
+        if own == number {
+            raw.take(start..content.end, &bytes)?;
+            return Ok(bytes.within(content));
+        }
+        raw.spend(bytes.at() - start, &bytes)?;
+        bytes.skip(length)?;
+        bytes.align(content.start, 8)?;
+    }
+}

@@ -1,0 +1,104 @@
+//! Data of nodes: variables whose numbers are handed on record by record.
+
+use super::header::{Header, Items, Number, Variable};
+use crate::file::hdf5::Encoding;
+use crate::file::numbers::{Encoded, Form, Places};
+use crate::file::sink::{Home, PointNumbers, Sink, Stored};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Which parts of each record of a variable are handed on, each with numbers for all nodes.
+#[derive(Clone)]
+pub(in crate::file) struct Parts {
+    pub(in crate::file) wanted: Range<usize>,
+    /// How many equal parts a record consists of.
+    pub(in crate::file) all: usize,
+    /// How many numbers each node has in a part.
+    pub(in crate::file) components: u64,
+}
+
+impl Parts {
+    /// A record has one number for each node.
+    pub(in crate::file) const WHOLE: Parts = Parts { wanted: 0..1, all: 1, components: 1 };
+}
+
+/// Hands on data of nodes. What is encoded of a variable is shared by all of its parts and records.
+pub(in crate::file) struct PointData<'h, 'a> {
+    header: &'h Header<'a>,
+    encoded: Vec<(&'h [u8], Arc<Encoding>)>,
+}
+
+impl<'h, 'a> PointData<'h, 'a> {
+    pub(in crate::file) fn new(header: &'h Header<'a>) -> PointData<'h, 'a> {
+        PointData { header, encoded: Vec::new() }
+    }
+
+    /// Hands on parts of each record of a variable, as point data of this name. Real numbers can be replaced. Numbers that are
+    /// equal to `missing` are not known.
+    pub(in crate::file) fn send(
+        &mut self,
+        name: &[u8],
+        variable: &'h Variable,
+        parts: &Parts,
+        missing: Option<f64>,
+        sink: &mut dyn Sink,
+    ) {
+        let precision = match variable.number {
+            Number::Real(precision) => Some(precision),
+            Number::Whole(_) => None,
+            Number::Text | Number::Other(_) => return,
+        };
+        let mut items = None;
+        for record in 0..self.header.steps(variable) {
+            for part in parts.wanted.clone() {
+                if !sink.point_array(name, parts.components, precision.is_some()) {
+                    continue;
+                }
+                if items.is_none() {
+                    items = self.items(variable);
+                }
+                let Some(items) = &items else { return };
+                let encoding = self.encoding(variable);
+                let bytes = encoding.map_or(&items.bytes[..], |encoding| encoding.bytes());
+                let range = items.range(record);
+                let size = range.len() / parts.all.max(1);
+                let range = range.start + part * size..range.start + (part + 1) * size;
+                let (start, home) = match encoding {
+                    None => (items.byte_of(range.start), Home::File),
+                    Some(encoding) => {
+                        (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+                    }
+                };
+                let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
+                numbers
+                    .iter_mut()
+                    .filter(|x| Some(**x) == missing)
+                    .for_each(|number| *number = f64::NAN);
+                let stored = precision.map(|precision| {
+                    let places = Places::Regular { start, stride: precision.bytes() };
+                    let form = Form::Binary(variable.order, precision);
+                    Stored { places, form, home, part: 0 }
+                });
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            }
+        }
+    }
+
+    fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {
+        let known = self.encoded.iter().find(|(known, _)| *known == variable.name);
+        known.map(|(_, encoding)| encoding)
+    }
+
+    /// The content of a variable, whose encoding is kept if the file does not have its numbers as they are.
+    fn items(&mut self, variable: &'h Variable) -> Option<Items<'a>> {
+        let mut items = self.header.items(variable).ok()?;
+        if items.place().is_none()
+            && self.encoding(variable).is_none()
+            && let (Some(file), Some(array)) = (&self.header.hdf5, items.take_array())
+        {
+            let encoding = Arc::new(Encoding::new(file, vec![array]));
+            self.encoded.push((&variable.name, encoding));
+        }
+        Some(items)
+    }
+}

@@ -1,0 +1,127 @@
+//! Data of nodes and faces in a UGRID file.
+
+use super::faces::Faces;
+use super::mesh::Mesh;
+use crate::file::netcdf::{Number, Parts, PointData, Variable};
+use crate::file::sink::Sink;
+
+/// What a variable has numbers for.
+#[derive(Clone, Copy, PartialEq)]
+enum Location {
+    Nodes,
+    Faces,
+}
+
+impl<'h> Mesh<'h, '_> {
+    /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
+    pub(super) fn data(&self, faces: &Faces<'_, '_>, sink: &mut dyn Sink) {
+        let lengths = [self.nodes as u64, faces.count as u64];
+        let places = ["edge_coordinates", "face_coordinates"].map(|name| self.named(name));
+        let places = places.concat();
+        let is_data = |variable: &&Variable| {
+            ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
+                && !places.iter().any(|own| own.name == variable.name)
+                && variable.text("cf_role").is_none()
+        };
+        let mut points = PointData::new(self.header);
+        for variable in self.header.variables.iter().filter(is_data) {
+            let Some((Location::Nodes, parts)) = self.located(variable, lengths) else { continue };
+            match sink.asks_for_data() {
+                true => points.send(&variable.name, variable, &parts, variable.missing(), sink),
+                false => {
+                    let is_real = matches!(variable.number, Number::Real(_));
+                    sink.point_array(&variable.name, parts.components, is_real);
+                }
+            }
+        }
+        if sink.asks_for_data() {
+            for variable in self.header.variables.iter().filter(is_data) {
+                if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
+                    self.of_faces(faces, (variable, &parts), sink);
+                }
+            }
+            self.left_out(sink);
+        }
+        if !places.is_empty() {
+            let names: Vec<_> =
+                places.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
+            sink.note(&format!(
+                "{}: places of edges or faces, which stay as they are",
+                names.join(", ")
+            ));
+        }
+    }
+
+    /// What a variable has numbers for, and how its records consist of parts. None if it is of something else, or if that is not
+    /// known.
+    fn located(&self, variable: &Variable, lengths: [u64; 2]) -> Option<(Location, Parts)> {
+        let is_numeric = matches!(variable.number, Number::Real(_) | Number::Whole(_));
+        if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
+            return None;
+        }
+        let location = match variable.text("location") {
+            Some(b"node") => Location::Nodes,
+            Some(b"face") => Location::Faces,
+            Some(_) => return None,
+            None => match lengths.map(|length| variable.shape.contains(&length)) {
+                [true, false] => Location::Nodes,
+                [false, true] => Location::Faces,
+                _ => return None,
+            },
+        };
+        let length = lengths[usize::from(location == Location::Faces)];
+        let axis = variable.shape.iter().position(|&own| own == length)?;
+        let product = |lengths: &[u64]| {
+            lengths.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).filter(|&n| n > 0)
+        };
+        let all = usize::try_from(product(&variable.shape[..axis])?).ok()?;
+        let components = product(&variable.shape[axis + 1..])?;
+        Some((location, Parts { wanted: 0..all, all, components }))
+    }
+
+    fn of_faces(
+        &self,
+        faces: &Faces<'_, '_>,
+        (variable, parts): (&'h Variable, &Parts),
+        sink: &mut dyn Sink,
+    ) {
+        let is_real = matches!(variable.number, Number::Real(_));
+        let mut items = None;
+        for record in 0..self.header.steps(variable) {
+            for part in parts.wanted.clone() {
+                if !sink.cell_array(&variable.name, parts.components, is_real) {
+                    continue;
+                }
+                if items.is_none() {
+                    items = self.header.items(variable).ok();
+                }
+                let Some(items) = &items else { return };
+                let range = items.range(record);
+                let size = range.len() / parts.all.max(1);
+                let range = range.start + part * size..range.start + (part + 1) * size;
+                let mut numbers = variable.numbers(items.bytes.get(range).unwrap_or_default());
+                let missing = variable.missing();
+                numbers.iter_mut().filter(|x| Some(**x) == missing).for_each(|x| *x = f64::NAN);
+                let tags = faces.first..faces.first + faces.count as u64;
+                sink.cell_numbers(numbers, Some(tags.collect()));
+            }
+        }
+    }
+
+    fn left_out(&self, sink: &mut dyn Sink) {
+        let variables = &self.header.variables;
+        if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
+            sink.leaves_out("variables of edges");
+        }
+        let others = ["edge_node_connectivity", "face_face_connectivity", "face_edge_connectivity"];
+        if others.iter().any(|name| !self.named(name).is_empty()) {
+            sink.leaves_out("edges and neighbors of faces, which follow from the mesh");
+        }
+        if variables.iter().any(|variable| variable.text("units").is_some()) {
+            sink.leaves_out("units and other attributes of variables");
+        }
+        if self.header.records > 1 {
+            sink.leaves_out("times of time steps");
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! UGRID, in netCDF's classic formats and in netCDF-4: meshes of coastal and atmospheric models, and of Delft3D FM, SCHISM and ADCIRC.
+//!
+//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A variable without numbers of its own stands
+//! for the mesh; its attributes name the variables of its parts. Faces are triangles, quadrilaterals and larger polygons.
+
+mod data;
+mod faces;
+mod mesh;
+
+use crate::error::ReadError;
+use crate::file::format::Format;
+use crate::file::hdf5::Hdf5;
+use crate::file::netcdf;
+use crate::file::sink::{Layout, Sink, Walk};
+use crate::file::source::Source;
+use mesh::Mesh;
+
+pub(crate) struct Ugrid;
+
+/// Whether a file of netCDF has meshes of UGRID.
+///
+/// # Errors
+/// If its header is damaged.
+pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
+    let header = netcdf::open(source)?;
+    Ok(header.variables.iter().any(mesh::is_mesh))
+}
+
+impl Walk for Ugrid {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let header = netcdf::open(source)?;
+        let mesh = Mesh::find(&header)?;
+        let faces = mesh.faces()?;
+        let layout = mesh.axes()?.send(Format::Ugrid, (mesh.nodes, faces.first), sink)?;
+        faces.send(&header, sink)?;
+        mesh.data(&faces, sink);
+        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        Ok(layout)
+    }
+}
