@@ -27,7 +27,7 @@ pub(crate) fn parse_by(
     let vertices_of = reader.vertices;
     let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
     let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
-    let has_parameters = assembler.has_parameters;
+    let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
     let Assembler { mut mesh, x_at, regions, curves, .. } = assembler;
     let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
@@ -66,6 +66,7 @@ pub(crate) fn parse_by(
         notes,
         data,
         has_parameters,
+        has_centers,
     })
 }
 
@@ -105,6 +106,7 @@ struct Assembler {
     data: Vec<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
+    has_centers: bool,
     /// Names the file's list of vertices in messages.
     vertices_of: &'static str,
     /// How many nodes lie on points and curves of the model.
@@ -219,6 +221,11 @@ impl Sink for Assembler {
 
     fn parameters(&mut self, _: i64) -> bool {
         self.has_parameters = true;
+        false
+    }
+
+    fn center_array(&mut self, _: &[u8], _: usize) -> bool {
+        self.has_centers = true;
         false
     }
 

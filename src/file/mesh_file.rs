@@ -67,6 +67,7 @@ pub struct MeshFile {
     notes: Vec<String>,
     data: Vec<String>,
     has_parameters: bool,
+    has_centers: bool,
     /// The bytes at which the x of vertices start in the part that has the coordinates.
     x_at: Places,
     /// The vertex of each offset in `x_at`, if a vertex may have several.
@@ -110,6 +111,7 @@ impl MeshFile {
             notes,
             data,
             has_parameters,
+            has_centers,
         } = parsed;
         let Mesh { points, triangles, fixed } = &mut mesh;
         let interfaces = regions
@@ -128,6 +130,7 @@ impl MeshFile {
             notes,
             data,
             has_parameters,
+            has_centers,
             x_at,
             owners,
             numbers,
@@ -371,6 +374,12 @@ impl MeshFile {
     /// these parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {
         self.has_parameters
+    }
+
+    /// Whether the file has the centers of faces or edges, as UGRID may. [`write`](Self::write) keeps them;
+    /// [`centers`](Self::centers) updates them.
+    pub fn has_centers(&self) -> bool {
+        self.has_centers
     }
 }
 

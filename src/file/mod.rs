@@ -7,6 +7,7 @@ mod ahead_tests;
 mod assemble;
 mod beside;
 mod binary;
+mod centers;
 mod cgns;
 mod column;
 mod compare;

@@ -30,6 +30,8 @@ pub(crate) struct Parsed {
     pub(crate) data: Vec<String>,
     /// Whether the file gives vertices parameters on surfaces of a model, at offsets that are known.
     pub(crate) has_parameters: bool,
+    /// Whether the file gives elements centers.
+    pub(crate) has_centers: bool,
 }
 
 /// Words the remark that elements other than triangles keep their vertices fixed.

@@ -38,7 +38,7 @@ impl MeshFile {
 
     /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
     /// fields. The fields must come from [`point_fields`](Self::point_fields) or
-    /// [`plane_parameters`](Self::plane_parameters) of this file. A number with the bits that were read keeps its text.
+    /// [`plane_parameters`](Self::plane_parameters) or [`centers`](Self::centers) of this file. A number with the bits that were read keeps its text.
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write`](Self::write).

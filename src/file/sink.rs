@@ -198,6 +198,13 @@ pub(crate) trait Sink {
     }
     /// Takes the parameters that were announced last, if the sink wants them.
     fn parameter_numbers(&mut self, _numbers: PointNumbers) {}
+    /// Takes the name of an array that has a coordinate of the center of each of some elements: x for the axis 0, y for 1.
+    /// Returns whether the sink wants the numbers.
+    fn center_array(&mut self, _name: &[u8], _axis: usize) -> bool {
+        false
+    }
+    /// Takes the centers that were announced last, if the sink wants them.
+    fn center_numbers(&mut self, _centers: Centers) {}
     /// Announces third coordinates or depths as an array of point data. Returns whether the sink wants the numbers.
     fn height_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)
@@ -233,6 +240,16 @@ pub(crate) struct PointNumbers {
     pub(crate) nodes: Option<Vec<u64>>,
     /// Where the numbers stand; `None` if they cannot be replaced.
     pub(crate) stored: Option<Stored>,
+}
+
+/// One coordinate of the centers of some elements: faces, edges, or single nodes.
+pub(crate) struct Centers {
+    /// The tags of the nodes of all elements, one element after another, and where those of each end. An element without nodes has
+    /// no center.
+    pub(crate) nodes: Vec<u64>,
+    pub(crate) ends: Vec<usize>,
+    /// A number for each element.
+    pub(crate) numbers: PointNumbers,
 }
 
 /// Where the numbers of an array stand.

@@ -51,6 +51,7 @@ pub(crate) fn parse(
         notes,
         data,
         has_parameters: false,
+        has_centers: false,
     })
 }
 

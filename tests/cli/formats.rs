@@ -145,3 +145,30 @@ fn an_xdmf_comes_with_the_files_beside_it() {
     folder.line("dolfin.xdmf - --engine cpu").refused(&["cannot go to standard output: name OUT"]);
     folder.line("dolfin.h5 out.h5").refused(&["name the .xdmf"]);
 }
+
+/// A mesh of UGRID in netCDF-4: its data and the places of its faces follow the vertices, also through a conversion.
+#[test]
+fn places_and_data_of_ugrid_follow_the_vertices() {
+    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    let folder = Folder::new(&[]);
+    fs::copy(made.join("ugrid.nc"), folder.path("in.nc")).unwrap();
+    let line = "in.nc out.nc --interpolate all --report run.json --engine cpu";
+    let run = folder.line(line);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert!(!run.err.contains("mesh_face_x"), "{}", run.err);
+    let report = folder.json("run.json");
+    assert_eq!(report["certificate"]["connectivity_identical"], true, "{report:#}");
+    let compared = folder.line("compare in.nc out.nc --interpolate all");
+    assert_eq!(compared.code, Some(0), "{}", compared.err);
+    let means = |name: &str| {
+        let file = MeshFile::read(&folder.path(name)).unwrap();
+        let (fields, others) = file.centers(&file.mesh().points).unwrap();
+        assert!(others.is_empty(), "{others:?}");
+        fields[0].values().to_vec()
+    };
+    assert_ne!(means("in.nc"), means("out.nc"));
+    assert_eq!(folder.line("convert out.nc mesh.2dm --lossy").code, Some(0));
+    assert_eq!(folder.line("convert mesh.2dm back.nc").code, Some(0));
+    let [out, back] = ["out.nc", "back.nc"].map(|name| MeshFile::read(&folder.path(name)).unwrap());
+    assert_eq!(out.mesh(), back.mesh());
+}

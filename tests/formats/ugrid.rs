@@ -26,8 +26,6 @@ fn variables_of_nodes_are_data_in_every_time_step_and_layer() {
         // A missing depth is no number, so that it is in no mean of others.
         let depths = fields[1].values();
         assert!(depths[3].is_nan() && depths[4] == -2.0);
-        let told = "face_x: places of edges or faces, which stay as they are";
-        assert!(file.notes().iter().any(|note| note == told));
     }
 }
 
@@ -46,6 +44,34 @@ fn a_missing_number_stays_where_others_are_replaced() {
         let changed = fs::read(folder.path("out.nc")).unwrap();
         let differ = changed.iter().zip(&made.bytes).filter(|(a, b)| a != b).count();
         assert!(changed.len() == made.bytes.len() && differ < 8 * 29, "{differ} bytes differ");
+    }
+}
+
+#[test]
+fn centers_of_faces_follow_the_vertices() {
+    for made in samples() {
+        let folder = folder(&made, &made.bytes);
+        let file = folder.read(made.name);
+        assert!(file.has_centers() && file.notes().iter().all(|note| !note.contains("face_")));
+        let to = hdf5::moved(&file, 0.0);
+        let (mut fields, others) = file.centers(&to).unwrap();
+        let names: Vec<_> = fields.iter().map(|field| field.name()).collect();
+        assert_eq!((&names[..], &others[..]), (&["face_x"][..], &["face_y".to_owned()][..]));
+        file.write_with(&folder.path("out.nc"), &to, &fields).unwrap();
+        let again = folder.read("out.nc");
+        let (theirs, _) = again.centers(&to).unwrap();
+        assert_eq!(theirs[0].values(), fields[0].values());
+        assert!(file.difference(&again).is_some());
+        assert_eq!(file.difference_besides(&again, [&fields, &theirs]), None);
+        // The last triangle of the file is the last face.
+        let corners = again.mesh().triangles.last().unwrap();
+        let x = |&v: &u32| to[v as usize][0];
+        let mean = corners.iter().map(x).sum::<f64>() / 3.0;
+        assert!((fields[0].values().last().unwrap() - mean).abs() < 1e-6);
+        // Where nothing has moved, no bit changes.
+        fields = file.centers(&file.mesh().points).unwrap().0;
+        file.write_with(&folder.path("out.nc"), &file.mesh().points, &fields).unwrap();
+        assert!(fs::read(folder.path("out.nc")).unwrap() == made.bytes);
     }
 }
 

@@ -26,8 +26,8 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
         tell::note(show.quiet, note);
     }
     let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
-    mine.add_parameters(&before, &before.mesh().points)?;
-    theirs.add_parameters(&after, &after.mesh().points)?;
+    mine.add_dependents(&before, &before.mesh().points)?;
+    theirs.add_dependents(&after, &after.mesh().points)?;
     let told = |error: gpu_smooth::MeshError| format!("{}: {error}", args.before.display());
     let slide = args.sliding.slide(&before)?;
     let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;

@@ -14,7 +14,7 @@ pub(crate) struct RidingArgs {
 
 /// Data of vertices that are interpolated at the new places.
 pub(crate) struct Riding {
-    /// The data that the user named, followed by parameters of vertices on surfaces of a model.
+    /// The data that the user named, followed by parameters of vertices on surfaces of a model and centers of elements.
     fields: Vec<PointField>,
     /// How many of the fields the user named.
     data: usize,
@@ -60,7 +60,7 @@ impl Riding {
         &self.fields
     }
 
-    /// Returns the fields without the parameters.
+    /// Returns the fields that the user named.
     fn data(&self) -> &[PointField] {
         &self.fields[..self.data]
     }
@@ -104,23 +104,36 @@ impl Riding {
         }
     }
 
-    /// Adds the parameters of vertices on plane surfaces of a model, as they are at new points. Returns a remark if
-    /// there are other surfaces.
-    pub(crate) fn add_parameters(
+    /// Adds what follows from the places of vertices, as it is at new points: parameters of vertices on plane surfaces of a
+    /// model, and centers of elements. Returns remarks on what is not known to follow from them.
+    pub(crate) fn add_dependents(
         &mut self,
         file: &MeshFile,
         points: &[[f64; 2]],
-    ) -> Result<Option<String>, String> {
-        if !file.has_parameters() {
-            return Ok(None);
+    ) -> Result<Vec<String>, String> {
+        let mut remarks = Vec::new();
+        let told = |error: gpu_smooth::MeshError| error.to_string();
+        if file.has_parameters() {
+            let (fields, others) = file.plane_parameters(points).map_err(told)?;
+            self.fields.extend(fields);
+            let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
+            if others > 0 {
+                remarks.push(format!(
+                    "parameters of nodes on {surfaces} that are not plane stay as they are where nodes move"
+                ));
+            }
         }
-        let found = file.plane_parameters(points);
-        let (fields, others) = found.map_err(|error| error.to_string())?;
-        self.fields.extend(fields);
-        let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
-        Ok((others > 0).then(|| {
-            format!("parameters of nodes on {surfaces} that are not plane stay as they are where nodes move")
-        }))
+        if file.has_centers() {
+            let (fields, others) = file.centers(points).map_err(told)?;
+            self.fields.extend(fields);
+            if !others.is_empty() {
+                let names = listed(others.iter().map(String::as_str));
+                remarks.push(format!(
+                    "{names}: places of elements that are neither their centers nor circumcenters stay as they are"
+                ));
+            }
+        }
+        Ok(remarks)
     }
 
     /// Interpolates the data at the new points. Returns a remark on what was done, if anything was asked for.

@@ -162,11 +162,11 @@ pub(crate) fn carry_out<T>(
     let f_after = || smoother.f(base, &outcome.points).map_err(told);
     let target = args.target.report(f_before, f_after)?;
     let interpolated = riding.carry(&file, smoother.topology(), &outcome.points)?;
-    let parameters = riding.add_parameters(&file, &outcome.points)?;
+    let left_over = riding.add_dependents(&file, &outcome.points)?;
     let has_moved = outcome.points != mesh.points;
     let left_behind = has_moved.then(|| riding.left_behind(&file)).flatten();
-    let parameters = parameters.filter(|_| has_moved);
-    for note in interpolated.iter().chain(&left_behind).chain(&parameters) {
+    let left_over = left_over.iter().filter(|_| has_moved);
+    for note in interpolated.iter().chain(&left_behind).chain(left_over) {
         follow.remark(note);
     }
     let smoothed = Instant::now();
@@ -255,7 +255,7 @@ fn certificate(
     file.lay_out_likewise(&mut after);
     let after = after;
     let mut theirs = args.riding.choose(&after)?;
-    theirs.add_parameters(&after, &after.mesh().points)?;
+    theirs.add_dependents(&after, &after.mesh().points)?;
     let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
     let proof = proof.map_err(told)?;
     if let Some(problem) = proof.problem() {

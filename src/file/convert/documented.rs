@@ -235,7 +235,7 @@ const ROWS: [Row; 26] = [
             "quadrilaterals, polygons",
             "–",
             "nothing; variables of nodes for `--fix-array`",
-            "one mesh of faces; places of edges and faces that a file has as well are not changed, which a note says; netCDF-4 as described for HDF5 below",
+            "one mesh of faces; as described below; netCDF-4 as for HDF5",
         ],
     ),
     row(

@@ -129,6 +129,13 @@ mod tests {
     }
 
     #[test]
+    fn variables_have_no_slash_and_start_with_a_letter_or_digit() {
+        let names = ["a/b", "a_b", "/", "-x", "7", "h\u{f6}he", "T (K)", "x", ""];
+        let words = ["a_b_2", "a_b", "2", "_-x", "7", "h\u{f6}he", "T_(K)", "x_2", "8"];
+        assert_eq!(spelled(&names, Spelling::Variable), words);
+    }
+
+    #[test]
     fn labels_are_plain_words_whatever_their_capitals() {
         let names = ["Wall", "wall", "a b", "a,b", "7", "-x", "_5", "h\u{f6}he", "", "x"];
         let labels = ["Wall", "wall_2", "a_b", "a_b_2", "set7", "set-x", "_5", "h_he", "8", "x_2"];

@@ -26,11 +26,13 @@ impl Parts {
 pub(in crate::file) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
     encoded: Vec<(&'h [u8], Arc<Encoding>)>,
+    /// The content of the variable that was read last.
+    last: Option<(&'h [u8], Items<'a>)>,
 }
 
 impl<'h, 'a> PointData<'h, 'a> {
     pub(in crate::file) fn new(header: &'h Header<'a>) -> PointData<'h, 'a> {
-        PointData { header, encoded: Vec::new() }
+        PointData { header, encoded: Vec::new(), last: None }
     }
 
     /// Hands on parts of each record of a variable, as point data of this name. Real numbers can be replaced. Numbers that are
@@ -43,45 +45,54 @@ impl<'h, 'a> PointData<'h, 'a> {
         missing: Option<f64>,
         sink: &mut dyn Sink,
     ) {
+        let is_real = matches!(variable.number, Number::Real(_));
+        for record in 0..self.header.steps(variable) {
+            for part in parts.wanted.clone() {
+                if sink.point_array(name, parts.components, is_real)
+                    && let Some(numbers) = self.numbers(variable, (record, part), parts, missing)
+                {
+                    sink.point_numbers(numbers);
+                }
+            }
+        }
+    }
+
+    /// Reads one of the parts of one record. None if the variable has no numbers, or they cannot be read.
+    pub(in crate::file) fn numbers(
+        &mut self,
+        variable: &'h Variable,
+        (record, part): (usize, usize),
+        parts: &Parts,
+        missing: Option<f64>,
+    ) -> Option<PointNumbers> {
         let precision = match variable.number {
             Number::Real(precision) => Some(precision),
             Number::Whole(_) => None,
-            Number::Text | Number::Other(_) => return,
+            Number::Text | Number::Other(_) => return None,
         };
-        let mut items = None;
-        for record in 0..self.header.steps(variable) {
-            for part in parts.wanted.clone() {
-                if !sink.point_array(name, parts.components, precision.is_some()) {
-                    continue;
-                }
-                if items.is_none() {
-                    items = self.items(variable);
-                }
-                let Some(items) = &items else { return };
-                let encoding = self.encoding(variable);
-                let bytes = encoding.map_or(&items.bytes[..], |encoding| encoding.bytes());
-                let range = items.range(record);
-                let size = range.len() / parts.all.max(1);
-                let range = range.start + part * size..range.start + (part + 1) * size;
-                let (start, home) = match encoding {
-                    None => (items.byte_of(range.start), Home::File),
-                    Some(encoding) => {
-                        (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
-                    }
-                };
-                let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
-                numbers
-                    .iter_mut()
-                    .filter(|x| Some(**x) == missing)
-                    .for_each(|number| *number = f64::NAN);
-                let stored = precision.map(|precision| {
-                    let places = Places::Regular { start, stride: precision.bytes() };
-                    let form = Form::Binary(variable.order, precision);
-                    Stored { places, form, home, part: 0 }
-                });
-                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
-            }
+        if self.last.as_ref().is_none_or(|(name, _)| *name != variable.name) {
+            self.last = Some((&variable.name, self.items(variable)?));
         }
+        let (_, items) = self.last.as_ref()?;
+        let encoding = self.encoding(variable);
+        let bytes = encoding.map_or(&items.bytes[..], |encoding| encoding.bytes());
+        let range = items.range(record);
+        let size = range.len() / parts.all.max(1);
+        let range = range.start + part * size..range.start + (part + 1) * size;
+        let (start, home) = match encoding {
+            None => (items.byte_of(range.start), Home::File),
+            Some(encoding) => {
+                (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+            }
+        };
+        let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
+        let is_missing = |number: &&mut f64| Some(**number) == missing;
+        numbers.iter_mut().filter(is_missing).for_each(|number| *number = f64::NAN);
+        let stored = precision.map(|precision| {
+            let places = Places::Regular { start, stride: precision.bytes() };
+            Stored { places, form: Form::Binary(variable.order, precision), home, part: 0 }
+        });
+        Some(PointNumbers { numbers, nodes: None, stored })
     }
 
     fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {

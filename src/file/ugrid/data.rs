@@ -1,7 +1,8 @@
 //! Data of nodes and faces in a UGRID file.
 
-use super::faces::Faces;
+use super::centers::{Place, Tables};
 use super::mesh::Mesh;
+use super::table::Table;
 use crate::file::netcdf::{Number, Parts, PointData, Variable};
 use crate::file::sink::Sink;
 
@@ -12,15 +13,15 @@ enum Location {
     Faces,
 }
 
-impl<'h> Mesh<'h, '_> {
+impl<'h, 'a> Mesh<'h, 'a> {
     /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
-    pub(super) fn data(&self, faces: &Faces<'_, '_>, sink: &mut dyn Sink) {
+    pub(super) fn data(&self, tables: &Tables<'h, 'a>, sink: &mut dyn Sink) {
+        let faces = &tables.faces;
         let lengths = [self.nodes as u64, faces.count as u64];
-        let places = ["edge_coordinates", "face_coordinates"].map(|name| self.named(name));
-        let places = places.concat();
+        let places = self.places(tables);
         let is_data = |variable: &&Variable| {
             ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
-                && !places.iter().any(|own| own.name == variable.name)
+                && !places.iter().any(|own| own.variable.name == variable.name)
                 && variable.text("cf_role").is_none()
         };
         let mut points = PointData::new(self.header);
@@ -40,11 +41,11 @@ impl<'h> Mesh<'h, '_> {
                     self.of_faces(faces, (variable, &parts), sink);
                 }
             }
-            self.left_out(sink);
+            self.left_out(&places, sink);
         }
-        if !places.is_empty() {
-            let names: Vec<_> =
-                places.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
+        let left = self.centers(tables, &places, &mut points, sink);
+        if !left.is_empty() {
+            let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
             sink.note(&format!(
                 "{}: places of edges or faces, which stay as they are",
                 names.join(", ")
@@ -81,7 +82,7 @@ impl<'h> Mesh<'h, '_> {
 
     fn of_faces(
         &self,
-        faces: &Faces<'_, '_>,
+        faces: &Table<'h, 'a>,
         (variable, parts): (&'h Variable, &Parts),
         sink: &mut dyn Sink,
     ) {
@@ -108,7 +109,7 @@ impl<'h> Mesh<'h, '_> {
         }
     }
 
-    fn left_out(&self, sink: &mut dyn Sink) {
+    fn left_out(&self, places: &[Place<'h>], sink: &mut dyn Sink) {
         let variables = &self.header.variables;
         if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
             sink.leaves_out("variables of edges");
@@ -116,6 +117,9 @@ impl<'h> Mesh<'h, '_> {
         let others = ["edge_node_connectivity", "face_face_connectivity", "face_edge_connectivity"];
         if others.iter().any(|name| !self.named(name).is_empty()) {
             sink.leaves_out("edges and neighbors of faces, which follow from the mesh");
+        }
+        if !places.is_empty() {
+            sink.leaves_out("places of faces and edges, which follow from the mesh");
         }
         if variables.iter().any(|variable| variable.text("units").is_some()) {
             sink.leaves_out("units and other attributes of variables");

@@ -74,7 +74,11 @@ impl<'h, 'a> Mesh<'h, 'a> {
     pub(super) fn named(&self, attribute: &str) -> Vec<&'h Variable> {
         let names = self.own.text(attribute).unwrap_or_default();
         let names = names.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty());
-        names.filter_map(|name| variable(self.header, name)).collect()
+        names.filter_map(|name| self.variable(name)).collect()
+    }
+
+    pub(super) fn variable(&self, name: &[u8]) -> Option<&'h Variable> {
+        variable(self.header, name)
     }
 }
 
@@ -88,7 +92,9 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
     let names = names.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty());
     let found: Vec<_> = names.filter_map(|name| variable(header, name)).take(2).collect();
     match found[..] {
-        [first, second] if is_upward(first) && !is_upward(second) => Ok([second, first]),
+        [first, second] if axis_of(first) == Some(1) && axis_of(second) != Some(1) => {
+            Ok([second, first])
+        }
         [first, second] => Ok([first, second]),
         _ => {
             let problem = format!(
@@ -101,14 +107,29 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
     }
 }
 
-/// Whether a variable says that it is y or the latitude.
-fn is_upward(variable: &Variable) -> bool {
-    let is = |attribute, values: &[&[u8]]| {
-        variable.text(attribute).is_some_and(|text| values.contains(&text))
-    };
-    is("standard_name", &[b"latitude", b"projection_y_coordinate"])
-        || is("axis", &[b"Y"])
-        || is("units", &[b"degrees_north", b"degree_north", b"degreeN", b"degrees_N"])
+/// Which coordinate a variable says that it is: 0 for x or the longitude, 1 for y or the latitude.
+pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
+    const SAYS: [(&str, [&[&[u8]]; 2]); 3] = [
+        (
+            "standard_name",
+            [
+                &[b"longitude", b"projection_x_coordinate"],
+                &[b"latitude", b"projection_y_coordinate"],
+            ],
+        ),
+        ("axis", [&[b"X"], &[b"Y"]]),
+        (
+            "units",
+            [
+                &[b"degrees_east", b"degree_east", b"degreeE", b"degrees_E"],
+                &[b"degrees_north", b"degree_north", b"degreeN", b"degrees_N"],
+            ],
+        ),
+    ];
+    SAYS.iter().find_map(|(attribute, axes)| {
+        let text = variable.text(attribute)?;
+        axes.iter().position(|values| values.contains(&text))
+    })
 }
 
 fn node_count(header: &Header<'_>, [x, y]: [&Variable; 2]) -> Result<usize, ReadError> {

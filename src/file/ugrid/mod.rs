@@ -3,9 +3,11 @@
 //! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A variable without numbers of its own stands
 //! for the mesh; its attributes name the variables of its parts. Faces are triangles, quadrilaterals and larger polygons.
 
+mod centers;
 mod data;
 mod faces;
 mod mesh;
+mod table;
 
 use crate::error::ReadError;
 use crate::file::format::Format;
@@ -14,6 +16,7 @@ use crate::file::netcdf;
 use crate::file::sink::{Layout, Sink, Walk};
 use crate::file::source::Source;
 use mesh::Mesh;
+use table::{Table, What};
 
 pub(crate) struct Ugrid;
 
@@ -32,10 +35,10 @@ impl Walk for Ugrid {
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let header = netcdf::open(source)?;
         let mesh = Mesh::find(&header)?;
-        let faces = mesh.faces()?;
+        let faces = Table::find(&mesh, mesh.face_nodes, What::Faces)?;
         let layout = mesh.axes()?.send(Format::Ugrid, (mesh.nodes, faces.first), sink)?;
-        faces.send(&header, sink)?;
-        mesh.data(&faces, sink);
+        faces::send(&faces, sink)?;
+        mesh.data(&mesh.tables(faces), sink);
         header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
         Ok(layout)
     }

@@ -74,7 +74,7 @@ fn ugrid(mesh: &Mesh, style: &Style) -> Made {
     file.attribute("topology_dimension", Attribute::Whole(2));
     file.attribute("node_coordinates", Attribute::Text("bay_y bay_x lon"));
     file.attribute("face_node_connectivity", Attribute::Text("bay_faces"));
-    file.attribute("face_coordinates", Attribute::Text("face_x"));
+    file.attribute("face_coordinates", Attribute::Text("face_x face_y"));
     let nodes = elements.iter().map(|face| {
         let mut row: Vec<i32> = face.iter().map(|&v| (v + first) as i32).collect();
         row.resize(corners, if let Faces::Rows(missing) = faces { missing } else { -1 });
@@ -113,6 +113,7 @@ fn ugrid(mesh: &Mesh, style: &Style) -> Made {
         file.attribute("standard_name", Attribute::Text(meaning));
     }
     data(&mut file, precision, n, m);
+    centers(&mut file, mesh, &elements);
     let lengths = [("node", n), ("face", m), ("corner", corners), ("layer", 2), (RECORDS, 0)];
     let built = file.build(&lengths, 2);
     made(mesh, style, built)
@@ -130,11 +131,19 @@ fn data(file: &mut NetCdf, precision: Precision, nodes: usize, faces: usize) {
     file.attribute("_FillValue", Attribute::Real(-99.0));
     file.reals("u", precision, &["node", "layer"], &numbers(2 * nodes, 0.125));
     file.attribute("location", Attribute::Text("node"));
-    file.reals("face_x", precision, &["face"], &numbers(faces, 1.0));
     file.reals("level", precision, &[RECORDS, "node"], &numbers(nodes, 2.0));
     file.attribute("location", Attribute::Text("node"));
     file.ints("dry", &[RECORDS, "face"], &vec![1; faces]);
     file.attribute("location", Attribute::Text("face"));
+}
+
+/// Adds centers of faces: x is the mean of the corners, y something else.
+fn centers(file: &mut NetCdf, mesh: &Mesh, faces: &[Vec<u32>]) {
+    let x = |&v: &u32| mesh.points[v as usize][0];
+    let mean = |face: &Vec<u32>| face.iter().map(x).sum::<f64>() / face.len() as f64;
+    let means: Vec<f64> = faces.iter().map(mean).collect();
+    file.reals("face_x", Precision::Double, &["face"], &means);
+    file.reals("face_y", Precision::Double, &["face"], &vec![-0.75; faces.len()]);
 }
 
 fn made(mesh: &Mesh, style: &Style, built: Built) -> Made {
