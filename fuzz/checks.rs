@@ -252,6 +252,8 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
         stored: match flags & 14 {
             2 => Precision::Single,
             6 => Precision::Text20,
+            10 => Precision::Text16,
+            14 => Precision::Text8,
             _ => Precision::Double,
         },
         inner: if flags & 48 == 16 { 3 } else { 1 },

@@ -93,6 +93,7 @@ mod chart;
 mod choice;
 mod cpu;
 mod error;
+mod field_text;
 mod file;
 pub mod gpu;
 mod interpolate;

@@ -1,5 +1,7 @@
 //! The precision in which coordinates are stored.
 
+use crate::field_text::{field_error, rounded_to_field};
+
 /// The precision with which the coordinates of a mesh are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
@@ -11,6 +13,12 @@ pub enum Precision {
     /// Double precision in text of at most 20 characters, which is all that Abaqus and CalculiX read of a number: about
     /// sixteen digits, fewer only for numbers near zero or very large ones.
     Text20,
+    /// Text of at most 16 characters, as large fields of Nastran's bulk data have: 12 to 15 digits for numbers from 0.001 to 1e14,
+    /// 10 or more for most others.
+    Text16,
+    /// Text of at most 8 characters, as small fields of Nastran's bulk data have: 4 to 7 digits for numbers from 1e-10 to 1e10, 2 or 3
+    /// for most others.
+    Text8,
 }
 
 impl Precision {
@@ -18,7 +26,7 @@ impl Precision {
     pub(crate) fn bytes(self) -> usize {
         match self {
             Precision::Single => 4,
-            Precision::Double | Precision::Text20 => 8,
+            Precision::Double | Precision::Text20 | Precision::Text16 | Precision::Text8 => 8,
         }
     }
 
@@ -28,16 +36,20 @@ impl Precision {
             Precision::Single => f64::from(number as f32),
             Precision::Double => number,
             Precision::Text20 => rounded_to_short(number),
+            Precision::Text16 => rounded_to_field(number, 16),
+            Precision::Text8 => rounded_to_field(number, 8),
         }
     }
 
-    /// Returns a bound on the relative error of rounding, for all but the smallest and largest numbers.
-    pub(crate) fn epsilon(self) -> f64 {
+    /// Returns a bound on the error of rounding numbers of at most this size, unless they are the smallest or largest that there are.
+    pub(crate) fn error(self, size: f64) -> f64 {
         match self {
-            Precision::Single => f64::from(f32::EPSILON),
-            Precision::Double => f64::EPSILON,
+            Precision::Single => f64::from(f32::EPSILON) * size,
+            Precision::Double => f64::EPSILON * size,
             // Fourteen digits, as negative numbers with an exponent of two digits have.
-            Precision::Text20 => 256.0 * f64::EPSILON,
+            Precision::Text20 => 256.0 * f64::EPSILON * size,
+            Precision::Text16 => field_error(size, 16),
+            Precision::Text8 => field_error(size, 8),
         }
     }
 }

@@ -55,8 +55,8 @@ fn samples() -> &'static (Vec<Vec<u8>>, Vec<u8>) {
         std::fs::write(folder.path().join("a.ele"), &ele).unwrap();
         let file = MeshFile::read(&folder.path().join("a.node")).unwrap();
         let text = |(_, format)| Conversion::new(&file, format).unwrap().unwrap().text();
-        let abaqus = std::iter::once(ABAQUS.to_owned());
-        let texts = Conversion::targets().filter_map(text).chain(abaqus);
+        let inputs = [ABAQUS, NASTRAN].map(str::to_owned);
+        let texts = Conversion::targets().filter_map(text).chain(inputs);
         let texts = texts.map(String::into_bytes).collect();
         let poly = "0 2 0 0\n1 0\n1 5 6\n0\n";
         (texts, [node.as_bytes(), ele.as_bytes(), poly.as_bytes()].join(&0xFF))
@@ -89,6 +89,13 @@ const ABAQUS: &str = "*Heading\n** made\n*Part, name=P\n*Node, nset=all\n1, 0., 
 *Elset, elset=a, generate\n1, 3, 2\n*Elset, elset=b\na, 4\n*Solid Section, elset=a, material=M\n1.,\n*Solid Section, elset=B, material=N\n\
 *End Part\n*Assembly, name=A\n*Instance, name=P-1, part=P\n*End Instance\n*Nset, nset=n, instance=P-1\n1, 5\n*Surface, name=S\nP-1.a, S1\n\
 *Element, type=CONN2D2\n1, P-1.2, 1\n*End Assembly\n*Include, input=none.inp\n*Step\n*End Step\n";
+
+/// Bulk data of Nastran in small, large and free field, with a rigid element, a mass and names of properties.
+const NASTRAN: &str = "SOL 101\nCEND\nBEGIN BULK\n$HMNAME PROP 1\"skin\" 4\nGRDSET,,0\n\
+GRID    1               0.      0.      1.\nGRID    2               2.              1.\nGRID*   3                               2.\
+              2.              +A\n*A      1.\nGRID,4,,0.,2.,1.\nGRID\t5\t0\t1.\t9.-1\t1.\nCTRIA3,1,1,1,2,5\n$\nCTRIA3  2       1\
+       2       3       5\nCTRIA3* 3               2               3               4\n*       5\nCTRIAR,4,,4,1,5\nRBE2,5,1,123,2,3,\n\
++,4\nCONM2,6,4,,1.\nCBAR,7,3,1,2\nENDDATA\n";
 
 /// Files of HDF5, of which the first is Exodus and the others stand beside an XDMF.
 const HDF5: [&[u8]; 4] = [

@@ -154,6 +154,26 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
     file.text("\n$EndElements\n");
     files.push(("m41.msh", file.0));
 
+    let mut file = Binary(Vec::new(), false);
+    file.text("SOL 101\nCEND\nBEGIN BULK\n");
+    for (v, [x, y]) in points.iter().enumerate() {
+        let comments = if v % 10 == 0 { "$ 1.0\n\n$\n" } else { "" };
+        file.text(&match v % 3 {
+            0 => format!("GRID*   {v:<16}{:16}{x:<16.9}{y:<16.9}\n{comments}*       0.5\n", ""),
+            1 => format!("GRID,{v},,{x:.10},{y}.,0.5\n{comments}"),
+            _ => format!("grid*,{v},,{x:.10},{y}.,\n{comments}*,0.5\n"),
+        });
+    }
+    for (t, corners) in triangles.iter().enumerate() {
+        let ([a, b, c], region) = (corners, region(t));
+        file.text(&match t % 3 {
+            0 => format!("CTRIA3* {t:<16}{region:<16}{a:<16}{b:<16}\n$\n+       {c}\n"),
+            1 => format!("CTRIA3  {t:<8}{region:<8}{a:<8}{b:<8}{c:<8}\n"),
+            _ => format!("CTRIA3\t{t}\t{region}\t{a}\t{b}\t{c}\n"),
+        });
+    }
+    files.push(("m.bdf", file.0));
+
     let mut file = Binary(Vec::new(), true);
     file.record(|out| out.text(&format!("{:<72}SERAFIND", "m")));
     file.record(|out| out.ints([0, 0]));

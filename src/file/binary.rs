@@ -46,9 +46,7 @@ impl Order {
     pub(crate) fn real(self, precision: Precision, bytes: &[u8]) -> f64 {
         match precision {
             Precision::Single => f64::from(self.f32(bytes.try_into().expect("four bytes"))),
-            Precision::Double | Precision::Text20 => {
-                self.f64(bytes.try_into().expect("eight bytes"))
-            }
+            _ => self.f64(bytes.try_into().expect("eight bytes")),
         }
     }
 

@@ -54,8 +54,8 @@ impl MeshFile {
             let elements = Elements::of(&centers, &map).filter(|_| self.chart().is_none());
             let new = elements.and_then(|elements| {
                 let stored = centers.numbers.stored.as_ref()?.form.precision();
-                let epsilon = stored.epsilon().max(self.precision().epsilon());
-                elements.moved((&centers.numbers.numbers, axis), [old, points], epsilon)
+                let error = |size: f64| stored.error(size).max(self.precision().error(size));
+                elements.moved((&centers.numbers.numbers, axis), [old, points], error)
             });
             match new {
                 None => others.push(name),
@@ -95,7 +95,7 @@ impl<'c> Elements<'c> {
         &self,
         (numbers, axis): (&[f64], usize),
         [old, new]: [&[[f64; 2]]; 2],
-        epsilon: f64,
+        error: impl Fn(f64) -> f64,
     ) -> Option<Vec<f64>> {
         let mut corners = Vec::new();
         let mut at = |points: &[[f64; 2]], element: &[u32], recipe: Recipe| {
@@ -110,7 +110,7 @@ impl<'c> Elements<'c> {
                 |(element, &number)| {
                     let found = at(old, element, recipe);
                     found.is_some_and(|(center, reach)| {
-                        (center - number).abs() <= CLOSE * reach + 4.0 * epsilon * center.abs()
+                        (center - number).abs() <= CLOSE * reach + 4.0 * error(center.abs())
                     })
                 },
             )

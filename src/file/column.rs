@@ -1,9 +1,6 @@
 //! Numbers of a file that may be replaced, with their new values.
 
 use crate::file::numbers::{Form, Numbers, Places};
-use crate::file::token::{number_end, skip_to_number};
-use crate::precision::{Precision, short_text};
-use std::io::Write;
 use std::ops::Range;
 
 /// A list of numbers in the order in which they stand in the file, with their old and new values.
@@ -32,6 +29,8 @@ pub(crate) struct Change {
     pub(crate) range: Range<usize>,
     pub(crate) value: f64,
     pub(crate) form: Form,
+    /// How many characters the number must have at least, with blanks.
+    pub(crate) width: usize,
 }
 
 impl<'a> Column<'a> {
@@ -48,7 +47,9 @@ impl<'a> Column<'a> {
             Column { at, form: numbers.into(), old, new, first, step: 2, owners }
         };
         match numbers {
-            Numbers::Text { .. } => vec![column(At::Pairs(x_at), 0)],
+            Numbers::Text { .. } | Numbers::Fields { .. } => {
+                vec![column(At::Pairs(x_at), 0)]
+            }
             Numbers::Binary { y_after, .. } => {
                 vec![column(At::After(x_at, 0), 0), column(At::After(x_at, y_after), 1)]
             }
@@ -88,11 +89,10 @@ impl<'a> Column<'a> {
 
     /// Returns the byte after an item.
     pub(crate) fn end(&self, bytes: &[u8], item: usize) -> usize {
-        let start = self.start(item);
-        match (&self.at, self.form) {
-            (_, Form::Binary(_, precision)) => start + precision.bytes(),
-            (At::Pairs(_), _) => number_end(bytes, skip_to_number(bytes, number_end(bytes, start))),
-            _ => number_end(bytes, start),
+        let (end, _) = self.form.extent(bytes, self.start(item));
+        match self.at {
+            At::Pairs(_) => self.form.extent(bytes, self.form.next(bytes, end)).0,
+            At::After(..) => end,
         }
     }
 
@@ -112,14 +112,11 @@ impl<'a> Column<'a> {
     /// Adds the numbers of some items that have changed, rounded to the precision of the file.
     pub(crate) fn changes(&self, bytes: &[u8], items: Range<usize>, changes: &mut Vec<Change>) {
         let form = self.form;
-        let mut add = |number: usize, start: usize, end: Option<usize>| {
+        let mut add = |number: usize, start: usize, extent: Option<(usize, usize)>| {
             let value = form.precision().rounded(self.new[number]);
             if value.to_bits() != self.old[number].to_bits() {
-                let end = end.unwrap_or_else(|| match form {
-                    Form::Binary(_, precision) => start + precision.bytes(),
-                    Form::Text(_) => number_end(bytes, start),
-                });
-                changes.push(Change { range: start..end, value, form });
+                let (end, width) = extent.unwrap_or_else(|| form.extent(bytes, start));
+                changes.push(Change { range: start..end, value, form, width });
             }
         };
         for item in items {
@@ -127,32 +124,11 @@ impl<'a> Column<'a> {
             let (start, number) = (self.start(item), self.first + self.step * index);
             match self.at {
                 At::Pairs(_) => {
-                    let end = number_end(bytes, start);
-                    add(number, start, Some(end));
-                    add(number + 1, skip_to_number(bytes, end), None);
+                    let extent = form.extent(bytes, start);
+                    add(number, start, Some(extent));
+                    add(number + 1, form.next(bytes, extent.0), None);
                 }
                 _ => add(number, start, None),
-            }
-        }
-    }
-}
-
-impl Form {
-    /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
-    pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
-        match self {
-            Form::Text(Precision::Double) => {
-                write!(out, "{value:?}").expect("memory takes what is written to it");
-            }
-            Form::Text(Precision::Text20) => out.extend_from_slice(short_text(value).as_bytes()),
-            Form::Text(Precision::Single) => {
-                write!(out, "{:?}", value as f32).expect("memory takes what is written to it");
-            }
-            Form::Binary(order, Precision::Double | Precision::Text20) => {
-                out.extend_from_slice(&order.bytes(value));
-            }
-            Form::Binary(order, Precision::Single) => {
-                out.extend_from_slice(&order.single_bytes(value as f32));
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::file::mesh_file::MeshFile;
 use crate::file::numbers::{Encoded, Form, Numbers, Places};
 use crate::file::place::Place;
 use crate::file::sink::{Home, Stored};
-use crate::file::token::{number_end, quoted, skip_to_number};
+use crate::file::token::quoted;
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.
@@ -123,12 +123,12 @@ impl MeshFile {
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
         match self.numbers() {
-            Numbers::Text { .. } => {
-                let bytes = &self.parts()[self.part()].bytes;
+            Numbers::Text { .. } | Numbers::Fields { .. } => {
+                let (bytes, form) = (&self.parts()[self.part()].bytes, Form::from(self.numbers()));
                 for x in places {
-                    let x_end = number_end(bytes, x);
-                    let y = skip_to_number(bytes, x_end);
-                    ranges.extend([x..x_end, y..number_end(bytes, y)]);
+                    let (x_end, _) = form.extent(bytes, x);
+                    let y = form.next(bytes, x_end);
+                    ranges.extend([x..x_end, y..form.extent(bytes, y).0]);
                 }
             }
             Numbers::Binary { precision, y_after, .. } => {
@@ -147,7 +147,7 @@ impl MeshFile {
     /// Whether places in one of the files are told by lines.
     fn is_text(&self, part: usize) -> bool {
         match self.numbers() {
-            Numbers::Text { .. } if part == self.part() => true,
+            Numbers::Text { .. } | Numbers::Fields { .. } if part == self.part() => true,
             Numbers::Binary { .. } if part == self.part() => false,
             _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
         }
@@ -233,10 +233,7 @@ fn number_ranges(
         if !in_these(stored) {
             continue;
         }
-        let range = |at: usize| match form {
-            Form::Binary(_, precision) => at..at + precision.bytes(),
-            Form::Text(_) => at..number_end(bytes, at),
-        };
+        let range = |at: usize| at..form.extent(bytes, at).0;
         match places {
             Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
             Places::Regular { start, stride } => {

@@ -1,8 +1,9 @@
 //! Tells which format a file is in, first by its content, then by its ending.
 
 use crate::error::ReadError;
-use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, STL, TRIANGLE};
+use crate::file::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
 use crate::file::mike;
+use crate::file::nastran;
 use crate::file::sink::Reader;
 use crate::file::source::{Source, file_name};
 use crate::file::syntax::Syntax;
@@ -34,7 +35,12 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
     let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     let promised = |family: &&&Family| family.has_ending_of(&source.path);
     let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
-    if let Some(family) = by_content().find(promised).or_else(|| by_content().next()) {
+    let known = by_content().find(promised).or_else(|| by_content().next());
+    // Nastran's may start with anything, such as a title.
+    if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
+        return of(source, &NASTRAN);
+    }
+    if let Some(family) = known {
         return of(source, family);
     }
     // Files of MIKE may start with any numbers. Their ending is also that of Medit.
@@ -212,7 +218,7 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_content() {
-        let cases: [(&[u8], &str); 28] = [
+        let cases: [(&[u8], &str); 35] = [
             (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
             (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
             (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
@@ -241,12 +247,19 @@ mod tests {
             (b"\0\0\0\x50River", "SELAFIN"),
             (b" 3 1 3\n 0.0 0.0 1\n", "FreeFem .msh"),
             (b"title\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+            (b"$ made by hand\nGRID,1,,0.,0.\n", "Nastran"),
+            (b"TITLE = a plate\nSPC = 1\nbegin  bulk\n", "Nastran"),
+            (b"ID a,b\nSOL 101\nCEND\n", "Nastran"),
+            (b"PARAM,POST,-1\n$\nctria3  7       1       1       2       3\n", "Nastran"),
+            (b"Grid*    12                              .5-1            2.0\n", "Nastran"),
+            (b"Grid 5 of the lake\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+            (b"Grid, 5, of the lake\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
         ];
         for (bytes, name) in cases {
             assert_eq!(problem("mesh.dat", bytes), name);
         }
         assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
-        assert_eq!(problem("mesh.bdf", b"$ made by hand\nGRID,1,,0.,0.\n"), "Nastran is not read");
+        assert_eq!(problem("mesh.bdf", b"$ made by hand\n"), "Nastran");
         assert_eq!(problem("mesh.unv", b"    -1\n  2411\n"), "I-DEAS universal is not read");
         assert_eq!(problem("mesh.avs", b"# by hand\n4 2 0 0 0\n"), "AVS-UCD is not read");
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");

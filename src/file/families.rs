@@ -5,7 +5,7 @@ use crate::file::sink::{Reader, Walk};
 use crate::file::source::file_name;
 use crate::file::{
     abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb,
-    mfem, mike, obj, off, packed, ply, selafin, sms, stl, su2, ugrid, vtk, vtu, xdmf,
+    mfem, mike, nastran, obj, off, packed, ply, selafin, sms, stl, su2, ugrid, vtk, vtu, xdmf,
 };
 use std::path::Path;
 
@@ -63,6 +63,7 @@ impl Family {
             Format::Cgns => &CGNS,
             Format::Xdmf => &XDMF,
             Format::Abaqus => &ABAQUS,
+            Format::Nastran => &NASTRAN,
         }
     }
 
@@ -191,10 +192,11 @@ static ABAQUS: Family = family(
     ],
     reader::<abaqus::Abaqus>(),
 );
+pub(crate) static NASTRAN: Family =
+    family("Nastran", &[".bdf", ".nas"], &[b"BEGIN BULK"], reader::<nastran::Nastran>());
 static GMSH_1: Family =
     unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
 
-static NASTRAN: Family = unread("Nastran", &[".bdf", ".nas"], &[b"BEGIN BULK"], BY_MESHIO);
 static UNV: Family =
     unread("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
 static LS_DYNA: Family =
@@ -261,8 +263,8 @@ pub(crate) static FAMILIES: [&Family; 44] = [
     &CGNS,
     &XDMF,
     &ABAQUS,
-    &GMSH_1,
     &NASTRAN,
+    &GMSH_1,
     &UNV,
     &LS_DYNA,
     &FLUENT,

@@ -17,7 +17,7 @@ impl MeshFile {
     /// |---|---|
     /// | ADCIRC, SCHISM | `depth` |
     /// | gmsh | `z`, and what `$NodeData` is called |
-    /// | SMS 2dm, Medit, OBJ, OFF | `z` |
+    /// | SMS 2dm, Medit, OBJ, OFF, Abaqus, Nastran | `z` |
     /// | VTK | `z`, and point data of the types float and double |
     /// | PLY | properties of vertices of the types float and double but x and y |
     /// | SELAFIN | variables, in all time steps |

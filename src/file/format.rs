@@ -75,11 +75,13 @@ pub enum Format {
     Xdmf,
     /// The `.inp` of Abaqus and CalculiX.
     Abaqus,
+    /// Bulk data of Nastran.
+    Nastran,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 34] = [
+    pub const ALL: [Format; 35] = [
         Format::Triangle,
         Format::Gmsh22,
         Format::Gmsh22Binary,
@@ -114,6 +116,7 @@ impl Format {
         Format::Cgns,
         Format::Xdmf,
         Format::Abaqus,
+        Format::Nastran,
     ];
 
     /// Returns the name for messages.
@@ -153,6 +156,7 @@ impl Format {
             Format::Cgns => "CGNS",
             Format::Xdmf => "XDMF",
             Format::Abaqus => "Abaqus",
+            Format::Nastran => "Nastran",
         }
     }
 }

@@ -11,7 +11,7 @@ use std::fmt;
 pub struct Group {
     /// What the format calls such a group, in one word: `physical` and `entity` of gmsh, `marker` and `zone` of SU2,
     /// `reference` and `list` of Medit, `label` of FreeFem, `material` and `nodestring` of SMS, `boundary` of ADCIRC, `material`, `object` and
-    /// `group` of OBJ, `attribute` and `marker` of Triangle, `block`, `sideset` and `nodeset` of Exodus, `solid` of STL, `elset`, `nset` and `surface` of Abaqus, and in VTK and XDMF the name of
+    /// `group` of OBJ, `attribute` and `marker` of Triangle, `block`, `sideset` and `nodeset` of Exodus, `solid` of STL, `elset`, `nset` and `surface` of Abaqus, `property` of Nastran, and in VTK and XDMF the name of
     /// the array of cell data.
     pub what: String,
     /// 0 for a group of points, 1 for lines, 2 for triangles and quadrilaterals.

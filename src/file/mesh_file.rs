@@ -37,6 +37,8 @@ use std::path::Path;
 /// | Exodus II | block |
 /// | MED | family |
 /// | CGNS | section |
+/// | Abaqus | set that a list of elements names, and section |
+/// | Nastran | property |
 /// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
 ///
 /// Vertices between triangles of different regions, [`interface_vertices`](Self::interface_vertices), are listed in

@@ -30,6 +30,8 @@ impl MeshFile {
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
     /// | VTK, XDMF | values of the cell data that tell [regions](Self#regions), called as these arrays are |
     /// | STL | `solid` |
+    /// | Abaqus | `elset`, `surface` and `nset`, by name |
+    /// | Nastran | `property`, with the names that comments of preprocessors give |
     /// | Exodus II | `block`, `sideset` and `nodeset`, with their names |
     /// | others | none |
     ///

@@ -1,7 +1,11 @@
 //! How coordinates and other numbers are stored in a file.
 
+use crate::field_text::{ALL, field_text};
 use crate::file::binary::Order;
-use crate::precision::Precision;
+use crate::file::card;
+use crate::file::token::{number_end, skip_to_number};
+use crate::precision::{Precision, short_text};
+use std::io::Write;
 use std::ops::Range;
 
 /// How the coordinates of a vertex are stored in its file, from the offset of x on.
@@ -9,6 +13,8 @@ use std::ops::Range;
 pub(crate) enum Numbers {
     /// As text. y is the token after x. Programs that read the format may know only single precision.
     Text { precision: Precision },
+    /// As text in the fields of a card of Nastran. y is in the field after that of x.
+    Fields { precision: Precision },
     /// In binary. y is `y_after` bytes after x; before x, if that is negative.
     Binary { order: Order, precision: Precision, y_after: isize },
 }
@@ -24,7 +30,9 @@ impl Numbers {
 
     pub(crate) fn precision(self) -> Precision {
         match self {
-            Numbers::Text { precision } | Numbers::Binary { precision, .. } => precision,
+            Numbers::Text { precision }
+            | Numbers::Fields { precision }
+            | Numbers::Binary { precision, .. } => precision,
         }
     }
 }
@@ -34,6 +42,8 @@ impl Numbers {
 pub(crate) enum Form {
     /// As a token of text. Programs that read the format may know only single precision.
     Text(Precision),
+    /// As text in a field of a card of Nastran.
+    Field(Precision),
     /// In binary.
     Binary(Order, Precision),
 }
@@ -41,7 +51,51 @@ pub(crate) enum Form {
 impl Form {
     pub(crate) fn precision(self) -> Precision {
         match self {
-            Form::Text(precision) | Form::Binary(_, precision) => precision,
+            Form::Text(precision) | Form::Field(precision) | Form::Binary(_, precision) => {
+                precision
+            }
+        }
+    }
+
+    /// Returns the end of a number, with the characters that stand for it, and how many its place must have if that is given.
+    pub(crate) fn extent(self, bytes: &[u8], at: usize) -> (usize, usize) {
+        match self {
+            Form::Text(_) => (number_end(bytes, at), 0),
+            Form::Field(_) => card::extent(bytes, at),
+            Form::Binary(_, precision) => (at + precision.bytes(), 0),
+        }
+    }
+
+    /// Returns where y starts, given where x ends. Of text only.
+    pub(crate) fn next(self, bytes: &[u8], end: usize) -> usize {
+        match self {
+            Form::Field(_) => card::next_field(bytes, end),
+            _ => skip_to_number(bytes, end),
+        }
+    }
+
+    /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
+    pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
+        match self {
+            Form::Field(precision) => {
+                let most = match precision {
+                    Precision::Text8 => 8,
+                    Precision::Text16 => 16,
+                    _ => ALL,
+                };
+                out.extend_from_slice(field_text(value, most).as_bytes());
+            }
+            Form::Text(Precision::Single) => {
+                write!(out, "{:?}", value as f32).expect("memory takes what is written to it");
+            }
+            Form::Text(Precision::Text20) => out.extend_from_slice(short_text(value).as_bytes()),
+            Form::Text(_) => {
+                write!(out, "{value:?}").expect("memory takes what is written to it");
+            }
+            Form::Binary(order, Precision::Single) => {
+                out.extend_from_slice(&order.single_bytes(value as f32));
+            }
+            Form::Binary(order, _) => out.extend_from_slice(&order.bytes(value)),
         }
     }
 }
@@ -50,6 +104,7 @@ impl From<Numbers> for Form {
     fn from(numbers: Numbers) -> Form {
         match numbers {
             Numbers::Text { precision } => Form::Text(precision),
+            Numbers::Fields { precision } => Form::Field(precision),
             Numbers::Binary { order, precision, .. } => Form::Binary(order, precision),
         }
     }

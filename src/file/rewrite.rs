@@ -73,9 +73,17 @@ impl Rewrite<'_> {
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;
-        for Change { range, value, form } in changes {
+        for Change { range, value, form, width } in changes {
             out.extend_from_slice(&self.bytes[copied..range.start]);
+            let start = out.len();
             form.write(value, &mut out);
+            let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
+            // What stood at the end of its field stays there.
+            let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
+            match is_right {
+                true => drop(out.splice(start..start, blanks)),
+                false => out.extend(blanks),
+            }
             copied = range.end;
         }
         out.extend_from_slice(&self.bytes[copied..range.end]);

@@ -31,6 +31,8 @@ pub(crate) struct Syntax {
     pub(crate) commas: Commas,
     /// Whether a backslash at the end of a line joins it to the next one.
     pub(crate) joins: bool,
+    /// Whether a line that starts with a blank, a comma, `+` or `*` belongs to the one before it.
+    pub(crate) continues: bool,
     /// The byte that starts a comment, besides `#`.
     pub(crate) comment: u8,
     /// The bytes that end a word.
@@ -45,6 +47,7 @@ impl Syntax {
         items: Items::Rows,
         commas: Commas::Letters,
         joins: false,
+        continues: false,
         comment: b'#',
         ends: &PLAIN_ENDS,
         is_plain: true,
@@ -75,6 +78,8 @@ impl Syntax {
         is_plain: false,
         ..Syntax::PLAIN
     };
+    /// Nastran: cards of several lines, and comments after `$`.
+    pub(crate) const CARDS: Syntax = Syntax { continues: true, comment: b'$', ..Syntax::PLAIN };
     /// Each item starts on a new line.
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
     /// Items stand anywhere on lines.

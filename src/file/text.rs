@@ -86,7 +86,7 @@ impl<'a> Cursor<'a> {
         let mut at = part.map_or_else(|| self.next_line(), |part| part.bytes.len());
         let mut parts = Vec::with_capacity(count);
         while parts.len() < count && at < self.bytes.len() {
-            let end = self.row_end(self.bytes.len().min(at + size - 1));
+            let end = self.part_end(self.bytes.len().min(at + size - 1));
             let bytes = &self.bytes[..end];
             parts.push(Cursor { bytes, at, line: 0, taken: None, ..*self });
             at = end;
@@ -105,7 +105,9 @@ impl<'a> Cursor<'a> {
     pub(crate) fn location(&self) -> Location {
         match self.taken {
             // The count is 0 if nothing was read so far, but editors count from 1.
-            None if self.syntax.joins => Location::Line(self.source.line_of(self.at)),
+            None if self.syntax.joins || self.syntax.continues => {
+                Location::Line(self.source.line_of(self.at))
+            }
             None => Location::Line(self.line.max(1)),
             Some(start) if self.line == 0 => Location::Byte(start),
             Some(_) => Location::Byte(self.at),
@@ -177,9 +179,23 @@ impl<'a> Cursor<'a> {
 
     /// Returns the end of the line that has this byte, and of lines joined to it, after the line feed.
     #[inline]
-    fn row_end(&self, at: usize) -> usize {
+    pub(in crate::file) fn row_end(&self, at: usize) -> usize {
         let end = line_end(self.bytes, at);
-        if self.syntax.joins { self.joined_end(at, end) } else { end }
+        match (self.syntax.joins, self.syntax.continues) {
+            (false, false) => end,
+            (true, _) => self.joined_end(at, end),
+            // A comment does not go on. If it did, each of many would look at all that follow.
+            (_, true) if self.is_left_out(at) => end,
+            (_, true) => self.continued_end(end),
+        }
+    }
+
+    /// Returns the end of the row that has this byte, or that has lines before and after this one.
+    fn part_end(&self, at: usize) -> usize {
+        match self.syntax.continues {
+            true => self.continued_end(line_end(self.bytes, at)),
+            false => self.row_end(at),
+        }
     }
 
     #[cold]

@@ -163,8 +163,14 @@ impl<'a> Cursor<'a> {
         Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
     }
 
+    /// Makes the error that a token is missing, or that it is not what is wanted.
     #[cold]
-    fn unusable(&self, token: Option<&[u8]>, what: impl Display, wanted: &str) -> ReadError {
+    pub(crate) fn unusable(
+        &self,
+        token: Option<&[u8]>,
+        what: impl Display,
+        wanted: &str,
+    ) -> ReadError {
         match token {
             // Not even the end of the line follows.
             None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {

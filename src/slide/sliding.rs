@@ -38,7 +38,7 @@ impl Slide {
         }
         let size =
             moved.iter().flat_map(|&v| before[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()));
-        Sliding::new(before, topology, self).astray(&moved, after, 8.0 * stored.epsilon() * size)
+        Sliding::new(before, topology, self).astray(&moved, after, 8.0 * stored.error(size))
     }
 }
 

@@ -72,15 +72,34 @@ fn meshb(mesh: &Mesh) -> Vec<u8> {
     file.bytes
 }
 
+/// Bulk data of Nastran with fields of so many characters.
+fn nastran(mesh: &Mesh, precision: Precision) -> Vec<u8> {
+    let (width, mark) = if precision == Precision::Text8 { (8, "") } else { (16, "*") };
+    let mut text = "BEGIN BULK\n".to_owned();
+    for (v, point) in mesh.points.iter().enumerate() {
+        let [x, y] = point.map(|x| precision.rounded(x).to_string());
+        let (name, v) = (format!("GRID{mark}"), v + 1);
+        writeln!(text, "{name:<8}{v:>width$}{:width$}{x:>width$}{y:>width$}", "").unwrap();
+    }
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| v + 1);
+        writeln!(text, "CTRIA3,{},1,{a},{b},{c}", t + 1).unwrap();
+    }
+    text.into_bytes()
+}
+
 #[test]
 fn the_file_written_by_a_run_holds_what_its_report_says() {
     let mesh = far();
     let single = Precision::Single;
+    let [short, long] = [Precision::Text8, Precision::Text16];
     for (name, bytes, format, precision) in [
         ("in.su2", su2(&mesh), Format::Su2, Precision::Double),
         ("in.vtk", vtk_text(&mesh), Format::Vtk, single),
         ("in.vtk", vtk_binary(&mesh), Format::VtkBinary, single),
         ("in.meshb", meshb(&mesh), Format::MeditBinary, single),
+        ("in.bdf", nastran(&mesh, short), Format::Nastran, short),
+        ("in.bdf", nastran(&mesh, long), Format::Nastran, long),
     ] {
         let folder = Folder::new(&[]);
         fs::write(folder.path(name), &bytes).unwrap();

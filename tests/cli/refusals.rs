@@ -283,8 +283,8 @@ fn files_of_other_kinds_are_errors() {
     assert_gmsh_refused("2 2 0 1 10", "4 2 0 1 10", &["in.msh:14: ", "makes this a volume mesh"]);
     assert_refused(&[("in.txt", "hello\n")], "in.txt", &["in.txt: the format is not recognized. "]);
     assert_refused(&[("in.stl", "solid part\n")], "in.stl", &["in.stl: an STL lists", "--weld"]);
-    let bulk = [("in.bdf", "BEGIN BULK\n")];
-    assert_refused(&bulk, "in.bdf", &["in.bdf: Nastran is not read. Convert "]);
+    let deck = [("in.k", "*KEYWORD\n")];
+    assert_refused(&deck, "in.k", &["in.k: LS-DYNA is not read. Export "]);
     let step = [("in.stp", "ISO-10303-21;\nHEADER;\n")];
     assert_refused(&step, "in.stp", &["is not read. Mesh it first, with gmsh for example"]);
     let upright = "v 0 5 0\nv 2 5 0\nv 1 5 3\nv 1 5 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";

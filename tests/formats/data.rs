@@ -1,7 +1,7 @@
 //! Data of vertices: fields are found by their names and replaced in place, and nothing else changes.
 
 use super::made::base;
-use super::others::{folder, for_each};
+use super::others::{folder, for_each, pieces, value};
 use super::vtu::{self, Place, styles};
 use super::{Folder, damage};
 use gpu_smooth::{Conversion, Format, MeshFile, PointField, Precision};
@@ -105,16 +105,11 @@ fn only_the_tokens_of_data_change_in_text() {
         change(&mut fields);
         let mut out = Vec::new();
         file.write_to_with("out".as_ref(), &mut out, &file.mesh().points, &fields).unwrap();
-        let tokens = |bytes: &[u8]| -> Vec<String> {
-            let text = str::from_utf8(bytes).unwrap();
-            let is_between = |c: char| c.is_ascii_whitespace() || c == ';';
-            text.split(is_between).map(str::to_owned).collect()
-        };
-        let (old, new) = (tokens(&made.bytes), tokens(&out));
+        let [old, new] = [&made.bytes, &out].map(|bytes| pieces(made.format, bytes));
         assert_eq!(old.len(), new.len());
         let mut differ = 0;
         for (old, new) in old.iter().zip(&new).filter(|(old, new)| old != new) {
-            let [old, new] = [old, new].map(|x| x.replace('D', "e").parse::<f64>().unwrap());
+            let [old, new] = [old, new].map(|word| value(word));
             assert!([0.25, 0.5, 0.75].iter().any(|by| (new - old - by).abs() < 1e-6));
             differ += 1;
         }

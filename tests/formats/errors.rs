@@ -158,7 +158,7 @@ fn files_of_formats_that_are_not_read_are_refused_by_name() {
                    Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, MIKE (DHI), FVCOM, \
                    MFEM, JIGSAW, FreeFem .msh, SELAFIN";
     assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "--weld"]);
-    assert_error(&[("a.bdf", "BEGIN BULK\n")], &["Nastran is not read. Convert it "]);
+    assert_error(&[("a.k", "*KEYWORD\n")], &["LS-DYNA is not read. Export the mesh "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
     let folder = Folder::new(&[]);
     let of = |path: &Path| MeshFile::read(path).unwrap_err().to_string();

@@ -318,6 +318,11 @@ fn plain_texts() -> Vec<(&'static str, String)> {
                 }),
         ),
         (
+            "in.bdf",
+            cells(1, &|t, [a, b, c]| format!("CTRIA3,{},{},{a},{b},{c}\n", t + 1, of(t)))
+                + &rows(&|v, [x, y]| format!("GRID,{},,{x:?},{y:?},0.\n", v + 1)),
+        ),
+        (
             "in.su2",
             format!("NDIME= 2\nNELEM= {m}\n")
                 + &cells(0, &|_, [a, b, c]| format!("5 {a} {b} {c}\n"))

@@ -15,6 +15,7 @@ mod layouts;
 mod long;
 mod made;
 mod names;
+mod nastran;
 mod others;
 mod packed;
 mod parameters;

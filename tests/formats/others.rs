@@ -2,6 +2,7 @@
 
 use super::Folder;
 use super::made::{Made, PROBED, all, base};
+use super::nastran;
 use super::support::{SplitMix64, check};
 use gpu_smooth::{Format, Location, Mesh, MeshFile};
 use std::collections::BTreeSet;
@@ -118,19 +119,24 @@ fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
     points
 }
 
-/// Words and the separators between them, in turn.
-fn pieces(bytes: &[u8]) -> Vec<&[u8]> {
+/// Words and the separators between them, in turn; of Nastran what stands in each field.
+pub(crate) fn pieces(format: Format, bytes: &[u8]) -> Vec<String> {
+    if format == Format::Nastran {
+        return nastran::fields(str::from_utf8(bytes).unwrap());
+    }
     let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b';';
-    bytes.chunk_by(|a, b| is_between(a) == is_between(b)).collect()
+    let pieces = bytes.chunk_by(|a, b| is_between(a) == is_between(b));
+    pieces.map(|piece| String::from_utf8_lossy(piece).into_owned()).collect()
 }
 
-fn value(word: &[u8]) -> f64 {
-    str::from_utf8(word).unwrap().replace('D', "E").parse().unwrap()
+pub(crate) fn value(word: &str) -> f64 {
+    let number = word.replace('D', "E");
+    number.parse().unwrap_or_else(|_| nastran::value(&number))
 }
 
 /// Checks that the words that differ are exactly the coordinates that moved.
 fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) {
-    let (old, new) = (pieces(before), pieces(after));
+    let [old, new] = [before, after].map(|bytes| pieces(made.format, bytes));
     assert_eq!(old.len(), new.len());
     let round = |x: f64| made.precision.rounded(x);
     let differing: Vec<_> = old

@@ -173,6 +173,7 @@ fn list_of(made: &Made) -> &'static str {
         Format::Exodus => "the list of coordinates",
         Format::Ugrid => "the list of nodes",
         Format::Abaqus => "*NODE",
+        Format::Nastran => "GRID",
         other => panic!("no list of {other}"),
     }
 }

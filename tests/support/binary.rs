@@ -51,7 +51,7 @@ impl Binary {
     pub fn reals(&mut self, precision: Precision, numbers: &[f64]) {
         match precision {
             Precision::Single => numbers.iter().for_each(|x| self.put((*x as f32).to_le_bytes())),
-            Precision::Double | Precision::Text20 => self.doubles(numbers),
+            _ => self.doubles(numbers),
         }
     }
 }

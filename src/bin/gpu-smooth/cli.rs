@@ -35,7 +35,7 @@ use crate::surface_args::SurfaceArgs;
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
     after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
                   Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
-                  fort.14, SCHISM .gr3, SMS .2dm, MIKE .mesh, FVCOM grids, MFEM .mesh, JIGSAW and FreeFem .msh, Abaqus .inp, SELAFIN, UGRID, Exodus II, MED, CGNS, XDMF, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
+                  fort.14, SCHISM .gr3, SMS .2dm, MIKE .mesh, FVCOM grids, MFEM .mesh, JIGSAW and FreeFem .msh, Abaqus .inp, Nastran .bdf, SELAFIN, UGRID, Exodus II, MED, CGNS, XDMF, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
                   the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
                   Examples:\n  \
                   gpu-smooth coast.msh better.msh --picture better.png\n  \

@@ -32,7 +32,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 26] = [
+const ROWS: [Row; 27] = [
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -266,6 +266,16 @@ const ROWS: [Row; 26] = [
             "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",
             "element sets, node sets and surfaces by name",
             "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
+        ],
+    ),
+    row(
+        &[Format::Nastran],
+        "bulk data in small, large and free field, mixed, with tabs, with the other sections before them or without",
+        [
+            "lines, quadrilaterals, nodes of masses, springs and rigid elements",
+            "property",
+            "properties, by the names in comments of HyperMesh, ANSA and Femap",
+            "linear triangles (CTRIA3, CTRIAR); nodes in the basic coordinate system; no `INCLUDE`; as described below",
         ],
     ),
 ];

@@ -5,6 +5,7 @@ pub(crate) mod binary;
 mod exodus;
 mod gmsh;
 mod grids;
+mod nastran;
 mod netcdf;
 mod ply;
 mod text;
@@ -99,6 +100,7 @@ pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
         ugrid::all,
         xdmf::all,
         abaqus::all,
+        nastran::all,
     ];
     families.into_iter().flat_map(|all| all(mesh)).collect()
 }

@@ -1,0 +1,313 @@
+//! The fields of a card, which is what Nastran calls an entry of its bulk data.
+//!
+//! A line has a name and eight fields of 8 characters (small field), or four of 16 if an asterisk follows the name (large field), or
+//! as many fields between commas (free field). The last field of a line, and the first one of the next, may name a continuation.
+
+use memchr::{memchr, memchr2, memrchr};
+use std::ops::Range;
+
+/// Characters of the first and the last field of a line, and of a small field.
+const SMALL: usize = 8;
+/// Characters of a large field.
+const LARGE: usize = 16;
+/// A comma within so many characters makes a line one in free field.
+const COMMA_WITHIN: usize = 10;
+
+/// A line of a card.
+#[derive(Clone, Copy)]
+pub(crate) struct Line<'a> {
+    bytes: &'a [u8],
+    start: usize,
+    /// Where its comment starts, or its line end.
+    end: usize,
+    pub(crate) is_free: bool,
+    pub(crate) is_large: bool,
+    has_tabs: bool,
+}
+
+/// The name of a card in capital letters, without an asterisk and with zeros behind.
+pub(crate) type Name = [u8; SMALL];
+
+/// Returns the letters of a name.
+pub(crate) fn letters(name: &Name) -> &[u8] {
+    &name[..memchr(0, name).unwrap_or(SMALL)]
+}
+
+impl<'a> Line<'a> {
+    /// Takes the line that starts here.
+    pub(crate) fn starting_at(bytes: &'a [u8], start: usize) -> Line<'a> {
+        let rest = &bytes[start..];
+        let rest = &rest[..memchr2(b'\n', b'$', rest).unwrap_or(rest.len())];
+        let rest = rest.strip_suffix(b"\r").unwrap_or(rest);
+        let is_free = memchr(b',', &rest[..rest.len().min(COMMA_WITHIN)]).is_some();
+        let head = &rest[..rest.len().min(SMALL)];
+        let head = &head[..memchr(b',', head).unwrap_or(head.len())];
+        let is_large = memchr(b'*', head).is_some();
+        let has_tabs = !is_free && memchr(b'\t', rest).is_some();
+        Line { bytes, start, end: start + rest.len(), is_free, is_large, has_tabs }
+    }
+
+    /// Takes the line that has this byte.
+    fn of(bytes: &'a [u8], at: usize) -> Line<'a> {
+        let mark = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
+        let start = memrchr(b'\n', &bytes[..at]).map_or(mark, |before| before + 1);
+        Line::starting_at(bytes, start.min(at))
+    }
+
+    /// The card that the line starts, if it is no continuation.
+    pub(crate) fn name(&self) -> Name {
+        let mut name = Name::default();
+        let letters = self.bytes[self.start..self.end].iter();
+        let letters = letters.take_while(|byte| !matches!(byte, b',' | b'*' | 0..=b' '));
+        for (to, letter) in name.iter_mut().zip(letters) {
+            *to = letter.to_ascii_uppercase();
+        }
+        name
+    }
+
+    /// Characters of a field, as far as its line has them.
+    fn width(&self) -> usize {
+        if self.is_large { LARGE } else { SMALL }
+    }
+
+    /// How many fields of data a line has.
+    fn count(&self) -> usize {
+        if self.is_large { 4 } else { 8 }
+    }
+
+    /// Lists where the fields of data are that the line has, each without blanks around it in free field, and else with all of its
+    /// characters.
+    pub(crate) fn fields(self) -> Fields<'a> {
+        let at = match self.is_free {
+            true => self.comma_from(self.start),
+            false => self.at_column(SMALL),
+        };
+        Fields { line: self, at, index: 0 }
+    }
+
+    /// Returns the first comma from a byte on, or the end.
+    fn comma_from(&self, at: usize) -> usize {
+        memchr(b',', &self.bytes[at..self.end]).map_or(self.end, |comma| at + comma)
+    }
+
+    /// Returns the byte at a column, counted from zero, or the end. A tab moves on to the next column that is a multiple of eight.
+    fn at_column(&self, column: usize) -> usize {
+        if !self.has_tabs {
+            return self.end.min(self.start + column);
+        }
+        let (mut at, mut passed) = (self.start, 0);
+        while at < self.end && passed < column {
+            passed = self.after(passed, at);
+            at += 1;
+        }
+        at
+    }
+
+    /// Returns the column of a byte.
+    fn column(&self, at: usize) -> usize {
+        if !self.has_tabs {
+            return at - self.start;
+        }
+        (self.start..at).fold(0, |column, at| self.after(column, at))
+    }
+
+    /// Returns the column after the byte that stands in a column.
+    fn after(&self, column: usize, at: usize) -> usize {
+        if self.bytes[at] == b'\t' { (column / SMALL + 1) * SMALL } else { column + 1 }
+    }
+}
+
+/// The fields of data of a line.
+pub(crate) struct Fields<'a> {
+    line: Line<'a>,
+    /// The comma before the next field, or where that starts.
+    at: usize,
+    index: usize,
+}
+
+impl Iterator for Fields<'_> {
+    type Item = Range<usize>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Range<usize>> {
+        let line = &self.line;
+        loop {
+            if self.at >= line.end {
+                return None;
+            }
+            let index = self.index;
+            self.index += 1;
+            if line.is_free {
+                let start = self.at + 1;
+                self.at = line.comma_from(start);
+                // What goes on in the same line has the two fields between that name a continuation.
+                if index % (line.count() + 2) >= line.count() {
+                    continue;
+                }
+                return Some(trimmed(line.bytes, start..self.at));
+            }
+            if index == line.count() {
+                return None;
+            }
+            let start = self.at;
+            self.at = match line.has_tabs {
+                true => line.at_column(SMALL + (index + 1) * line.width()),
+                false => line.end.min(start + line.width()),
+            };
+            return Some(start..self.at);
+        }
+    }
+}
+
+/// Leaves out blanks around what is in a range. A range of blanks becomes the empty one at its start.
+fn trimmed(bytes: &[u8], Range { mut start, mut end }: Range<usize>) -> Range<usize> {
+    let is_blank = |at: usize| bytes[at] <= b' ';
+    let all = start;
+    while start < end && is_blank(start) {
+        start += 1;
+    }
+    if start == end {
+        return all..all;
+    }
+    while is_blank(end - 1) {
+        end -= 1;
+    }
+    start..end
+}
+
+/// Lists the fields of data of all lines of a card, without blanks around them. Fields that a line leaves out at its end are empty.
+pub(crate) fn words(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = &[u8]> {
+    lines(bytes, card).flat_map(move |line| {
+        let count = line.count();
+        let mut fields = line.fields();
+        let mut given = 0;
+        std::iter::from_fn(move || {
+            let field = fields.next();
+            let is_there = field.is_some() || given % count != 0 || given == 0;
+            given += 1;
+            is_there.then(|| field.map_or(&[][..], |field| bytes[field].trim_ascii()))
+        })
+    })
+}
+
+/// Lists the lines of a card, without comments and blank lines between them.
+pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = Line<'_>> {
+    let mut at = card.start;
+    std::iter::from_fn(move || {
+        while at < card.end {
+            let start = at;
+            at = memchr(b'\n', &bytes[start..card.end]).map_or(card.end, |end| start + end + 1);
+            let text = bytes[start..at].trim_ascii_start();
+            if !matches!(text.first(), None | Some(b'$' | b'#')) {
+                return Some(Line::starting_at(bytes, start));
+            }
+        }
+        None
+    })
+}
+
+/// Returns the end of the field that starts here, and how many characters what is written there must have. That is none in free
+/// field, and where the line ends before the field.
+pub(crate) fn extent(bytes: &[u8], at: usize) -> (usize, usize) {
+    let line = Line::of(bytes, at);
+    if line.is_free {
+        let end = line.comma_from(at.min(line.end));
+        return (trimmed(bytes, at.min(end)..end).end.max(at), 0);
+    }
+    let (column, width) = (line.column(at), line.width());
+    let is_whole = line.column(line.end) >= column + width;
+    (line.at_column(column + width).max(at), if is_whole { width } else { 0 })
+}
+
+/// Returns where the field starts that follows one which ends here.
+pub(crate) fn next_field(bytes: &[u8], end: usize) -> usize {
+    let line = Line::of(bytes, end);
+    let comma = line.comma_from(end.min(line.end));
+    match line.is_free && comma < line.end {
+        true => trimmed(bytes, comma + 1..line.comma_from(comma + 1)).start,
+        false => end,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fields(line: &str) -> Vec<&str> {
+        let fields = Line::starting_at(line.as_bytes(), 0).fields();
+        fields.map(|field| &line[field]).collect()
+    }
+
+    #[test]
+    fn fields_are_found_in_every_form() {
+        assert_eq!(fields("GRID, 1 ,,0.5 , -.5\t,  $ 7, 8"), ["1", "", "0.5", "-.5", ""]);
+        assert_eq!(
+            fields("GRID    1               0.123456780.12345678+A\r\n"),
+            ["1       ", "        ", "0.123456", "780.1234", "5678+A"]
+        );
+        assert_eq!(
+            fields("GRID*   1                               0.5             0.25"),
+            ["1               ", "                ", "0.5             ", "0.25"]
+        );
+        assert_eq!(fields("grid\t1\t\t0.5\t.25\n"), ["1\t", "\t", "0.5\t", ".25"]);
+        assert_eq!(fields("GRID*\t1\t\t\t\t0.5\t\t.25$"), ["1\t\t", "\t\t", "0.5\t\t", ".25"]);
+        assert_eq!(fields("*  $"), [""; 0]);
+        assert_eq!(
+            fields("A,1,2,3,4,5,6,7,8,+,+,9"),
+            ["1", "2", "3", "4", "5", "6", "7", "8", "9"]
+        );
+        assert_eq!(fields("A*,1,2,3,4,*C,*C,5"), ["1", "2", "3", "4", "5"]);
+        assert_eq!(
+            fields("CBAR    1       2       3       4       5       6       7       8       9")
+                .len(),
+            8
+        );
+        for (line, name) in [("\tGrid*, 1", ""), ("Grid*, 1", "GRID"), ("ctria3 *", "CTRIA3")] {
+            let own = Line::starting_at(line.as_bytes(), 0).name();
+            assert_eq!(letters(&own), name.as_bytes());
+        }
+    }
+
+    #[test]
+    fn words_of_a_card_keep_their_places() {
+        let words_of = |card: &'static str| -> Vec<&str> {
+            let all = words(card.as_bytes(), 0..card.len());
+            all.map(|word| str::from_utf8(word).unwrap()).collect()
+        };
+        let large = "CTRIA3* 7               1               2\n$ 5\n\n*       3               4\n";
+        assert_eq!(words_of(large), ["7", "1", "2", "", "3", "4", "", ""]);
+        assert_eq!(
+            words_of("RBE2,1,2\n,3"),
+            ["1", "2", "", "", "", "", "", "", "3", "", "", "", "", "", "", ""]
+        );
+        assert_eq!(words_of("X"), [""; 8]);
+    }
+
+    /// A field is found again from where it starts, also where nothing is in it.
+    #[test]
+    fn fields_are_found_again_from_their_starts() {
+        for line in [
+            "GRID,1,,0.5,-.5, 0. ",
+            "GRID,1,, , ,",
+            "GRID,1,,0.5 ,,$",
+            "GRID    1               0.123456780.12345678",
+            "GRID    1                        .5     1.\r",
+            "GRID\t1\t\t0.5\t.25\t1.",
+            "GRID*\t1\t\t\t\t0.5\t\t.25",
+        ] {
+            for head in ["", "$, comment\n", "\u{feff}"] {
+                let text = format!("{head}{line}\nEND");
+                let bytes = text.as_bytes();
+                let all: Vec<_> = Line::starting_at(bytes, head.len()).fields().collect();
+                for pair in all.windows(2) {
+                    assert_eq!(extent(bytes, pair[0].start).0, pair[0].end, "{text:?}");
+                    assert_eq!(next_field(bytes, pair[0].end), pair[1].start, "{text:?}");
+                }
+            }
+        }
+        assert_eq!(extent(b"GRID    1               .5      1.0", 24), (32, 8));
+        assert_eq!(extent(b"GRID    1               .5      1.0", 32), (35, 0));
+        assert_eq!(extent(b"GRID\t1\t\t.5\t1.", 8), (11, 8));
+        assert_eq!(extent(b"*\t1.25\t\t7", 2), (8, 16));
+    }
+}
