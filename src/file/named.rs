@@ -32,7 +32,6 @@ impl MeshFile {
     /// | STL | `solid` |
     /// | Abaqus | `elset`, `surface` and `nset`, by name |
     /// | Nastran | `property`, with the names that comments of preprocessors give |
-    /// | Exodus II | `block`, `sideset` and `nodeset`, with their names |
     /// | others | none |
     ///
     /// Points, lines and surfaces with the same tag are separate groups. Zero is no group where programs write it for

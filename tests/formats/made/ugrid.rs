@@ -139,7 +139,8 @@ fn data(file: &mut NetCdf, precision: Precision, nodes: usize, faces: usize) {
 
 /// Adds centers of faces: x is the mean of the corners, y something else.
 fn centers(file: &mut NetCdf, mesh: &Mesh, faces: &[Vec<u32>]) {
-    let x = |&v: &u32| mesh.points[v as usize][0];
+    // A corner may be no vertex of the mesh.
+    let x = |&v: &u32| mesh.points.get(v as usize).map_or(0.0, |point| point[0]);
     let mean = |face: &Vec<u32>| face.iter().map(x).sum::<f64>() / face.len() as f64;
     let means: Vec<f64> = faces.iter().map(mean).collect();
     file.reals("face_x", Precision::Double, &["face"], &means);
