@@ -1,11 +1,10 @@
 //! Centers of faces and edges, which UGRID's files may have.
 
 use crate::error::MeshError;
-use crate::error::ReadError;
 use crate::file::families::Family;
 use crate::file::field::PointField;
 use crate::file::mesh_file::MeshFile;
-use crate::file::sink::{Centers, Element, Sink};
+use crate::file::sink::{Centers, Sink};
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
 
@@ -172,10 +171,6 @@ impl Sink for Seeker {
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);
-    }
-
-    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
-        Ok(())
     }
 
     fn center_array(&mut self, name: &[u8], axis: usize) -> bool {

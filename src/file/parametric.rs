@@ -2,7 +2,7 @@
 
 use crate::error::ReadError;
 use crate::file::field::PointField;
-use crate::file::sink::{Element, PointNumbers, Reader, Sink};
+use crate::file::sink::{PointNumbers, Reader, Sink};
 use crate::file::source::Source;
 use crate::file::tags::TagMap;
 use crate::file::text::Cursor;
@@ -36,10 +36,6 @@ impl Sink for Seeker {
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.tags.push(tag);
-    }
-
-    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
-        Ok(())
     }
 
     fn parameters(&mut self, surface: i64) -> bool {

@@ -126,8 +126,10 @@ pub(crate) trait Sink {
     }
     /// Announces about how many elements follow.
     fn expect_elements(&mut self, _count: usize) {}
-    /// Takes an element that was just read.
-    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError>;
+    /// Takes an element that was just read. Sinks that look for something else ignore it.
+    fn element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
     /// Takes triangles of a binary list from the first one on. Returns how many it took; the caller hands the others to
     /// [`element`](Self::element).
     fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {
