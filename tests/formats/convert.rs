@@ -298,6 +298,15 @@ fn depths_of_grids_are_heights_of_sms() {
     assert_eq!(convert("a.14", Format::Off, "a.off"), ["data of vertices: depth"]);
     assert_eq!(convert("a.2dm", Format::Off, "b.off"), [""; 0]);
     assert_eq!(convert("b.off", Format::Adcirc, "c.14"), ["third coordinates"]);
+    // A variable of nodes of UGRID is called so, or `z`, and what another format makes of it comes back.
+    assert_eq!(convert("a.14", Format::Ugrid, "a.nc"), [""; 0]);
+    assert_eq!(folder.read("a.nc").data_names(), ["depth"]);
+    assert_eq!(convert("a.nc", Format::Sms2dm, "d.2dm"), [""; 0]);
+    assert!(folder.text("d.2dm").ends_with(nodes), "{}", folder.text("d.2dm"));
+    assert_eq!(convert("a.2dm", Format::Ugrid, "b.nc"), [""; 0]);
+    assert_eq!(folder.read("b.nc").data_names(), ["z"]);
+    assert_eq!(convert("b.nc", Format::Adcirc, "d.14"), [""; 0]);
+    assert!(folder.text("d.14").contains(&grid[2..]), "{}", folder.text("d.14"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS, MIKE and UGRID z is positive
 /// upwards, and SMS opens a grid of ADCIRC with minus its depths as z. In UGRID z is a variable of nodes, of this name or one that
-/// ends in `node_z`.
+/// ends in `node_z`; or it has depths, under a name that ends so.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
@@ -27,13 +27,15 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
             content.point_data.push(of_vertices("depth", values));
         }
         (Format::Ugrid, Format::Sms2dm) => {
-            if let Some(heights) = take_heights(content) {
-                content.heights = heights;
+            if let Some((heights, is_depth)) = take_heights(content) {
+                let upwards = |number| if is_depth { minus(number) } else { number };
+                content.heights = heights.into_iter().map(upwards).collect();
             }
         }
         (Format::Ugrid, Format::Adcirc) => {
-            if let Some(heights) = take_heights(content) {
-                let values = heights.into_iter().map(minus).collect();
+            if let Some((heights, is_depth)) = take_heights(content) {
+                let downwards = |number| if is_depth { number } else { minus(number) };
+                let values = heights.into_iter().map(downwards).collect();
                 content.point_data.push(of_vertices("depth", values));
             }
         }
@@ -49,12 +51,16 @@ fn of_vertices(name: &str, values: Vec<f64>) -> Data {
     Data { name: name.to_owned(), components: 1, is_real: true, values }
 }
 
-/// Takes the variable of nodes out that is z.
-fn take_heights(content: &mut Content) -> Option<Vec<f64>> {
-    let is_z =
-        |data: &Data| data.components == 1 && (data.name == "z" || data.name.ends_with("node_z"));
-    let at = content.point_data.iter().position(is_z)?;
-    Some(content.point_data.remove(at).values)
+/// Takes the variable of nodes out that is z, or a depth, and tells whether it is a depth.
+fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
+    let is_z = |data: &Data| data.name == "z" || data.name.ends_with("node_z");
+    let is_depth = |data: &Data| data.name.to_ascii_lowercase().ends_with("depth");
+    let find = |is: &dyn Fn(&Data) -> bool| {
+        content.point_data.iter().position(|data| data.components == 1 && is(data))
+    };
+    let (at, is_depth) =
+        find(&is_z).map(|at| (at, false)).or_else(|| Some((find(&is_depth)?, true)))?;
+    Some((content.point_data.remove(at).values, is_depth))
 }
 
 pub(crate) fn write_sms(job: &Job<'_>) -> String {

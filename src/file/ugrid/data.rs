@@ -1,6 +1,6 @@
 //! Data of nodes and faces in a UGRID file.
 
-use super::centers::{Place, Tables};
+use super::centers::Tables;
 use super::mesh::Mesh;
 use super::table::Table;
 use crate::file::netcdf::{Number, Parts, PointData, Variable};
@@ -41,7 +41,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
                     self.of_faces(faces, (variable, &parts), sink);
                 }
             }
-            self.left_out(&places, sink);
+            self.left_out(sink);
         }
         let left = self.centers(tables, &places, &mut points, sink);
         if !left.is_empty() {
@@ -109,20 +109,12 @@ impl<'h, 'a> Mesh<'h, 'a> {
         }
     }
 
-    fn left_out(&self, places: &[Place<'h>], sink: &mut dyn Sink) {
+    /// Tells what is in no mesh of another format. Edges, neighbors and places of faces follow from the mesh; attributes of variables
+    /// are like comments.
+    fn left_out(&self, sink: &mut dyn Sink) {
         let variables = &self.header.variables;
         if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
             sink.leaves_out("variables of edges");
-        }
-        let others = ["edge_node_connectivity", "face_face_connectivity", "face_edge_connectivity"];
-        if others.iter().any(|name| !self.named(name).is_empty()) {
-            sink.leaves_out("edges and neighbors of faces, which follow from the mesh");
-        }
-        if !places.is_empty() {
-            sink.leaves_out("places of faces and edges, which follow from the mesh");
-        }
-        if variables.iter().any(|variable| variable.text("units").is_some()) {
-            sink.leaves_out("units and other attributes of variables");
         }
         if self.header.records > 1 {
             sink.leaves_out("times of time steps");
