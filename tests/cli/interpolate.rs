@@ -29,6 +29,25 @@ fn error(folder: &Folder, name: &str) -> f64 {
     pairs.map(|(&point, value)| (depth(point) - value).abs()).fold(0.0, f64::max)
 }
 
+/// Data that are the same everywhere fit all places, so that no note says that they were left behind.
+#[test]
+fn equal_depths_are_not_told_as_left_behind() {
+    let flat: String = gr3(&disturbed())
+        .lines()
+        .map(|row| match row.split(' ').collect::<Vec<_>>()[..] {
+            [number, x, y, depth] if depth.contains('e') => format!("{number} {x} {y} 2.5\n"),
+            _ => format!("{row}\n"),
+        })
+        .collect();
+    let folder = Folder::new(&[("in.gr3", &flat)]);
+    assert_eq!(folder.line("convert in.gr3 in.vtk").code, Some(0));
+    assert!(folder.line("in.vtk out.vtk --engine cpu").err.contains("depth stays as it is"));
+    let run = folder.line("in.vtk out.vtk --engine cpu --interpolate all");
+    let none =
+        "gpu-smooth: no data of the mesh differ from vertex to vertex: nothing to interpolate\n";
+    assert_eq!((run.code, run.err.as_str()), (Some(0), none));
+}
+
 #[test]
 fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     let folder = Folder::new(&[("in.gr3", &gr3(&disturbed()))]);

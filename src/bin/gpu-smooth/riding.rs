@@ -20,6 +20,8 @@ pub(crate) struct Riding {
     data: usize,
     /// Whether the user asked for any data.
     asked: bool,
+    /// Whether the user asked for all: what is not taken is the same at all vertices.
+    all: bool,
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -33,7 +35,7 @@ impl RidingArgs {
     /// Finds the data that the user named in a file.
     pub(crate) fn choose(&self, file: &MeshFile) -> Result<Riding, String> {
         if self.interpolate.is_empty() {
-            return Ok(Riding { fields: Vec::new(), data: 0, asked: false });
+            return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
         }
         // A name may contain commas.
         let split = |text: &String| match file.data_names().contains(text) {
@@ -51,7 +53,7 @@ impl RidingArgs {
                 field.values().iter().any(|value| Some(value) != first)
             });
         }
-        Ok(Riding { data: fields.len(), fields, asked: true })
+        Ok(Riding { data: fields.len(), fields, asked: true, all })
     }
 }
 
@@ -78,6 +80,9 @@ impl Riding {
 
     /// Words the remark on data that stay as they are.
     pub(crate) fn left_behind(&self, file: &MeshFile) -> Option<String> {
+        if self.all {
+            return None;
+        }
         let taken = self.names();
         let left: Vec<_> =
             file.data_names().iter().filter(|name| !taken.contains(&name.as_str())).collect();
