@@ -87,6 +87,18 @@ fn a_file_by_h5netcdf_is_read() {
     assert_eq!(file.vertex_place(4).label, 5);
 }
 
+/// The message names the filter, and not a mesh without coordinates.
+#[test]
+fn coordinates_packed_by_a_filter_that_is_not_read_are_refused_by_its_name() {
+    hdf5::refused(
+        MeshFile::read(&hdf5::made("zstd.nc")),
+        &[
+            "zstd.nc, byte ",
+            "cannot read a dataset compressed by Zstandard. Rewrite it with `h5repack",
+        ],
+    );
+}
+
 fn refused(bytes: &[u8], parts: &[&str]) {
     let folder = Folder::new(&[]);
     fs::write(folder.path("in.nc"), bytes).unwrap();

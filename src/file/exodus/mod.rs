@@ -45,6 +45,11 @@ impl Walk for Exodus {
             return Err(start.error(problem, "Save the mesh as one of these, or in another format"));
         };
         start.check_vertex_count(nodes)?;
+        if let Some(error) =
+            header.unread(|name| name.starts_with(b"coord") || name.starts_with(b"connect"))
+        {
+            return Err(error);
+        }
         let file = File { source, header, nodes: nodes as usize };
         let layout = file.axes()?.send(Format::Exodus, (file.nodes, 1), sink)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));

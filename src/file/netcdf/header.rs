@@ -204,6 +204,14 @@ impl<'a> Header<'a> {
         found.map(|&(_, length)| length)
     }
 
+    /// Why a dataset of one of these names is no variable: it is damaged, or packed by a filter that is not read. None if there is
+    /// no such dataset.
+    pub(in crate::file) fn unread(&self, is_wanted: impl Fn(&[u8]) -> bool) -> Option<ReadError> {
+        let file = self.hdf5.as_ref()?;
+        let mut wanted = file.children(file.root()).filter(|(name, _)| is_wanted(name));
+        wanted.find_map(|(_, object)| file.dataset(object).err())
+    }
+
     /// The variable of a name.
     pub(in crate::file) fn variable(&self, name: &str) -> Option<&Variable> {
         self.variables.iter().find(|variable| variable.name == name.as_bytes())

@@ -47,6 +47,14 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 return Err(start.error(problem, "Save each in a file of its own"));
             }
         };
+        let parts = ["node_coordinates", "face_node_connectivity"];
+        let is_part = |name: &[u8]| {
+            let names = parts.iter().filter_map(|attribute| own.text(attribute));
+            names.flat_map(|names| names.split(u8::is_ascii_whitespace)).any(|own| own == name)
+        };
+        if let Some(error) = header.unread(is_part) {
+            return Err(error);
+        }
         let [x, y] = coordinates(header, own)?;
         let nodes = node_count(header, [x, y])?;
         let named = own.text("face_node_connectivity");

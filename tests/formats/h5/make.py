@@ -235,6 +235,18 @@ with netCDF4.Dataset("ugrid.nc", "w") as f:
     data[0] = depth
     data[1] = 2 * depth
 
+# The same coordinates under a filter that is not read.
+with netCDF4.Dataset("zstd.nc", "w") as f:
+    for key, length in dict(nNodes=n, nFaces=m, three=3).items():
+        f.createDimension(key, length)
+    mesh = f.createVariable("mesh", "i4", ())
+    mesh.setncatts(
+        dict(cf_role="mesh_topology", topology_dimension=np.int32(2), node_coordinates="x y", face_node_connectivity="faces")
+    )
+    for axis, key in enumerate("xy"):
+        f.createVariable(key, "f8", ("nNodes",), compression="zstd")[:] = points[:, axis]
+    f.createVariable("faces", "i4", ("nFaces", "three"))[:] = triangles
+
 with h5netcdf.File("h5netcdf.nc", "w") as f:
     f.dimensions = dict(nNodes=n, nFaces=m, three=3)
     mesh = f.create_variable("mesh", (), "i4", data=0)
