@@ -22,7 +22,7 @@ impl Parts {
     pub(in crate::file) const WHOLE: Parts = Parts { wanted: 0..1, all: 1, components: 1 };
 }
 
-/// Hands on data of nodes. What is encoded of a variable is shared by all of its parts and records.
+/// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
 pub(in crate::file) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
     encoded: Vec<(&'h [u8], Arc<Encoding>)>,

@@ -38,7 +38,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         if sink.asks_for_data() {
             for variable in self.header.variables.iter().filter(is_data) {
                 if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
-                    self.of_faces(faces, (variable, &parts), sink);
+                    self.of_faces(faces, (variable, &parts), &mut points, sink);
                 }
             }
             self.left_out(sink);
@@ -84,27 +84,19 @@ impl<'h, 'a> Mesh<'h, 'a> {
         &self,
         faces: &Table<'h, 'a>,
         (variable, parts): (&'h Variable, &Parts),
+        points: &mut PointData<'h, 'a>,
         sink: &mut dyn Sink,
     ) {
         let is_real = matches!(variable.number, Number::Real(_));
-        let mut items = None;
+        let tags = faces.first..faces.first + faces.count as u64;
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
-                if !sink.cell_array(&variable.name, parts.components, is_real) {
-                    continue;
+                if sink.cell_array(&variable.name, parts.components, is_real)
+                    && let Some(own) =
+                        points.numbers(variable, (record, part), parts, variable.missing())
+                {
+                    sink.cell_numbers(own.numbers, Some(tags.clone().collect()));
                 }
-                if items.is_none() {
-                    items = self.header.items(variable).ok();
-                }
-                let Some(items) = &items else { return };
-                let range = items.range(record);
-                let size = range.len() / parts.all.max(1);
-                let range = range.start + part * size..range.start + (part + 1) * size;
-                let mut numbers = variable.numbers(items.bytes.get(range).unwrap_or_default());
-                let missing = variable.missing();
-                numbers.iter_mut().filter(|x| Some(**x) == missing).for_each(|x| *x = f64::NAN);
-                let tags = faces.first..faces.first + faces.count as u64;
-                sink.cell_numbers(numbers, Some(tags.collect()));
             }
         }
     }

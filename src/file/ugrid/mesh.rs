@@ -49,8 +49,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         };
         let parts = ["node_coordinates", "face_node_connectivity"];
         let is_part = |name: &[u8]| {
-            let names = parts.iter().filter_map(|attribute| own.text(attribute));
-            names.flat_map(|names| names.split(u8::is_ascii_whitespace)).any(|own| own == name)
+            parts.iter().flat_map(|attribute| names(own, attribute)).any(|own| own == name)
         };
         if let Some(error) = header.unread(is_part) {
             return Err(error);
@@ -80,14 +79,18 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// The variables that an attribute of the mesh names.
     pub(super) fn named(&self, attribute: &str) -> Vec<&'h Variable> {
-        let names = self.own.text(attribute).unwrap_or_default();
-        let names = names.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty());
-        names.filter_map(|name| self.variable(name)).collect()
+        names(self.own, attribute).filter_map(|name| self.variable(name)).collect()
     }
 
     pub(super) fn variable(&self, name: &[u8]) -> Option<&'h Variable> {
         variable(self.header, name)
     }
+}
+
+/// The names that an attribute lists.
+fn names<'v>(variable: &'v Variable, attribute: &str) -> impl Iterator<Item = &'v [u8]> + use<'v> {
+    let text = variable.text(attribute).unwrap_or_default();
+    text.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty())
 }
 
 fn variable<'h>(header: &'h Header<'_>, name: &[u8]) -> Option<&'h Variable> {
@@ -96,9 +99,8 @@ fn variable<'h>(header: &'h Header<'_>, name: &[u8]) -> Option<&'h Variable> {
 
 /// The variables of x and y, or of longitude and latitude. If nodes have further coordinates, those named first are meant.
 fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variable; 2], ReadError> {
-    let names = own.text("node_coordinates").unwrap_or_default();
-    let names = names.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty());
-    let found: Vec<_> = names.filter_map(|name| variable(header, name)).take(2).collect();
+    let named = names(own, "node_coordinates").filter_map(|name| variable(header, name));
+    let found: Vec<_> = named.take(2).collect();
     match found[..] {
         [first, second] if axis_of(first) == Some(1) && axis_of(second) != Some(1) => {
             Ok([second, first])

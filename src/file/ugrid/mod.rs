@@ -1,4 +1,4 @@
-//! UGRID, in netCDF's classic formats and in netCDF-4: meshes of coastal and atmospheric models, and of Delft3D FM, SCHISM and ADCIRC.
+//! UGRID, in netCDF's classic formats and in netCDF-4: the convention of coastal and atmospheric models.
 //!
 //! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A variable without numbers of its own stands
 //! for the mesh; its attributes name the variables of its parts. Faces are triangles, quadrilaterals and larger polygons.
