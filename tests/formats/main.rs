@@ -8,6 +8,7 @@ mod damage;
 mod data;
 mod errors;
 mod exodus;
+mod golden;
 mod grouped;
 mod groups;
 mod hdf5;

@@ -1,0 +1,329 @@
+//! Golden results: hashes of every bit that the engines return, recorded in `cpu.txt` and `lavapipe.txt` beside this file.
+//!
+//! A change of the code that is not meant to change results leaves both files as they are. A change that is meant to
+//! replaces the lines in a commit of its own, which says why. `GPU_SMOOTH_GOLDEN=write cargo test --test golden` writes
+//! both files.
+//!
+//! `cpu.txt` holds on every x86-64 Linux, whatever the processor and the number of threads. `lavapipe.txt` names the driver
+//! that it was recorded with in its first line: other versions of Mesa compile the kernels to other instructions, so
+//! their results are not compared.
+
+#![allow(clippy::print_stderr)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use gpu_smooth::{
+    Backend, Desired, Goal, Gpu, Guard, Mesh, Method, Metric, Options, Precision, Slide, Smoother,
+    Surface, TargetField, Targets, WorstBy, untangle,
+};
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use support::Outline;
+
+/// FNV-1a, 64 bits.
+struct Hash(u64);
+
+impl Hash {
+    fn of(numbers: impl IntoIterator<Item = u64>) -> Hash {
+        let bytes = numbers.into_iter().flat_map(u64::to_le_bytes);
+        Hash(bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        }))
+    }
+
+    fn of_points(points: &[[f64; 2]]) -> Hash {
+        Hash::of(points.as_flattened().iter().map(|x| x.to_bits()))
+    }
+}
+
+/// Parses a mesh of `meshes/`.
+fn shipped(name: &str) -> Mesh {
+    let path = |ending: &str| {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(name).with_extension(ending)
+    };
+    let rows = |ending: &str| -> Vec<Vec<f64>> {
+        let text = std::fs::read_to_string(path(ending)).unwrap();
+        let lines = text.lines().map(|line| line.split('#').next().unwrap().trim());
+        let rows = lines.filter(|line| !line.is_empty()).skip(1);
+        rows.map(|row| row.split_whitespace().map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    let nodes = rows("node");
+    let first = nodes[0][0];
+    Mesh {
+        points: nodes.iter().map(|row| [row[1], row[2]]).collect(),
+        triangles: rows("ele")
+            .iter()
+            .map(|row| [1, 2, 3].map(|corner| (row[corner] - first) as u32))
+            .collect(),
+        fixed: vec![],
+    }
+}
+
+/// A plate with two holes.
+fn plate(vertices: usize) -> Mesh {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.outline");
+    let outline = Outline::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    support::triangulate(&outline, vertices).unwrap()
+}
+
+/// Meshes that differ in what is hard about them.
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    let mut lines = support::perturb_random(&support::lattice(12, 8), 0.3, 4);
+    // Vertices of the fourth column are fixed.
+    lines.fixed = (0..9).map(|row| row * 13 + 4).collect();
+    vec![
+        ("perturbed", support::perturb_random(&support::lattice(20, 16), 0.35, 1)),
+        ("distorted", support::distort_smooth(&support::lattice(16, 16), 0.8)),
+        ("plate", support::perturb_random(&plate(500), 0.5, 3)),
+        ("graded", support::perturb_random(&support::graded(24, 1e-2), 0.2, 2)),
+        ("layer", support::wavy_layer(24, 30.0, 0.2)),
+        ("hub", support::perturb_random(&support::hub(40, 0.1), 0.2, 5)),
+        ("fixed-line", lines),
+        ("fish", shipped("fish.node")),
+    ]
+}
+
+type Change = fn(&mut Case<'_>);
+
+/// A run before its options are used.
+struct Case<'m> {
+    mesh: &'m Mesh,
+    options: Options,
+    slide: Option<Slide>,
+    targets: Option<Targets>,
+    field: Option<TargetField>,
+}
+
+/// Lengths of edges that a quarter of the mesh should be halved to, by the place of a vertex.
+fn sizes(mesh: &Mesh) -> Vec<f64> {
+    let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+    for [x, _] in &mesh.points {
+        (low, high) = (low.min(*x), high.max(*x));
+    }
+    let share = |x: f64| (x - low) / (high - low);
+    mesh.points.iter().map(|[x, _]| 0.5 + share(*x)).collect()
+}
+
+fn keep_size(case: &mut Case<'_>) {
+    let smoother = Smoother::new(case.mesh).unwrap();
+    let kept = Targets::keep_size(smoother.topology(), &case.mesh.points, Surface::Plane, 2);
+    case.targets = Some(kept.unwrap());
+}
+
+fn keep_shape(case: &mut Case<'_>) {
+    let smoother = Smoother::new(case.mesh).unwrap();
+    case.targets = Some(Targets::keep_shape(smoother.topology(), &case.mesh.points, 2).unwrap());
+}
+
+fn given_sizes(case: &mut Case<'_>) {
+    case.targets = Some(Targets::sizes(&sizes(case.mesh)).unwrap());
+}
+
+fn given_tensors(case: &mut Case<'_>) {
+    let tensors: Vec<_> = sizes(case.mesh).iter().map(|size| [size.powi(-2), 0.1, 2.0]).collect();
+    case.targets = Some(Targets::tensors(&tensors).unwrap());
+}
+
+fn field(case: &mut Case<'_>) {
+    let targets = Targets::sizes(&sizes(case.mesh)).unwrap();
+    case.field = Some(TargetField::new(case.mesh, &targets).unwrap());
+}
+
+fn slide(case: &mut Case<'_>) {
+    let fixed = &case.mesh.fixed;
+    let lines = fixed.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    case.slide = Some(Slide { lines, corner_angle: 50.0, ..Slide::default() });
+}
+
+/// Changes of the options, each of which is run alone and in pairs with some others.
+const CHANGES: &[(&str, Change)] = &[
+    ("slide", slide),
+    ("max-move", |case| case.options.max_move = Some(0.2)),
+    ("keep-altitude", |case| case.options.keep_altitude = true),
+    ("keep-size", keep_size),
+    ("keep-shape", keep_shape),
+    ("sizes", given_sizes),
+    ("tensors", given_tensors),
+    ("field", field),
+    ("worst-imr", |case| case.options.improve_worst = Some(WorstBy::Imr)),
+    ("worst-angle", |case| case.options.improve_worst = Some(WorstBy::MinAngle)),
+    ("worst-altitude", |case| case.options.improve_worst = Some(WorstBy::Altitude)),
+    ("guard", |case| case.options.guard = Guard::Worst),
+    ("goal", |case| {
+        case.options.goal = Some(Goal { fraction: 0.9, desired: Desired::Value(1.2) });
+    }),
+    ("single", |case| case.options.stored = Precision::Single),
+];
+
+/// Runs by each metric, by alternating schemes, by each method, with each change, and with pairs of changes.
+fn cases() -> Vec<(String, Vec<Change>, Options)> {
+    let mut cases = Vec::new();
+    let options = |scheme: &str| Options {
+        scheme: scheme.parse().unwrap(),
+        max_sweeps: 60,
+        track_all: true,
+        ..Options::default()
+    };
+    for metric in Metric::ALL {
+        cases.push((metric.name().to_owned(), vec![], options(metric.name())));
+    }
+    for scheme in ["edge+imr", "imr+area", "rms+imr+ar"] {
+        cases.push((scheme.to_owned(), vec![], options(scheme)));
+        let paper = Options::paper(scheme.parse().unwrap());
+        let paper = Options { max_sweeps: 20, track_all: true, ..paper };
+        cases.push((format!("paper:{scheme}"), vec![], paper));
+    }
+    for scheme in ["imr", "edge"] {
+        let sweeps = Options { method: Method::Sweeps, ..options(scheme) };
+        cases.push((format!("sweeps:{scheme}"), vec![], sweeps));
+    }
+    let searched = Goal { fraction: 0.95, desired: Desired::Auto };
+    cases.push(("searched".into(), vec![], Options { goal: Some(searched), ..options("imr") }));
+    for (first, &(name, change)) in CHANGES.iter().enumerate() {
+        cases.push((format!("imr,{name}"), vec![change], options("imr")));
+        for &(other, also) in &CHANGES[first + 1..] {
+            cases.push((format!("imr,{name},{other}"), vec![change, also], options("imr")));
+        }
+    }
+    for scheme in ["rms", "ar", "shape-size"] {
+        for &(name, change) in
+            CHANGES.iter().filter(|(name, _)| ["slide", "keep-shape"].contains(name))
+        {
+            cases.push((format!("{scheme},{name}"), vec![change], options(scheme)));
+        }
+    }
+    cases
+}
+
+/// Runs a case, and returns its line of a file of results.
+fn run(label: &str, mesh: &Mesh, changes: &[Change], options: &Options, on: &Backend) -> String {
+    let mut case = Case { mesh, options: options.clone(), slide: None, targets: None, field: None };
+    changes.iter().for_each(|change| change(&mut case));
+    let Case { options, slide, targets, field, .. } = case;
+    let made = || {
+        let mut smoother = Smoother::new(mesh)?;
+        smoother.set_slide(slide.as_ref())?;
+        if let Some(targets) = &targets {
+            smoother.set_targets(targets)?;
+        }
+        if let Some(field) = field {
+            smoother.set_target_field(field)?;
+        }
+        smoother.run(&options, on)
+    };
+    match made() {
+        // The words of a refusal are not results.
+        Err(_) => format!("{label} refused"),
+        Ok(outcome) => {
+            let values = outcome.history.iter().flat_map(|objectives| {
+                Metric::ALL.iter().map(|&metric| objectives.of(metric).map_or(0, f64::to_bits))
+            });
+            format!(
+                "{label} points {:016x} history {:016x} sweeps {} {:?}",
+                Hash::of_points(&outcome.points).0,
+                Hash::of(values).0,
+                outcome.history.len() - 1,
+                outcome.stop,
+            )
+        }
+    }
+}
+
+/// Untangles meshes, and returns a line for each.
+fn untangled() -> String {
+    let lattice = support::lattice(14, 10);
+    let two_holes = support::boundaries::two_holes(500);
+    let meshes = [
+        ("scattered", support::tangle::scattered(&lattice, 1)),
+        ("noisy", support::tangle::noisy(&lattice, 0.8, 2)),
+        ("folded", support::tangle::folded(&lattice, 3)),
+        ("turned-hole", support::tangle::turned_hole(24, 0.4)),
+        ("bent", support::boundaries::bent(&lattice, 0.4)),
+        ("past", support::boundaries::past(&two_holes, 1)),
+    ];
+    let mut lines = String::new();
+    for (name, mesh) in meshes {
+        let done = untangle(&mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap();
+        let hash = Hash::of_points(&done.points).0;
+        let (left, sweeps) = (done.left.len(), done.sweeps);
+        writeln!(lines, "{name} untangled points {hash:016x} left {left} sweeps {sweeps}").unwrap();
+    }
+    lines
+}
+
+/// Compares lines with those of a file, or writes the file.
+fn compare(file: &str, found: &str) {
+    let path = recorded(file);
+    if std::env::var("GPU_SMOOTH_GOLDEN").is_ok_and(|what| what == "write") {
+        std::fs::write(&path, found).unwrap();
+    }
+    let expected = std::fs::read_to_string(&path).unwrap();
+    let differ: Vec<_> = expected
+        .lines()
+        .zip(found.lines())
+        .filter(|(expected, found)| expected != found)
+        .map(|(expected, found)| format!("- {expected}\n+ {found}"))
+        .collect();
+    assert!(differ.is_empty(), "{} results of {file} differ:\n{}", differ.len(), differ.join("\n"));
+    assert_eq!(expected.lines().count(), found.lines().count(), "{file} has other cases");
+}
+
+fn recorded(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(file)
+}
+
+/// All results of the CPU engine on so many threads.
+fn on_cpu(threads: usize) -> String {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut lines = String::new();
+        for (name, mesh) in meshes() {
+            for (case, changes, options) in cases() {
+                let label = format!("{name} {case}");
+                writeln!(lines, "{}", run(&label, &mesh, &changes, &options, &Backend::Cpu))
+                    .unwrap();
+            }
+        }
+        lines + &untangled()
+    })
+}
+
+#[test]
+fn results_on_one_thread_have_the_recorded_bits() {
+    compare("cpu.txt", &on_cpu(1));
+}
+
+#[test]
+fn results_on_two_threads_have_the_recorded_bits() {
+    // The other test writes the file.
+    if std::env::var_os("GPU_SMOOTH_GOLDEN").is_none() {
+        compare("cpu.txt", &on_cpu(2));
+    }
+}
+
+/// Without pairs of changes, and on small meshes alone, as lavapipe compiles each kernel for a second.
+#[test]
+fn results_on_lavapipe_have_the_recorded_bits() {
+    let gpu = Gpu::open(Some("llvmpipe")).expect("lavapipe is needed: tests/run installs it");
+    let driver = format!("{} {}", gpu.adapter().name, gpu.adapter().driver);
+    let backend = Backend::Gpu(gpu);
+    let mut lines = format!("{driver}\n");
+    for (name, mesh) in
+        meshes().into_iter().filter(|(name, _)| ["plate", "layer", "fixed-line"].contains(name))
+    {
+        for (case, changes, options) in
+            cases().into_iter().filter(|(_, changes, _)| changes.len() < 2)
+        {
+            let label = format!("{name} {case}");
+            writeln!(lines, "{}", run(&label, &mesh, &changes, &options, &backend)).unwrap();
+        }
+    }
+    let expected = std::fs::read_to_string(recorded("lavapipe.txt")).unwrap_or_default();
+    if expected.lines().next() == Some(&driver) || std::env::var_os("GPU_SMOOTH_GOLDEN").is_some() {
+        compare("lavapipe.txt", &lines);
+    } else {
+        eprintln!("recorded with another driver than {driver}: not compared");
+    }
+}
