@@ -16,7 +16,7 @@ mod support;
 use std::path::Path;
 use std::time::Duration;
 
-use gpu_smooth::{Backend, Gpu, Mesh, MeshFile, Method, Metric, Options, Outcome, Smoother};
+use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
 
 /// How many runs a median is taken of.
 const REPEATS: usize = 5;
@@ -76,8 +76,7 @@ fn arguments() -> (Vec<usize>, Vec<String>) {
 }
 
 fn read(files: &[String]) -> Vec<(String, Mesh)> {
-    let mesh = |file: &String| MeshFile::read(Path::new(file)).unwrap().mesh().clone();
-    files.iter().map(|file| (file.clone(), mesh(file))).collect()
+    files.iter().map(|file| (file.clone(), support::read_mesh(Path::new(file)))).collect()
 }
 
 /// Meshes on which corrections gain little unless they are accelerated by secant pairs.

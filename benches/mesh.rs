@@ -1,8 +1,8 @@
 //! Makes meshes of any size within seconds.
 #![allow(dead_code, reason = "each benchmark uses a part of it")]
 
+use crate::support::Mesh;
 use crate::support::{SplitMix64, lattice, perturb_random, renumbered};
-use gpu_smooth::Mesh;
 
 /// A perturbed lattice of `side` times `side` cells. Every fourth diagonal goes the other way, so that the number of
 /// neighbors varies as in a real mesh.

@@ -28,10 +28,9 @@
 //!
 //! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
-//! [`Outcome`]. [`MeshFile`] reads and writes files, and names their [`Groups`]; a [`Conversion`] writes a mesh in
-//! another format. An [`Interpolation`] takes data of vertices to their new positions. Vertices listed in
-//! [`Mesh::fixed`] do not move; [`MeshFile::fix`] and [`select`] help to list them. [`Measured`] evaluates triangles by
-//! each [`Measure`] of the field, and [`Quality`] compares a mesh before and after smoothing.
+//! [`Outcome`]. An [`Interpolation`] takes data of vertices to their new positions. Vertices listed in [`Mesh::fixed`] do
+//! not move; [`select`] helps to list them. [`Measured`] evaluates triangles by each [`Measure`] of the field, and
+//! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files.
 //!
 //! # Inside an application
 //! A [`Gpu`] can be made from the application's own device. A [`DeviceMesh`] then stays on the device as long as its
@@ -93,8 +92,6 @@ mod chart;
 mod choice;
 mod cpu;
 mod error;
-mod field_text;
-mod file;
 pub mod gpu;
 mod interpolate;
 mod layout;
@@ -122,11 +119,6 @@ pub mod validity {
     pub use crate::topology::{certify, infeasible};
 }
 
-/// The safe writing of files that [`MeshFile`] uses, for other files that an application writes.
-pub mod output {
-    pub use crate::file::{check, replace, same_file};
-}
-
 /// Compiles the code of docs/embedding.md with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/embedding.md")]
@@ -138,13 +130,7 @@ pub mod internal;
 
 pub use chart::Chart;
 pub use choice::Reason;
-pub use error::{
-    BadTriangle, GpuError, GroupError, Location, MeshError, ReadError, SmoothError, WriteError,
-};
-pub use file::{
-    AbandonedWrites, Conversion, Difference, Format, Group, Groups, MeshFile, Place, PointField,
-    Solution, View, abandon_writes,
-};
+pub use error::{BadTriangle, GpuError, MeshError, SmoothError};
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
     MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
@@ -157,7 +143,7 @@ pub use mesh::Mesh;
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
 pub use periodic::{Motion, Periodic};
-pub use precision::Precision;
+pub use precision::{Precision, Rounding};
 pub use quality::Quality;
 pub use run::{
     Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,

@@ -1,174 +1,82 @@
 //! The precision in which coordinates are stored.
 
-use crate::field_text::{field_error, rounded_to_field};
+use std::fmt;
+use std::hash::{Hash, Hasher};
 
-/// The precision with which the coordinates of a mesh are stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// The precision in which the coordinates of a mesh are stored.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single precision: about seven digits, as in files of 32-bit floats.
     Single,
     /// Double precision: about sixteen digits.
     #[default]
     Double,
-    /// Double precision in text of at most 20 characters, which is all that Abaqus and CalculiX read of a number: about
-    /// sixteen digits, fewer only for numbers near zero or very large ones.
-    Text20,
-    /// Text of at most 16 characters, as large fields of Nastran's bulk data have: 12 to 15 digits for numbers from 0.001 to 1e14,
-    /// 10 or more for most others.
-    Text16,
-    /// Text of at most 8 characters, as small fields of Nastran's bulk data have: 4 to 7 digits for numbers from 1e-10 to 1e10, 2 or 3
-    /// for most others.
-    Text8,
+    /// Numbers that an application rounds by a rule of its own, such as the text fields of a file format.
+    Custom(Rounding),
+}
+
+/// A rule that rounds coordinates to the numbers that an application can store.
+#[derive(Clone, Copy)]
+pub struct Rounding {
+    /// The name of the rule. Two rules with the same name are the same rule, and a checkpoint belongs to runs by the rule of
+    /// its name.
+    pub name: &'static str,
+    /// Returns the number that is read back after a number is stored. Rounding twice must give the same number as
+    /// rounding once.
+    pub round: fn(f64) -> f64,
+    /// Returns a bound on the error of `round` for numbers of at most this size. The smallest and the largest numbers may
+    /// have a larger error.
+    pub error: fn(f64) -> f64,
 }
 
 impl Precision {
-    /// Number of bytes of a number in binary.
-    pub(crate) fn bytes(self) -> usize {
-        match self {
-            Precision::Single => 4,
-            Precision::Double | Precision::Text20 | Precision::Text16 | Precision::Text8 => 8,
-        }
-    }
-
-    /// Returns the number that is read back after storing this one.
+    /// Returns the number that is read back after this number is stored.
     pub fn rounded(self, number: f64) -> f64 {
         match self {
             Precision::Single => f64::from(number as f32),
             Precision::Double => number,
-            Precision::Text20 => rounded_to_short(number),
-            Precision::Text16 => rounded_to_field(number, 16),
-            Precision::Text8 => rounded_to_field(number, 8),
+            Precision::Custom(rule) => (rule.round)(number),
         }
     }
 
-    /// Returns a bound on the error of rounding numbers of at most this size, unless they are the smallest or largest that there are.
+    /// Returns a bound on the error of rounding numbers of at most this size, except for the smallest and the largest numbers
+    /// of the precision.
     pub(crate) fn error(self, size: f64) -> f64 {
         match self {
             Precision::Single => f64::from(f32::EPSILON) * size,
             Precision::Double => f64::EPSILON * size,
-            // Fourteen digits, as negative numbers with an exponent of two digits have.
-            Precision::Text20 => 256.0 * f64::EPSILON * size,
-            Precision::Text16 => field_error(size, 16),
-            Precision::Text8 => field_error(size, 8),
+            Precision::Custom(rule) => (rule.error)(size),
         }
     }
 }
 
-/// How many characters a number may have.
-const MOST: usize = 20;
-/// The largest number that has so few characters, if rounding to their digits would give infinity.
-const LARGEST: f64 = 1.797_693_134_862_3e308;
-
-/// Returns the number that [`short_text`] stands for.
-fn rounded_to_short(number: f64) -> f64 {
-    // All digits of these have room: a sign, a point, one zero and seventeen digits.
-    if (0.01..1e16).contains(&number.abs()) || number == 0.0 || !number.is_finite() {
-        return number;
+impl PartialEq for Rounding {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
     }
-    let rounded = short_text(number).parse().unwrap_or(number);
-    if f64::is_infinite(rounded) { LARGEST.copysign(number) } else { rounded }
 }
 
-/// Writes a finite number with as many digits as fit, but no more than it needs. The first zero of a fraction is left out where it
-/// takes the room of a digit.
-pub(crate) fn short_text(number: f64) -> String {
-    let shortest = format!("{number:?}");
-    if shortest.len() <= MOST {
-        return shortest;
+impl Eq for Rounding {}
+
+impl Hash for Rounding {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
     }
-    let all = format!("{number:e}");
-    let digits = all.bytes().take_while(|&byte| byte != b'e').filter(u8::is_ascii_digit).count();
-    let fits = |text: &String| text.len() <= MOST;
-    (1..=digits)
-        .rev()
-        .find_map(|digits| {
-            let scientific = format!("{number:.*e}", digits - 1);
-            [plain(&scientific), Some(scientific)].into_iter().flatten().find(fits)
-        })
-        .unwrap_or(shortest)
 }
 
-/// Writes a number without an exponent and without a zero before the point. `None` if its size is one or more, or if it has many
-/// zeros after the point.
-fn plain(scientific: &str) -> Option<String> {
-    let (mantissa, exponent) = scientific.split_once('e')?;
-    let zeros =
-        usize::try_from(-1 - exponent.parse::<i32>().ok()?).ok().filter(|&zeros| zeros < MOST)?;
-    let (sign, mantissa) = match mantissa.strip_prefix('-') {
-        Some(mantissa) => ("-", mantissa),
-        None => ("", mantissa),
-    };
-    let digits = mantissa.replace('.', "");
-    let digits = digits.trim_end_matches('0');
-    Some(format!("{sign}.{}{digits}", "0".repeat(zeros)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_lose_digits_only_where_they_have_no_room() {
-        for (number, expected) in [
-            (0.25, "0.25"),
-            (-0.0, "-0.0"),
-            (1e-7, "1e-7"),
-            (-0.123_456_789_012_345_67, "-0.12345678901234566"),
-            (-0.012_345_678_901_234_567, "-.012345678901234567"),
-            (0.001_234_567_890_123_456_7, ".0012345678901234567"),
-            (-0.001_234_567_890_123_456_7, "-.001234567890123457"),
-            (-0.000_123_456_789_012_345_67, "-.000123456789012346"),
-            (-1.234_567_890_123_456_7e-5, "-1.23456789012346e-5"),
-            (1.234_567_890_123_456_7e-10, "1.23456789012346e-10"),
-            (-1.234_567_890_123_456_7e-100, "-1.234567890123e-100"),
-            (-1.234_567_890_123_456_7e16, "-1.23456789012346e16"),
-            (1.234_567_890_123_456_7e20, "1.234567890123457e20"),
-        ] {
-            let text = short_text(number);
-            assert_eq!(text, expected);
-            assert!(text.len() <= MOST, "{text}");
+/// Writes the name of the precision, which checkpoints hold.
+impl fmt::Debug for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Precision::Single => f.write_str("Single"),
+            Precision::Double => f.write_str("Double"),
+            Precision::Custom(rule) => rule.fmt(f),
         }
     }
+}
 
-    /// For numbers of all sizes: they fit, differ little, and do not change any more.
-    #[test]
-    fn rounded_numbers_fit_and_stay_as_they_are() {
-        let mut state = 1_u64;
-        let mut random = move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            state ^ (state >> 29)
-        };
-        let near = |exponent: i32, part: f64| part * 10f64.powi(exponent);
-        for round in 0..200_000 {
-            let number = match round % 2 {
-                0 => f64::from_bits(random()),
-                _ => {
-                    near((random() % 40) as i32 - 20, (random() >> 11) as f64 / 2f64.powi(53) - 0.5)
-                }
-            };
-            if !number.is_finite() {
-                continue;
-            }
-            let short = rounded_to_short(number);
-            let text = short_text(short);
-            assert!(text.len() <= MOST, "{text}");
-            assert_eq!(text.parse::<f64>().map(f64::to_bits), Ok(short.to_bits()), "{text}");
-            assert_eq!(rounded_to_short(short).to_bits(), short.to_bits(), "{number:e}");
-            let error = ((short - number) / number).abs();
-            let most = if (1e-99..1e100).contains(&number.abs()) { 5e-14 } else { 5e-13 };
-            assert!(
-                error <= most || number.abs() < 1e-290 || number == 0.0,
-                "{number:e} {error:e}"
-            );
-            if (0.001..1e16).contains(&number) {
-                assert_eq!(short, number);
-            }
-        }
-        assert_eq!([rounded_to_short(f64::MAX), rounded_to_short(f64::MIN)], [LARGEST, -LARGEST]);
-        assert!(
-            rounded_to_short(f64::NAN).is_nan() && rounded_to_short(f64::INFINITY).is_infinite()
-        );
+impl fmt::Debug for Rounding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
     }
 }

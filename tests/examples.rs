@@ -14,7 +14,7 @@ mod outside;
 
 use std::path::Path;
 
-use gpu_smooth::{MeshFile, Metric};
+use gpu_smooth::Metric;
 use moving_boundary::support;
 
 /// How bright a pixel is to the eye, from 0 to 255.
@@ -25,14 +25,14 @@ fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {
 #[test]
 fn embed_draws_a_better_mesh_within_the_same_boundary() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.node");
-    let file = MeshFile::read(&path).unwrap();
-    let [before, after] = embed::smooth_and_draw(file.mesh(), 5).unwrap();
+    let mesh = support::read_mesh(&path);
+    let [before, after] = embed::smooth_and_draw(&mesh, 5).unwrap();
 
-    let f = support::f_imr(file.mesh());
+    let f = support::f_imr(&mesh);
     let [before_f, after_f] = [&before, &after].map(|frame| frame.quality.of(Metric::Imr));
     assert!((f64::from(before_f) / f - 1.0).abs() < 1e-5, "{before_f} for {f}");
     assert!(after_f < 1.2 && [&before, &after].iter().all(|frame| frame.quality.inverted == 0));
-    let worst = support::worst_imr(file.mesh());
+    let worst = support::worst_imr(&mesh);
     assert!((f64::from(before.quality.worst_imr) / worst - 1.0).abs() < 1e-3, "{worst}");
     assert!(after.quality.worst_imr < 5.0);
 

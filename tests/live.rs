@@ -4,8 +4,10 @@
 #[allow(dead_code)]
 #[path = "../examples/live/main.rs"]
 mod live;
+#[path = "support/mod.rs"]
+mod support;
 
-use gpu_smooth::{Mesh, MeshFile, Metric, wgpu};
+use gpu_smooth::{Mesh, Metric, wgpu};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,7 +21,7 @@ fn root() -> &'static Path {
 }
 
 fn plate() -> Mesh {
-    MeshFile::read(&root().join("meshes/plate.node")).unwrap().mesh().clone()
+    support::read_mesh(&root().join("meshes/plate.node"))
 }
 
 /// The application, driven by a test in place of a user.

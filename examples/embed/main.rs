@@ -13,9 +13,9 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, Mesh, MeshFile, MeshSize, Metric, ObjectiveValues, Options, Sweeps,
-    VertexBuffer, wgpu,
+    DeviceMesh, Gpu, Mesh, MeshSize, Metric, ObjectiveValues, Options, Sweeps, VertexBuffer, wgpu,
 };
+use mesh_io::MeshFile;
 use picture::Picture;
 use wgpu::BufferUsages as Usage;
 use wgpu::util::DeviceExt;
@@ -31,7 +31,10 @@ fn main() -> Result<()> {
     let mesh = args.next().unwrap_or("meshes/plate.node".into());
     let out = args.next().unwrap_or(".".into());
 
-    let [before, after] = smooth_and_draw(MeshFile::read(&mesh)?.mesh(), 5)?;
+    let file = MeshFile::read(&mesh)?;
+    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
+    let mesh = Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
+    let [before, after] = smooth_and_draw(&mesh, 5)?;
     for (name, frame) in [("before.png", before), ("after.png", after)] {
         frame.write(&out.join(name))?;
         let ObjectiveValues { worst_imr, inverted, .. } = frame.quality;

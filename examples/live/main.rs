@@ -69,7 +69,10 @@ pub(crate) fn run(args: &[String]) -> Result<()> {
             path => mesh = path.to_owned(),
         }
     }
-    let mesh = gpu_smooth::MeshFile::read(mesh.as_ref())?.mesh().clone();
+    let file = mesh_io::MeshFile::read(mesh.as_ref())?;
+    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
+    let mesh = gpu_smooth::Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
+
     let script = match script {
         Some(path) => {
             let text = std::fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;

@@ -186,7 +186,7 @@ impl Chart {
     }
 
     /// The chart with the given mesh moved to other positions; see [`continued`](Self::continued).
-    pub(crate) fn moved(&self, given: &Mesh) -> Self {
+    pub fn moved(&self, given: &Mesh) -> Self {
         let mesh = Mesh { points: self.continued(&given.points), ..self.mesh.clone() };
         Self { mesh, given: given.clone(), ..self.clone() }
     }

@@ -3,4 +3,4 @@
 pub(crate) mod counting_sort;
 mod tasks;
 
-pub(crate) use tasks::{collect, for_each_chunk, for_each_part, map_parts, map_ranges, meanwhile};
+pub(crate) use tasks::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};

@@ -70,14 +70,6 @@ pub(crate) fn map_parts<P: Send, T: Send>(
     made.into_iter().flatten().collect()
 }
 
-/// Runs two tasks at the same time: `here` on this thread, and `there` on any.
-pub(crate) fn meanwhile(there: &mut (dyn FnMut() + Send), here: &mut dyn FnMut()) {
-    rayon::in_place_scope(|scope| {
-        scope.spawn(|_| there());
-        here();
-    });
-}
-
 /// Splits the numbers below `count` into ranges of `size` numbers each; the last may be shorter.
 pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(size.max(1)).map(move |start| start..count.min(start + size))

@@ -1,6 +1,6 @@
 //! Writes binary files in either byte order: numbers, and meshes as gmsh's `.msh`.
 
-use gpu_smooth::{Mesh, Precision};
+use super::{Mesh, Precision};
 
 /// A file under construction.
 pub struct Binary {

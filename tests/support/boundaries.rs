@@ -1,12 +1,12 @@
 //! Meshes of which the boundary or lines inside were taken elsewhere, and the vertices inside were not. All of them have a
 //! valid mesh.
 
+use super::Mesh;
 use super::check::held;
 use super::generate::triangulate;
 use super::outline::Outline;
 use super::rng::SplitMix64;
 use super::trig::on_circle;
-use gpu_smooth::Mesh;
 
 /// A mesh with the vertices that stay, those of the boundary and the fixed ones, moved.
 pub fn dragged(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {

@@ -1,6 +1,6 @@
 //! Checks of meshes and their quality, by plain formulas and exact predicates, independent of the library.
 
-use gpu_smooth::Mesh;
+use super::Mesh;
 use robust::{Coord, orient2d};
 use std::collections::BTreeMap;
 

@@ -1,10 +1,10 @@
 //! Makes meshes worse without inverting a triangle.
 
+use super::Mesh;
 use super::check::{held, imr, is_ccw, orient, squared_distance};
 use super::generate::lattice;
 use super::rng::SplitMix64;
 use super::trig::sin_turns;
-use gpu_smooth::Mesh;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

@@ -1,9 +1,9 @@
 //! Makes meshes: lattices, graded rings, hubs, layers, and triangulations of an outline.
 
+use super::Mesh;
 use super::check::{area, boundary, is_ccw, is_valid, min_angle};
 use super::outline::Outline;
 use super::trig::{on_circle, sin_turns};
-use gpu_smooth::Mesh;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };

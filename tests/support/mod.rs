@@ -17,6 +17,10 @@ pub mod tangle;
 pub mod trig;
 pub mod write;
 
+/// The mesh of the library that is tested.
+pub use gpu_smooth::Mesh;
+pub use mesh_io::Precision;
+
 pub use binary::{Binary, write_msh22_binary, write_msh41_binary};
 pub use check::{
     area, boundary, edge_uses, f_imr, is_ccw, is_valid, min_angle, mover_count, orientations,
@@ -30,3 +34,14 @@ pub use recipe::Recipe;
 pub use regions::write_regions;
 pub use rng::SplitMix64;
 pub use write::{triangle_text, write_msh22, write_msh41, write_triangle};
+
+/// Reads a mesh file. Vertices of elements other than triangles and vertices between regions are fixed.
+pub fn read_mesh(path: &std::path::Path) -> Mesh {
+    mesh_of(&mesh_io::MeshFile::read(path).unwrap())
+}
+
+/// Returns the mesh of a file. Vertices of elements other than triangles and vertices between regions are fixed.
+pub fn mesh_of(file: &mesh_io::MeshFile) -> Mesh {
+    let fixed = [file.constraints().vertices.clone(), file.interface_vertices()].concat();
+    Mesh { points: file.points().to_vec(), triangles: file.triangles().to_vec(), fixed }
+}

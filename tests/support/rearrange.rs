@@ -1,7 +1,7 @@
 //! The same mesh in another order, winding or position: smoothing must not depend on these.
 
+use super::Mesh;
 use super::rng::SplitMix64;
-use gpu_smooth::Mesh;
 
 /// Reverses the winding of about half of the triangles, and starts each at a random corner.
 pub fn shuffled_windings(mesh: &Mesh, seed: u64) -> Mesh {

@@ -1,7 +1,7 @@
 //! The command line of `examples/make_mesh.rs`, here so that a test can run the command that a mesh names as its origin.
 
+use super::Mesh;
 use super::{Outline, distort_smooth, perturb_random, tangle, triangle_text, triangulate};
-use gpu_smooth::Mesh;
 use std::path::PathBuf;
 
 const USAGE: &str = "usage: make_mesh OUTLINE OUT_STEM [options]

@@ -1,7 +1,7 @@
 //! A mesh of several regions in every format.
 
+use super::Mesh;
 use super::{Binary, write_msh22, write_msh41};
-use gpu_smooth::Mesh;
 use std::fmt::Write;
 
 /// The files of one mesh, as name and bytes. The file by which the mesh is opened comes first.

@@ -1,10 +1,10 @@
 //! Tangles meshes in the ways of the literature on untangling. Boundary and fixed vertices stay.
 
+use super::Mesh;
 use super::check::{area, held};
 use super::generate::graded;
 use super::rng::SplitMix64;
 use super::trig::on_circle;
-use gpu_smooth::Mesh;
 
 /// The mesh with the map `to` applied to all vertices that may move.
 pub fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {

@@ -1,7 +1,7 @@
 //! Meshes as text. Numbers have the fewest digits that read back to the same bits.
 
+use super::Mesh;
 use super::check::boundary;
-use gpu_smooth::Mesh;
 use std::fmt::Write;
 use std::path::Path;
 use std::{fs, io};

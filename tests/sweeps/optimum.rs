@@ -2,7 +2,7 @@
 
 use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
-use gpu_smooth::{MeshFile, Method, Metric, Options, Sharpness, Smoother, Stop};
+use gpu_smooth::{Method, Metric, Options, Sharpness, Smoother, Stop};
 
 #[test]
 fn a_perturbed_lattice_becomes_equilateral_again() {
@@ -105,10 +105,10 @@ const BEST_BY_EDGE: [(&str, f64); 7] = [
 fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
     for (mesh, best) in BEST_BY_EDGE {
         let file = format!("{}/meshes/{mesh}.node", env!("CARGO_MANIFEST_DIR"));
-        let file = MeshFile::read(file.as_ref()).unwrap();
-        let smoother = Smoother::new(file.mesh()).unwrap();
+        let read = support::read_mesh(file.as_ref());
+        let smoother = Smoother::new(&read).unwrap();
         let worst = |points: &[[f64; 2]]| smoother.quality(points).unwrap().worst_imr;
-        let before = worst(&file.mesh().points);
+        let before = worst(&read.points);
         for backend in backends() {
             let on = format!("{mesh} on the {}", name(backend));
             let ends = |tolerance| {

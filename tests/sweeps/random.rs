@@ -10,9 +10,10 @@
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
 use gpu_smooth::{
-    Backend, Derivatives, Desired, Goal, Mesh, MeshError, MeshFile, Method, Options, Outcome,
-    Precision, Sharpness, SmoothError, Smoother,
+    Backend, Derivatives, Desired, Goal, Mesh, MeshError, Method, Options, Outcome, Precision,
+    Sharpness, SmoothError, Smoother,
 };
+use mesh_io::MeshFile;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 /// A random number from 10^low to 10^high, uniform in its logarithm.
@@ -259,11 +260,11 @@ fn check_file(mesh: &Mesh, outcome: &Outcome) {
     std::fs::write(input.with_extension("ele"), ele).unwrap();
     let file = MeshFile::read(&input).unwrap();
     let bits = |points: &[[f64; 2]]| points.iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
-    assert_eq!(bits(&file.mesh().points), bits(&mesh.points), "the mesh is not as written");
+    assert_eq!(bits(file.points()), bits(&mesh.points), "the mesh is not as written");
     file.write(&output, &outcome.points).unwrap();
     let written = MeshFile::read(&output).unwrap();
-    assert_eq!(bits(&written.mesh().points), bits(&outcome.points), "the result is not as written");
-    assert_eq!(written.mesh().triangles, mesh.triangles);
+    assert_eq!(bits(written.points()), bits(&outcome.points), "the result is not as written");
+    assert_eq!(written.triangles(), mesh.triangles);
 }
 
 fn setting(name: &str, default: u64) -> u64 {

@@ -1,10 +1,7 @@
 //! The mesh on the device, everything that is bound to it, and its frames.
 
 use gpu_smooth::wgpu::{self, BufferUsages as Usage};
-use gpu_smooth::{
-    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Method, ObjectiveValues,
-    Options, Readback, SmoothError, Sweeps, UntanglingSweeps, VertexBuffer,
-};
+use gpu_smooth::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Method, ObjectiveValues, Options, Readback, SmoothError, Sweeps, UntanglingSweeps, VertexBuffer};
 
 use crate::plate::{Plate, Random};
 

@@ -14,14 +14,18 @@ mod scene;
 use std::path::PathBuf;
 
 use gpu_smooth::wgpu;
-use gpu_smooth::{Gpu, GpuError, Mesh, MeshFile, MeshSize, Topology, VertexBuffer, signed_area};
+use gpu_smooth::{Gpu, GpuError, Mesh, MeshSize, Topology, VertexBuffer, signed_area};
+use mesh_io::MeshFile;
 use scene::{STRIDE, Scene, Seen};
 
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 fn main() -> Result<()> {
     let path = std::env::args().nth(1).map_or("meshes/plate.node".into(), PathBuf::from);
-    for (act, told) in acts(MeshFile::read(&path)?.mesh())? {
+    let file = MeshFile::read(&path)?;
+    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
+    let mesh = Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
+    for (act, told) in acts(&mesh)? {
         println!("{act}: {told:?}");
     }
     Ok(())

@@ -1,0 +1,275 @@
+//! Words what is wrong with a mesh in the terms of its file.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{BadTriangle, Crossing, HangingNode, MeshError, Topology};
+use mesh_io::{Format, Location, Place};
+use serde::Serialize;
+use std::collections::HashSet;
+
+/// How many bad triangles are listed on the terminal.
+pub(crate) const TOLD: usize = 10;
+
+/// An inverted or flat triangle in the terms of its file.
+#[derive(Serialize)]
+pub(crate) struct BadTriangleReport {
+    /// The file's number or tag for the triangle.
+    triangle: u64,
+    file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    /// Offset of the triangle in a binary file, which has no lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    byte: Option<usize>,
+    /// The file's numbers or tags for the triangle's vertices, in the order of the file.
+    vertices: [u64; 3],
+    /// `inverted` or `flat`.
+    problem: &'static str,
+    #[serde(skip)]
+    place: Place,
+}
+
+impl BadTriangleReport {
+    /// Names the triangle, its vertices and its problem, without its place in the file.
+    fn statement(&self) -> String {
+        let Self { triangle, vertices: [a, b, c], problem, .. } = self;
+        format!("triangle {triangle} (vertices {a}, {b}, {c}) is {problem}")
+    }
+}
+
+/// Finds all of these bad triangles in their file at once.
+pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTriangleReport> {
+    // The order of the file: the library may have reversed windings.
+    let corners = |bad: &BadTriangle| file.mesh().triangles[bad.triangle];
+    let places = file.source.triangle_places(bad.iter().map(|bad| bad.triangle));
+    let names = file.vertex_places(bad.iter().flat_map(corners));
+    let one = |(bad, place): (&BadTriangle, Place)| BadTriangleReport {
+        triangle: place.label,
+        file: place.path.display().to_string(),
+        line: match place.location {
+            Location::Line(line) => Some(line),
+            Location::Byte(_) => None,
+        },
+        byte: match place.location {
+            Location::Line(_) => None,
+            Location::Byte(byte) => Some(byte),
+        },
+        vertices: corners(bad).map(|v| names[&v].label),
+        problem: bad.problem(),
+        place,
+    };
+    bad.iter().zip(places.into_values()).map(one).collect()
+}
+
+/// Lists the first bad triangles, one a line. The last line counts the rest of `count`; `all` names the option that
+/// lists them.
+pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> String {
+    let line = |bad: &BadTriangleReport| format!("\n  {}: {}", bad.place, bad.statement());
+    let mut text: String = first.iter().take(TOLD).map(line).collect();
+    if count > TOLD {
+        text.push_str(&format!("\n  and {} more; {all} lists all", count - TOLD));
+    }
+    text
+}
+
+/// Words that edges cross and cannot move, tells the remedy, and lists the first pairs, one a line; `None` if there are none.
+pub(crate) fn crossings(
+    file: &LoadedMesh,
+    topology: &Topology<'_>,
+    remedy: &str,
+) -> Option<String> {
+    let found = topology.crossings(&file.mesh().points, TOLD + 1).ok()?;
+    let places = file.vertex_places(found.iter().flat_map(|crossing| crossing.edges).flatten());
+    let line = |crossing: &Crossing| {
+        let [[a, b], [c, d]] = crossing.edges;
+        let place = &places[&a];
+        let [a, b, c, d] = [a, b, c, d].map(|v| places[&v].label);
+        format!(
+            "\n  {place}: the edge between vertices {a} and {b} crosses that between {c} and {d}"
+        )
+    };
+    let list: String = found.iter().take(TOLD).map(line).collect();
+    let more = if found.len() > TOLD { "\n  and more" } else { "" };
+    let all = "edges between vertices that are not free, such as boundary edges, cross: triangles overlap there wherever free vertices are";
+    (!found.is_empty()).then(|| format!("{all}{remedy}{list}{more}"))
+}
+
+/// Whether triangles seem inverted because they reach across the line where longitudes start again.
+pub(crate) fn are_across(file: &LoadedMesh, bad: &[BadTriangle]) -> bool {
+    let points = &file.mesh().points;
+    let is_far = |bad: &BadTriangle| {
+        let x = bad.vertices.map(|v| points[v as usize][0]);
+        let (least, most) = x.iter().fold((x[0], x[0]), |(a, b), &x| (a.min(x), b.max(x)));
+        most - least >= 180.0
+    };
+    file.chart().is_none()
+        && points.iter().all(|&[x, y]| x.abs() <= 360.0 && y.abs() <= 90.0)
+        && bad.iter().any(is_far)
+}
+
+/// Returns a triangle of a part of the mesh without boundary, if there is one.
+fn closed_part(file: &LoadedMesh) -> Option<usize> {
+    Topology::new(file.mesh()).ok().filter(|_| file.chart().is_none())?.closed_part()
+}
+
+/// Words a remark on vertices that hang on edges of other triangles, if there are such.
+pub(crate) fn hanging(file: &LoadedMesh, nodes: &[HangingNode]) -> Option<String> {
+    let HangingNode { vertex, edge: [a, b] } = *nodes.first()?;
+    let names = file.vertex_places([vertex, a, b]);
+    let place = &names[&vertex];
+    let [v, a, b] = [vertex, a, b].map(|v| names[&v].label);
+    let first = format!(
+        "vertex {v} ({place}) is inside the edge between vertices {} and {}",
+        a.min(b),
+        a.max(b)
+    );
+    let open = "the mesh is open there, and both sides stay as boundary. Cut the triangles at such edges in two";
+    Some(match nodes.len() {
+        1 => format!("1 hanging node: {first}; {open}"),
+        n => format!("{n} hanging nodes, such as: {first}; {open}"),
+    })
+}
+
+/// Returns the coordinate that is the same at all vertices, and its value, if there is one. The mesh then stands
+/// upright on the plane of x and y.
+fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
+    let first = points.first()?;
+    let is_constant = |k: usize| points.iter().all(|point| point[k] == first[k]);
+    ['x', 'y']
+        .into_iter()
+        .zip(0..2)
+        .find(|&(_, k)| is_constant(k))
+        .map(|(name, k)| (name, first[k]))
+}
+
+/// Whether two of these triangles have the same vertices.
+fn has_twins(file: &LoadedMesh, triangles: &[usize]) -> bool {
+    let corners = |&triangle: &usize| {
+        let mut corners = *file.mesh().triangles.get(triangle)?;
+        corners.sort_unstable();
+        Some(corners)
+    };
+    let mut seen = HashSet::new();
+    triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
+}
+
+/// That nothing of a file is free. On the sphere, a mesh may have copies of vertices, which the file has not.
+pub(crate) fn nothing_free(file: &LoadedMesh) -> MeshError {
+    MeshError::NothingFree { vertices: file.source.points().len() }
+}
+
+/// File, place, problem and remedy, in one line unless several triangles are to be listed.
+pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> String {
+    let name = |v: u32| file.vertex_place(v).label;
+    match *error {
+        MeshError::Infeasible { ref triangles } => {
+            if let Some((axis, value)) = constant(&file.mesh().points) {
+                return format!(
+                    "{}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed. \
+                     Turn the mesh into that plane",
+                    file.source.path().display()
+                );
+            }
+            let is_across = are_across(file, triangles);
+            if !is_across && let Some(triangle) = closed_part(file) {
+                return mesh_error(file, &MeshError::Closed { triangle });
+            }
+            let remedy = if is_across {
+                "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again, as at 180 degrees"
+            } else if file.source.data_names().iter().any(|name| name == "z") {
+                "Untangle the mesh first: --untangle. But if this is a surface in space that folds over itself in the plane of x and y, it cannot be smoothed"
+            } else {
+                "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
+            };
+            let count = triangles.len();
+            match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
+                [] => format!("{}: {error}. {remedy}", file.source.path().display()),
+                [one] if count == 1 => format!("{}: {}. {remedy}", one.place, one.statement()),
+                first => format!(
+                    "{}: {count} triangles are inverted or flat. {remedy}{}",
+                    first[0].file,
+                    list(first, count, "--report FILE")
+                ),
+            }
+        }
+        MeshError::Closed { triangle } => {
+            let place = file.source.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space. \
+                 Only meshes of the plane of x and y are smoothed",
+                place.label
+            )
+        }
+        MeshError::EdgeOfThree { edge, ref triangles } => {
+            let places = file.source.triangle_places(triangles.iter().copied());
+            let labels: Vec<_> = places.values().map(|place| place.label.to_string()).collect();
+            let mut ends = edge.map(name);
+            ends.sort_unstable();
+            let [a, b] = ends;
+            let remedy = match (has_twins(file, triangles), file.source.format()) {
+                (true, Format::Gmsh22 | Format::Gmsh22Binary) => {
+                    "Some of them have the same vertices: remove these, or save as gmsh 4.1 if version 2.2 lists triangles once for each physical group"
+                }
+                (true, _) => "Some of them have the same vertices: remove these",
+                (false, _) => "In a 2D mesh an edge has one or two: remove the others",
+            };
+            format!(
+                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). {remedy}",
+                places.values().last().map(ToString::to_string).unwrap_or_default(),
+                labels.len(),
+                labels.join(", ")
+            )
+        }
+        MeshError::NotFinite { vertex } => {
+            format!("{}: {error}. Correct it", file.vertex_place(vertex))
+        }
+        MeshError::NothingFree { .. } => format!(
+            "{}: {}: all are on the boundary, on constraint lines, between regions or of other \
+             elements. {}",
+            file.source.path().display(),
+            nothing_free(file),
+            match file.interface_vertices() {
+                [] =>
+                    "There is nothing to smooth, unless --slide lets some of them move along the boundary",
+                _ => "Let those between regions move: --free-interfaces",
+            }
+        ),
+        MeshError::OverlappingStar { vertex, turns } => format!(
+            "{}: the triangles around vertex {} overlap: they wind {turns} times around it. Only meshes that lie \
+             flat are smoothed: separate the layers there",
+            file.vertex_place(vertex),
+            name(vertex)
+        ),
+        MeshError::BeyondPrecision { triangle, metric } => {
+            let place = file.source.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
+                 {metric} cannot judge it. Open it with --untangle if one of its vertices is free, correct it, or smooth by \
+                 area or rms first",
+                place.label
+            )
+        }
+        MeshError::Target { vertex, problem } => {
+            let vertex = vertex as u32;
+            format!("{}: vertex {}: {problem}", file.vertex_place(vertex), name(vertex))
+        }
+        MeshError::Pole { triangle } => {
+            let place = file.source.triangle_place(triangle);
+            format!(
+                "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east. \
+                 Smooth the mesh in a projection around that pole, or with a vertex at the pole itself",
+                place.label
+            )
+        }
+        MeshError::OutOfRange { .. } => {
+            format!("{}: {error}. Write the mesh in another unit", file.source.path().display())
+        }
+        // The readers refuse such meshes, and the command does not ask for such runs.
+        MeshError::Empty
+        | MeshError::TooLarge { .. }
+        | MeshError::IndexOutOfRange { .. }
+        | MeshError::RepeatedVertex { .. }
+        | MeshError::PointCount { .. }
+        | MeshError::ValueCount { .. }
+        | MeshError::BoundNotANumber => format!("{}: {error}", file.source.path().display()),
+    }
+}

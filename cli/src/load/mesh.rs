@@ -1,0 +1,314 @@
+//! A mesh file with the mesh that is smoothed.
+
+use gpu_smooth::{Chart, Mesh, MeshError, Periodic, Precision, Rounding};
+use mesh_io::{MeshFile, Place, PointField, WriteError};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+
+/// A mesh file and the mesh that is made from its facts: the vertices of constraints and those between regions are fixed, and
+/// longitudes may be continued across the date line.
+pub(crate) struct LoadedMesh {
+    /// The file. It never changes.
+    pub(crate) source: MeshFile,
+    /// The mesh to smooth. Behind the vertices of the file stand copies that the chart made.
+    mesh: Mesh,
+    /// The continued mesh in longitude and latitude; `None` if no triangle is across the date line or at a pole.
+    chart: Option<Chart>,
+    /// Vertices that are fixed only because they lie between regions. They are the last ones of `mesh.fixed`.
+    interfaces: Vec<u32>,
+    has_free_interfaces: bool,
+    /// Vertices that neither move nor slide.
+    anchored: Vec<u32>,
+}
+
+impl LoadedMesh {
+    /// Makes the mesh of a file: constrained vertices and vertices between regions are fixed.
+    pub(crate) fn new(source: MeshFile) -> Self {
+        let constraints = source.constraints();
+        let (mut fixed, anchored) = (constraints.vertices.clone(), constraints.anchored.clone());
+        let mut interfaces = source.interface_vertices();
+        let mut is_fixed = vec![false; source.points().len()];
+        fixed.iter().for_each(|&v| is_fixed[v as usize] = true);
+        interfaces.retain(|&v| !is_fixed[v as usize]);
+        fixed.extend_from_slice(&interfaces);
+        let (points, triangles) = (source.points().to_vec(), source.triangles().to_vec());
+        let mesh = Mesh { points, triangles, fixed };
+        Self { source, mesh, chart: None, interfaces, has_free_interfaces: false, anchored }
+    }
+
+    /// The mesh to smooth.
+    pub(crate) fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The continued mesh in longitude and latitude, if the mesh needs one.
+    pub(crate) fn chart(&self) -> Option<&Chart> {
+        self.chart.as_ref()
+    }
+
+    /// The precision of coordinates in the file.
+    pub(crate) fn precision(&self) -> Precision {
+        precision(self.source.precision())
+    }
+
+    /// Takes coordinates as longitude and latitude in degrees, and continues longitudes across the line where they start
+    /// again.
+    ///
+    /// # Errors
+    /// The errors of [`Chart::new`]; then the mesh is unchanged.
+    pub(crate) fn lay_out_on_sphere(&mut self) -> Result<(), MeshError> {
+        if self.chart.is_none()
+            && let Some(chart) = Chart::new(&self.mesh, self.precision())?
+        {
+            self.take_chart(chart);
+        }
+        Ok(())
+    }
+
+    /// Continues the longitudes of another file of this mesh, each vertex nearest to its place here. Does nothing if this
+    /// mesh has no chart, or if the other mesh has another number of vertices.
+    pub(crate) fn lay_out_likewise(&self, other: &mut LoadedMesh) {
+        let Some(chart) = self.chart() else { return };
+        if other.chart.is_none() && other.mesh.points.len() == chart.original().points.len() {
+            other.take_chart(chart.moved(&other.mesh));
+        }
+    }
+
+    fn take_chart(&mut self, chart: Chart) {
+        self.anchored.extend_from_slice(chart.held());
+        self.mesh.points.clone_from(&chart.mesh().points);
+        self.mesh.triangles.clone_from(&chart.mesh().triangles);
+        self.chart = Some(chart);
+    }
+
+    /// The vertices that are fixed only because they lie between regions, ascending. Empty after
+    /// [`free_interfaces`](Self::free_interfaces).
+    pub(crate) fn interface_vertices(&self) -> &[u32] {
+        &self.interfaces
+    }
+
+    /// Lets vertices between regions move, unless they are fixed for another reason.
+    pub(crate) fn free_interfaces(&mut self) {
+        self.has_free_interfaces = true;
+        let held = std::mem::take(&mut self.interfaces);
+        self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
+    }
+
+    /// Returns the vertices between regions that are fixed for another reason too, ascending.
+    pub(crate) fn held_interface_vertices(&self) -> Vec<u32> {
+        let mut is_held = vec![false; self.mesh.points.len()];
+        self.mesh.fixed.iter().for_each(|&v| is_held[v as usize] = true);
+        self.interfaces.iter().for_each(|&v| is_held[v as usize] = false);
+        let mut between = self.source.interface_vertices();
+        between.retain(|&v| is_held[v as usize]);
+        between
+    }
+
+    /// Returns the edges along which vertices inside the mesh may slide: lines of the file, and edges between regions unless
+    /// these may move.
+    pub(crate) fn lines(&self) -> Vec<[u32; 2]> {
+        let mut lines = self.source.constraints().lines.clone();
+        if !self.has_free_interfaces {
+            lines.extend(self.source.interface_edges());
+        }
+        lines
+    }
+
+    /// The vertices that neither move nor slide.
+    pub(crate) fn held_vertices(&self) -> &[u32] {
+        &self.anchored
+    }
+
+    /// Returns the periodic pairs of the file.
+    pub(crate) fn periodic(&self) -> Vec<Periodic> {
+        let pairs = self.source.constraints().periodic.iter();
+        pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: p.motion }).collect()
+    }
+
+    /// Fixes these vertices. They neither move nor slide. In any order, with repeats.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then the mesh is unchanged.
+    pub(crate) fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let held = self.marked(vertices)?;
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Fixes all vertices but these. Of these vertices, those that are fixed already stay fixed.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then the mesh is unchanged.
+    pub(crate) fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let mut held = self.marked(vertices)?;
+        held.iter_mut().for_each(|held| *held = !*held);
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Returns for each vertex of the mesh whether the list has the vertex.
+    fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
+        let count = self.mesh.points.len();
+        let mut marked = vec![false; count];
+        for &vertex in vertices {
+            *marked.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange {
+                triangle: None,
+                vertex,
+                vertices: count,
+            })? = true;
+        }
+        Ok(marked)
+    }
+
+    /// Fixes the vertices that are marked in `held`, for another reason than lying between regions.
+    fn hold(&mut self, mut held: Vec<bool>) {
+        let all = (0..).zip(&held).filter(|&(_, &held)| held);
+        self.anchored.extend(all.map(|(vertex, _)| vertex));
+        let fixed = &mut self.mesh.fixed;
+        fixed.truncate(fixed.len() - self.interfaces.len());
+        self.interfaces.retain(|&vertex| !held[vertex as usize]);
+        // Vertices that are fixed already must not be listed again.
+        fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
+        fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
+        fixed.extend_from_slice(&self.interfaces);
+    }
+
+    /// Finds where the file has the coordinates of a vertex. A copy of the chart stands where its vertex stands.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub(crate) fn vertex_place(&self, index: u32) -> Place {
+        self.source.vertex_place(self.owner(index))
+    }
+
+    /// Finds where the file has the coordinates of vertices, in one search of the file. Vertices that do not exist are left
+    /// out.
+    pub(crate) fn vertex_places(
+        &self,
+        indices: impl IntoIterator<Item = u32>,
+    ) -> BTreeMap<u32, Place> {
+        let wanted: Vec<u32> = indices.into_iter().collect();
+        let found = self.source.vertex_places(wanted.iter().map(|&v| self.owner(v)));
+        let place = |&v: &u32| Some((v, found.get(&self.owner(v))?.clone()));
+        wanted.iter().filter_map(place).collect()
+    }
+
+    /// Returns the vertex of the file that a vertex of the mesh stands for.
+    fn owner(&self, v: u32) -> u32 {
+        match self.chart().zip((v as usize).checked_sub(self.source.points().len())) {
+            Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
+            None => v,
+        }
+    }
+
+    /// Returns points of the mesh as points of the file: without copies, with longitudes in the file's range.
+    pub(crate) fn given<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
+        match self.chart() {
+            // A list of another length is refused when it is written.
+            Some(chart) if points.len() == self.mesh.points.len() => chart.given(points).into(),
+            _ => points.into(),
+        }
+    }
+
+    /// Writes the file with the vertices of the mesh at `points` and with the numbers of `fields`.
+    ///
+    /// # Errors
+    /// The errors of [`MeshFile::write_with`].
+    pub(crate) fn write_with(
+        &self,
+        path: &Path,
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
+        self.source.write_with(path, &self.given(points), fields)
+    }
+
+    /// Writes the file to a stream, as [`write_with`](Self::write_with) does to a path. `name` stands for the stream in messages.
+    ///
+    /// # Errors
+    /// The errors of [`MeshFile::write_to_with`].
+    pub(crate) fn write_to_with(
+        &self,
+        name: &Path,
+        out: &mut (dyn Write + Send),
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
+        self.source.write_to_with(name, out, &self.given(points), fields)
+    }
+}
+
+/// Converts the precision of a file format to the smoother's.
+pub(crate) fn precision(stored: mesh_io::Precision) -> Precision {
+    use mesh_io::Precision as Stored;
+    /// The rule of a precision, with functions that know the precision by type.
+    macro_rules! rule {
+        ($variant:ident) => {
+            Precision::Custom(Rounding {
+                name: stringify!($variant),
+                round: |number| Stored::$variant.rounded(number),
+                error: |size| Stored::$variant.error(size),
+            })
+        };
+    }
+    match stored {
+        Stored::Single => Precision::Single,
+        Stored::Double => Precision::Double,
+        Stored::Text20 => rule!(Text20),
+        Stored::Text16 => rule!(Text16),
+        Stored::Text8 => rule!(Text8),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of two regions with a vertex in its middle.
+    const VTK: &str = "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET UNSTRUCTURED_GRID\n\
+        POINTS 5 double\n0 0 0 1 0 0 1 1 0 0 1 0 .4 .5 0\n\
+        CELLS 4 16\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\nCELL_TYPES 4\n5\n5\n5\n5\n\
+        CELL_DATA 4\nSCALARS region int 1\nLOOKUP_TABLE default\n1\n1\n2\n2\n";
+
+    fn read() -> LoadedMesh {
+        let file = MeshFile::from_bytes(Path::new("in.vtk"), VTK.into());
+        LoadedMesh::new(file.unwrap())
+    }
+
+    #[test]
+    fn vertices_that_are_fixed_by_hand_are_not_between_regions() {
+        assert_eq!((&read().mesh().fixed[..], read().interface_vertices()), (&[4][..], &[4][..]));
+        for free_first in [false, true] {
+            let mut mesh = read();
+            if free_first {
+                mesh.free_interfaces();
+            }
+            mesh.fix(&[4, 1, 4]).unwrap();
+            assert_eq!(mesh.mesh().fixed, [1, 4]);
+            assert!(mesh.interface_vertices().is_empty());
+            mesh.free_interfaces();
+            assert_eq!(mesh.mesh().fixed, [1, 4]);
+        }
+        let mut mesh = read();
+        mesh.fix(&[1]).unwrap();
+        mesh.fix_all_but(&[0, 4]).unwrap();
+        assert_eq!(
+            (&mesh.mesh().fixed[..], mesh.interface_vertices()),
+            (&[1, 2, 3, 4][..], &[4][..])
+        );
+        mesh.free_interfaces();
+        assert_eq!(mesh.mesh().fixed, [1, 2, 3]);
+        assert!(mesh.fix(&[0, 5]).is_err() && mesh.fix_all_but(&[5]).is_err());
+        assert_eq!(mesh.mesh().fixed, [1, 2, 3]);
+    }
+
+    #[test]
+    fn precisions_of_files_round_and_are_told_apart_by_name() {
+        let text8 = precision(mesh_io::Precision::Text8);
+        assert_eq!(text8.rounded(0.123_456_789), mesh_io::Precision::Text8.rounded(0.123_456_789));
+        assert_ne!(text8, precision(mesh_io::Precision::Text16));
+        assert_eq!(format!("{text8:?}"), "Text8");
+    }
+}

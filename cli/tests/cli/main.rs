@@ -1,0 +1,197 @@
+//! The `gpu-smooth` command as a user meets it: run as a process, and judged by its output and the files it leaves.
+
+#[path = "../../../tests/support/mod.rs"]
+mod support;
+
+mod adapters;
+mod arguments;
+mod bench;
+mod browser;
+mod compare;
+mod convert;
+mod destinations;
+#[cfg(target_os = "linux")]
+mod drivers;
+mod files;
+mod formats;
+mod groups;
+mod html;
+mod interpolate;
+mod interrupt;
+mod killed;
+mod long;
+mod many;
+mod moving;
+mod options;
+mod output;
+mod periodic;
+mod picture;
+mod plate;
+mod progress;
+mod quality;
+mod refusals;
+mod regions;
+mod report;
+mod schemes;
+mod shell;
+mod slide;
+mod sphere;
+mod streams;
+mod targets;
+mod untangle;
+mod worst;
+
+use gpu_smooth::Mesh;
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use support::check;
+use tempfile::TempDir;
+
+/// The exit code and output of a finished process.
+struct Run {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl Run {
+    /// Checks that the run succeeded and printed nothing on standard error, except for progress on a slow machine.
+    #[track_caller]
+    fn clean(self) -> Self {
+        let remarks: Vec<&str> = self.err.lines().filter(|line| !is_progress(line)).collect();
+        assert_eq!((self.code, &remarks[..]), (Some(0), &[][..]), "{}", self.out);
+        self
+    }
+
+    /// Checks that the run failed with one line, perhaps with an indented list under it, that contains each of the parts.
+    #[track_caller]
+    fn refused(self, parts: &[&str]) -> Self {
+        let Self { code, out, err } = &self;
+        assert_eq!((*code, out.as_str()), (Some(1), ""), "{err}");
+        assert!(err.starts_with("gpu-smooth: error: "), "{err}");
+        assert!(err.lines().skip(1).all(|line| line.starts_with("  ")), "{err}");
+        assert_holds(err, parts);
+        self
+    }
+}
+
+/// Whether a line on standard error reports progress.
+fn is_progress(line: &str) -> bool {
+    let starts =
+        ["reading", "preparing", "smoothing", "writing", "sweep ", "finding the optimum: "];
+    let text = line.strip_prefix("gpu-smooth: ").unwrap_or_default();
+    starts.iter().any(|start| text.starts_with(start))
+}
+
+#[track_caller]
+fn assert_holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "no {part:?} in:\n{text}");
+    }
+}
+
+fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gpu-smooth"));
+    // If the variable is not set, some drivers complain on standard error.
+    command.env("XDG_RUNTIME_DIR", std::env::temp_dir()).stdin(Stdio::null());
+    command
+}
+
+fn finish(command: &mut Command) -> Run {
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Run { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// A temporary folder of a test, in which the command runs.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = Self(TempDir::new().unwrap());
+        for (name, text) in files {
+            fs::write(folder.path(name), text).unwrap();
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn mesh(&self, name: &str) -> Mesh {
+        support::read_mesh(&self.path(name))
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    fn command(&self) -> Command {
+        let mut command = command();
+        command.current_dir(&self.0);
+        command
+    }
+
+    fn run<S: AsRef<OsStr>>(&self, args: impl IntoIterator<Item = S>) -> Run {
+        finish(self.command().args(args))
+    }
+
+    /// Runs the command with these arguments, separated by spaces.
+    fn line(&self, args: &str) -> Run {
+        self.run(args.split_whitespace())
+    }
+
+    /// Every file in the folder with its bytes.
+    fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut files: Vec<_> = fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .map(|path| (path.clone(), fs::read(&path).unwrap_or_default()))
+            .collect();
+        files.sort();
+        files
+    }
+}
+
+/// A small mesh with most of its vertices in bad places.
+fn disturbed() -> Mesh {
+    let mut mesh = support::lattice(10, 8);
+    // Flattened, so that not all triangles can become equilateral.
+    mesh.points.iter_mut().for_each(|point| point[1] *= 0.625);
+    support::perturb_random(&mesh, 1.0, 5)
+}
+
+/// A folder with the small mesh of [`disturbed`], as `in.node` and `in.ele`.
+fn small() -> Folder {
+    let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
+    Folder::new(&[("in.node", &node), ("in.ele", &ele)])
+}
+
+/// Checks that `after` is `before` smoothed: the same triangles, held vertices unchanged to the bit, no triangle inverted or
+/// flat, no fold, and some vertex moved.
+#[track_caller]
+fn assert_smoothed(before: &Mesh, after: &Mesh) {
+    assert_eq!((&before.triangles, &before.fixed), (&after.triangles, &after.fixed));
+    assert!(check::same_orientations(before, after) && check::is_valid(after));
+    assert_ne!(before.points, after.points);
+    let bits = |mesh: &Mesh, v: usize| mesh.points[v].map(f64::to_bits);
+    for (v, held) in check::held(before).into_iter().enumerate() {
+        assert!(!held || bits(before, v) == bits(after, v), "vertex index {v} has moved");
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+fn plate_path() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../meshes/plate.node"))
+}

@@ -1,0 +1,178 @@
+//! Writes a mesh in another format than it was read in.
+
+use super::collector;
+use super::content::Content;
+use super::grids;
+use super::job::Job;
+use super::names;
+use super::targets::{TARGETS, Target, Write};
+use super::triangle_source;
+use crate::detect;
+use crate::error::{ReadError, WriteError};
+use crate::families::Family;
+use crate::format::Format;
+use crate::mesh_file::MeshFile;
+use crate::packed::Packing;
+use crate::replace::{self, Job as Replacement};
+use crate::triangle_names::Names;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A mesh that is to be written in another format.
+///
+/// ```no_run
+/// # use mesh_io::{Conversion, Format, MeshFile};
+/// # use std::path::Path;
+/// # fn f() -> Result<(), Box<dyn std::error::Error>> {
+/// let file = MeshFile::read(Path::new("part.msh"))?;
+/// let conversion = Conversion::new(&file, Format::Su2)?.ok_or("SU2 is not written")?;
+/// println!("lost: {}", conversion.lost().join("; "));
+/// conversion.write(Path::new("part.su2"))?;
+/// # Ok(())
+/// # }
+/// ```
+pub struct Conversion {
+    content: Content,
+    target: &'static Target,
+    lost: Vec<String>,
+    renamed: Vec<String>,
+}
+
+impl Conversion {
+    /// Lists the formats that meshes are converted to, each with a short name. Of formats whose files end the same way,
+    /// the usual one comes first.
+    pub fn targets() -> impl Iterator<Item = (&'static str, Format)> {
+        TARGETS.iter().map(|target| (target.name, target.format))
+    }
+
+    /// Returns the format of [`targets`](Self::targets) whose files end as this path does. An ending of compressed
+    /// files is ignored. `None` if no format ends so.
+    pub fn target_of(path: &Path) -> Option<Format> {
+        let ends_so = |target: &&Target| Family::of(target.format).has_ending_of(path);
+        TARGETS.iter().find(ends_so).map(|target| target.format)
+    }
+
+    /// Makes a mesh ready to be written in another format. The file's content is searched again for elements of all
+    /// kinds, groups and data. `None` if meshes are not converted to this format.
+    ///
+    /// # Errors
+    /// [`ReadError`] if the names of groups, or other parts that reading the mesh does not need, are damaged.
+    pub fn new(file: &MeshFile, to: Format) -> Result<Option<Conversion>, ReadError> {
+        let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
+            return Ok(None);
+        };
+        let sources = file.sources();
+        let mut content = match &Family::of(file.format()).reader {
+            Some(reader) => collector::content(reader, &sources[0])?,
+            None => triangle_source::content(&sources[0], &sources[1], sources.get(2))?,
+        };
+        // The points as they were read, rounded to the precision of the file.
+        content.points = file.points().to_vec();
+        grids::match_depths(&mut content, file.format(), to);
+        let lost = target.holds.lost(&content);
+        let renamed = names::fit(&target.holds, &mut content);
+        Ok(Some(Conversion { content, target, lost, renamed }))
+    }
+
+    /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
+    /// always lost, and not listed.
+    pub fn lost(&self) -> &[String] {
+        &self.lost
+    }
+
+    /// Lists the names that change, as the format cannot hold them, or cannot tell them from others: one line for the
+    /// groups of each dimension and for each kind of data. Groups and data that were different stay so.
+    pub fn renamed(&self) -> &[String] {
+        &self.renamed
+    }
+
+    /// Lists the files that [`write`](Self::write) to `path` writes. A Triangle mesh without lines has no `.poly`,
+    /// which is listed all the same.
+    pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
+        match self.target.write {
+            Write::One(_) | Write::Binary(_) => vec![path.to_owned()],
+            Write::Several(_) => {
+                let Names { node, ele, poly } = Names::of(path);
+                vec![node, ele, poly]
+            }
+        }
+    }
+
+    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced once all is written.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the system refuses, if the ending is that of another format, or if several files are to be written
+    /// under a compressed name.
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        let destinations = self.destinations(path);
+        let contents = self.contents();
+        let packs = Packing::of(path);
+        let refused = |problem: String, remedy: &str| {
+            let (path, remedy) = (path.to_owned(), remedy.to_owned());
+            Err(WriteError::Format { path, problem, remedy })
+        };
+        let family = Family::of(self.target.format);
+        if let Some(owner) = detect::owner_of_ending(path)
+            && !family.has_ending_of(path)
+        {
+            let problem =
+                format!("its ending is that of {owner}, and not of {}", self.target.format);
+            return refused(problem, &format!("End the name in {}", family.endings[0]));
+        }
+        if packs.is_some() && destinations.len() > 1 {
+            let problem = "a Triangle mesh is of several files, which are not written compressed";
+            return refused(problem.into(), "End the name in .node");
+        }
+        if let Some(left) = destinations.get(contents.len()).filter(|left| left.exists()) {
+            let problem = format!(
+                "{} of another mesh is there, and would be read with this one",
+                left.display()
+            );
+            return refused(problem, "Remove it, or take another name");
+        }
+        destinations.iter().try_for_each(|path| replace::check(path))?;
+        let mut jobs: Vec<Replacement<'_>> = Vec::new();
+        for (path, content) in destinations.into_iter().zip(&contents) {
+            jobs.push((path, Box::new(move |out| put(content, packs, out))));
+        }
+        replace::replace_all(&jobs)
+    }
+
+    /// Returns the content of the file if it is text. `None` for binary formats, and for a Triangle mesh, which has
+    /// several files.
+    pub fn text(&self) -> Option<String> {
+        match self.target.write {
+            Write::One(write) => Some(write(&self.job())),
+            Write::Binary(_) | Write::Several(_) => None,
+        }
+    }
+
+    /// Returns the content of the file, text or binary. `None` for a Triangle mesh, which has several files.
+    pub fn bytes(&self) -> Option<Vec<u8>> {
+        match self.target.write {
+            Write::One(_) | Write::Binary(_) => self.contents().pop(),
+            Write::Several(_) => None,
+        }
+    }
+
+    fn contents(&self) -> Vec<Vec<u8>> {
+        match self.target.write {
+            Write::One(write) => vec![write(&self.job()).into_bytes()],
+            Write::Binary(write) => vec![write(&self.job())],
+            Write::Several(write) => {
+                write(&self.job()).into_iter().map(String::into_bytes).collect()
+            }
+        }
+    }
+
+    fn job(&self) -> Job<'_> {
+        Job::new(&self.content, self.target.holds)
+    }
+}
+
+fn put(bytes: &[u8], packs: Option<Packing>, out: &mut (dyn io::Write + Send)) -> io::Result<()> {
+    match packs {
+        Some(packing) => packing.pack(out, |out| out.write_all(bytes)),
+        None => out.write_all(bytes),
+    }
+}

@@ -1,0 +1,369 @@
+//! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document has them.
+//!
+//! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
+
+use super::tables;
+use crate::families::{FAMILIES, Family};
+use crate::format::Format;
+use crate::packed::Packing;
+use std::fmt::Write;
+use std::path::Path;
+
+/// What the document says of the formats of one row, beside names, endings and conversions, which come from the code.
+struct Row {
+    formats: &'static [Format],
+    /// Versions and layouts that are read and written.
+    layouts: &'static str,
+    /// Vertices that stay fixed besides those on the boundary.
+    fixed: &'static str,
+    /// The property that triangles of a region share.
+    region: &'static str,
+    /// Groups that can be named.
+    named: &'static str,
+    /// What is not held, or refused.
+    limits: &'static str,
+}
+
+const fn row(
+    formats: &'static [Format],
+    layouts: &'static str,
+    [fixed, region, named, limits]: [&'static str; 4],
+) -> Row {
+    Row { formats, layouts, fixed, region, named, limits }
+}
+
+const ROWS: [Row; 27] = [
+    row(
+        &[Format::Triangle],
+        "text, with the `.poly` beside it",
+        [
+            "vertices and segments of the `.poly`",
+            "attributes of the `.ele`",
+            "attributes of triangles, markers of vertices and segments",
+            "triangles of 3 nodes",
+        ],
+    ),
+    row(
+        &[Format::Gmsh22, Format::Gmsh22Binary],
+        "versions 2.0 to 2.2, either byte order",
+        [
+            "points, lines, quadrilaterals",
+            "physical group and geometrical entity",
+            "physical groups with their names, entities",
+            "first order",
+        ],
+    ),
+    row(
+        &[Format::Gmsh40, Format::Gmsh40Binary, Format::Gmsh41, Format::Gmsh41Binary],
+        "versions 4.0 and 4.1, either byte order",
+        [
+            "the same, and nodes on points and curves of the model",
+            "entity",
+            "the same; the parts of an entity of a partitioned mesh are named by the entity",
+            "first order; in a partitioned mesh each part of an entity counts as one",
+        ],
+    ),
+    row(
+        &[Format::Vtk, Format::VtkBinary],
+        "versions 1.0 to 5.1; unstructured grids and polygonal data; `float` and `double`",
+        [
+            "vertices, lines, quadrilaterals, polygons",
+            "cell data of a usual name (`gmsh:physical`, `medit:ref`, `MaterialIDs`, `CellEntityIds`, `region` and so on), the first two such arrays",
+            "values of that cell data; point data of one number for `--fix-array`",
+            "no strips, no structured grids",
+        ],
+    ),
+    row(
+        &[Format::Vtu, Format::Vtp],
+        "text, base64, appended base64 and raw; uncompressed, zlib or LZ4; headers of 32 and 64 bits, either byte order; Float32 and Float64; one piece or several",
+        [
+            "as legacy VTK",
+            "the same, of whole numbers",
+            "the same",
+            "pieces are not joined: each keeps its own boundary; compressed arrays of points are compressed again, with the same values where nothing moved; strips, `.pvtu`, `.pvd` and LZMA are refused",
+        ],
+    ),
+    row(
+        &[Format::Su2],
+        "zones, markers, any order of the lists",
+        [
+            "lines of markers, quadrilaterals",
+            "zone",
+            "markers by name; zones if there are several",
+            "two dimensions",
+        ],
+    ),
+    row(
+        &[Format::Medit],
+        "dimension 2 or 3, items anywhere on lines",
+        [
+            "edges, corners, required vertices and triangles, quadrilaterals",
+            "reference",
+            "references of vertices, edges, triangles and quadrilaterals; `Corners`, `RequiredVertices`, `RequiredTriangles`",
+            "",
+        ],
+    ),
+    row(
+        &[Format::MeditBinary],
+        "versions 1 to 4, either byte order",
+        ["the same", "reference", "the same", ""],
+    ),
+    row(
+        &[Format::Obj],
+        "negative numbers, texture coordinates and normals, rows joined by a backslash, with z or without",
+        [
+            "points, lines, polygons",
+            "material, and group or object",
+            "materials, objects, groups",
+            "planar in x and y",
+        ],
+    ),
+    row(
+        &[Format::Ply, Format::PlyBinary],
+        "either byte order, `float` and `double`, any other elements and properties",
+        [
+            "edges, quadrilaterals, polygons",
+            "–",
+            "nothing; numbers of vertices for `--fix-array`",
+            "y next to x; planar in x and y; no strips",
+        ],
+    ),
+    row(
+        &[Format::Off],
+        "text, with or without normals and colors, vertices anywhere on lines",
+        [
+            "quadrilaterals",
+            "–",
+            "nothing",
+            "each face on a line of its own; no polygons of more than four corners",
+        ],
+    ),
+    row(
+        &[Format::Adcirc],
+        "text as Fortran reads it: commas between numbers, items of several lines, exponents without a letter",
+        [
+            "quadrilaterals",
+            "–",
+            "boundaries: `open1`, `land1`, `island2` and so on",
+            "no repeat counts (`2*0.5`)",
+        ],
+    ),
+    row(
+        &[Format::Sms2dm],
+        "rows in any order, with z or without, keywords in capital or small letters",
+        [
+            "node strings, lines, quadrilaterals",
+            "material",
+            "materials with the names of `MAT` rows, node strings",
+            "linear elements",
+        ],
+    ),
+    row(
+        &[Format::Mike],
+        "text, with a first row as before 2012 or since, triangles or both kinds of elements",
+        ["quadrilaterals", "–", "codes of vertices", ""],
+    ),
+    row(
+        &[Format::Fvcom],
+        "text as Fortran reads it, with depths behind the coordinates or without",
+        [
+            "–",
+            "–",
+            "nothing",
+            "other files of a case, which may repeat coordinates (`_dep.dat`, `_cor.dat`, `_spg.dat`), stay as they are",
+        ],
+    ),
+    row(
+        &[Format::Mfem],
+        "versions 1.0 to 1.3 of conforming meshes with straight edges, items anywhere on lines",
+        [
+            "points, segments, quadrilaterals",
+            "attribute",
+            "attributes of elements and of the boundary",
+            "no points in a finite element space, as curved and periodic meshes have them",
+        ],
+    ),
+    row(
+        &[Format::Jigsaw],
+        "meshes of the kind EUCLIDEAN-MESH with 2 or 3 coordinates, keys in capital or small letters",
+        [
+            "edges, quadrilaterals",
+            "tag",
+            "tags of points, edges, triangles and quadrilaterals",
+            "no grids, nothing on an ellipsoid",
+        ],
+    ),
+    row(
+        &[Format::FreeFem],
+        "text, items anywhere on lines",
+        ["edges", "label", "labels of vertices, triangles and edges", ""],
+    ),
+    row(
+        &[Format::Selafin],
+        "either byte order, single and double precision; time steps are kept",
+        ["–", "–", "nothing", "triangles in one plane"],
+    ),
+    row(
+        &[Format::Stl, Format::StlBinary],
+        "with `--weld` only, which joins corners at the same place to vertices; every copy of a corner is written, normals and attributes are kept",
+        ["–", "solid", "solids by name", "planar in x and y; no other elements"],
+    ),
+    row(
+        &[Format::Xdmf],
+        "versions 2 and 3 with the numbers in the XML, in HDF5 or raw files beside it; points as XY or XYZ, `Float` of 4 and 8 bytes; Triangle, Mixed and other topologies; time steps of data are kept",
+        [
+            "as legacy VTK",
+            "cell data of the usual names, of whole numbers",
+            "the same",
+            "several grids with points of their own, hyperslabs and compressed raw files are refused; HDF5 as described below",
+        ],
+    ),
+    row(
+        &[Format::Exodus],
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4; `float` and `double`; time steps are kept",
+        [
+            "bars, quadrilaterals, spheres, sides in side sets",
+            "block",
+            "blocks, side sets and node sets, with their names",
+            "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; netCDF-4 as described for HDF5 below",
+        ],
+    ),
+    row(
+        &[Format::Ugrid],
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
+        [
+            "quadrilaterals, polygons",
+            "–",
+            "nothing; variables of nodes for `--fix-array`",
+            "one mesh of faces; as described below; netCDF-4 as for HDF5",
+        ],
+    ),
+    row(
+        &[Format::Med],
+        "versions 3 and 4, of Salome, Code_Aster, gmsh and meshio, one mesh at one time",
+        [
+            "PO1, SE2, QU4",
+            "family",
+            "groups of elements and of nodes by name, families",
+            "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; HDF5 as described below",
+        ],
+    ),
+    row(
+        &[Format::Cgns],
+        "one unstructured zone in HDF5, as gmsh writes it; `R4` and `R8`; sections of BAR_2, TRI_3, QUAD_4, NODE and MIXED",
+        [
+            "BAR_2, QUAD_4, NODE",
+            "section",
+            "sections, boundary conditions and their families by name",
+            "several zones, structured zones, NGON_n and files in ADF are refused; HDF5 as described below",
+        ],
+    ),
+    row(
+        &[Format::Abaqus],
+        "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances if one part or instance has elements",
+        [
+            "lines, quadrilaterals, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
+            "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",
+            "element sets, node sets and surfaces by name",
+            "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
+        ],
+    ),
+    row(
+        &[Format::Nastran],
+        "bulk data in small, large and free field, mixed, with tabs, with the other sections before them or without",
+        [
+            "lines, quadrilaterals, nodes of masses, springs and rigid elements",
+            "property",
+            "properties, by the names in comments of HyperMesh, ANSA and Femap",
+            "linear triangles (CTRIA3, CTRIAR); nodes in the basic coordinate system; no `INCLUDE`; as described below",
+        ],
+    ),
+];
+
+/// Makes the table of formats.
+fn formats() -> String {
+    let mut table = "| format | named by | read and written | stays fixed, besides the boundary | a region has the same | \
+                     what can be named | limits | `convert` writes it as |\n|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for Row { formats, layouts, fixed, region, named, limits } in &ROWS {
+        let names: Vec<String> = formats.iter().map(ToString::to_string).collect();
+        let mut endings: Vec<String> = Vec::new();
+        for ending in formats.iter().flat_map(|&format| Family::of(format).endings) {
+            let ending = format!("`{ending}`");
+            if !endings.contains(&ending) {
+                endings.push(ending);
+            }
+        }
+        let targets: Vec<String> = formats.iter().filter_map(|&f| tables::name_of(f)).collect();
+        let targets = if targets.is_empty() { "–".to_owned() } else { targets.join(", ") };
+        let (names, endings) = (names.join(", "), endings.join(", "));
+        writeln!(
+            table,
+            "| {names} | {endings} | {layouts} | {fixed} | {region} | {named} | {limits} | {targets} |"
+        )
+        .unwrap();
+    }
+    table
+}
+
+/// Lists the formats that are recognized but not read.
+fn not_read() -> String {
+    let unread = FAMILIES.iter().filter(|family| !family.is_read());
+    let names: Vec<&str> = unread.map(|family| family.name).collect();
+    format!("**Not read,** but known by name: {}.\n", names.join(", "))
+}
+
+/// Replaces the text between two marks of a document.
+fn with(document: &str, mark: &str, content: &str) -> String {
+    let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {mark}: {word} -->\n"));
+    let start = document.find(&begin).unwrap_or_else(|| panic!("no {begin}")) + begin.len();
+    let length = document[start..].find(&end).unwrap_or_else(|| panic!("no {end}"));
+    [&document[..start], content, &document[start + length..]].concat()
+}
+
+#[test]
+fn the_document_has_the_tables_of_the_code() {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("docs/formats.md");
+    let document = std::fs::read_to_string(&path).unwrap().replace("\r\n", "\n");
+    let mut expected = document.clone();
+    for (mark, content) in
+        [("formats", formats()), ("targets", tables::targets()), ("not read", not_read())]
+    {
+        expected = with(&expected, mark, &content);
+    }
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(&path, &expected).unwrap();
+        return;
+    }
+    let differs = document.lines().zip(expected.lines()).find(|(own, wanted)| own != wanted);
+    assert_eq!(differs, None, "UPDATE_DOCS=1 cargo test --lib documented writes it anew");
+    assert_eq!(document.len(), expected.len());
+}
+
+#[test]
+fn every_format_has_one_row() {
+    for format in Format::ALL {
+        let rows = ROWS.iter().filter(|row| row.formats.contains(&format)).count();
+        assert_eq!(rows, 1, "{format}");
+    }
+}
+
+/// The README must name every format that is read, by the usual ending of its files.
+#[test]
+fn the_readme_names_every_format() {
+    let readme = std::fs::read_to_string(
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("README.md"),
+    );
+    let readme = readme.unwrap();
+    let start = readme.find("**Formats.**").unwrap();
+    let paragraph = readme[start..].split("\n\n").next().unwrap();
+    let families = FAMILIES.iter().filter(|family| family.is_read());
+    // Some formats are named by a whole file name, or by their own name.
+    let told = |family: &Family| {
+        let ending = format!("`{}`", family.endings[0]);
+        paragraph.contains(&ending) || paragraph.contains(family.name)
+    };
+    let missing: Vec<_> = families.filter(|family| !told(family)).map(|f| f.name).collect();
+    assert!(missing.is_empty(), "README says nothing of {missing:?}");
+    assert!(Packing::of(Path::new("m.msh.gz")).is_some() && paragraph.contains("`.gz`"));
+}

@@ -1,0 +1,102 @@
+//! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
+
+use super::content::{Content, Group};
+use super::holds::{Holds, first};
+use super::spelling::{Spelling, distinct};
+use super::tags::Tags;
+use super::ugrid;
+use crate::label::Label;
+use std::collections::HashMap;
+
+/// Changes the names that the format holds to what it can hold. Names that were different stay so, and where the
+/// format tells groups by their names alone, groups of one name get different ones: the later ones end in `_2`, `_3` and
+/// so on. Returns what was changed, one line for groups and for each kind of data.
+pub(crate) fn fit(holds: &Holds, content: &mut Content) -> Vec<String> {
+    match holds.spelling {
+        Spelling::Any => Vec::new(),
+        _ => [groups(holds, content), data(holds, content)].concat(),
+    }
+}
+
+fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
+    let tags = Tags::new(content, holds.negative);
+    let main = [0, 1, 2].map(|dimension| content.whats(dimension).first().copied());
+    // Where names are words, a group without one is called by its number.
+    let name = |(place, group): (usize, &Group)| {
+        let dimension = usize::from(group.dimension);
+        let is_held = holds.names[dimension] && main[dimension] == Some(&group.what);
+        let number = || tags.number(place as u32).to_string();
+        let by_number = || holds.spelling.is_word().then(number);
+        group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)
+    };
+    let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();
+    // Lines and surfaces of one group, as formats have them that tell no dimensions, are one group again.
+    let mut places: HashMap<(&str, &Label, &str), usize> = HashMap::new();
+    let mut owners: Vec<usize> = Vec::new();
+    let mut old: Vec<&str> = Vec::new();
+    let mut place_of = vec![None; names.len()];
+    for (owner, (group, name)) in content.groups.iter().zip(&names).enumerate() {
+        let Some(name) = name else { continue };
+        let place = *places.entry((&group.what, &group.label, name)).or_insert(old.len());
+        if place == old.len() {
+            old.push(name);
+            owners.push(owner);
+        }
+        place_of[owner] = Some(place);
+    }
+    let number = |place: usize| tags.number(owners[place] as u32).to_string();
+    let new = distinct(&old, holds.spelling, &[], number);
+    let changes = old.iter().zip(&new).zip(&owners).filter(|((old, new), _)| old != new);
+    let told: Vec<String> = changes
+        .map(|((old, new), &owner)| match content.groups[owner].label {
+            // Groups of one name are told apart by their numbers.
+            Label::Tag(tag) if *old != tag.to_string() => format!("`{old}` ({tag}) to `{new}`"),
+            _ => format!("`{old}` to `{new}`"),
+        })
+        .collect();
+    let is_new = |place: &usize| old[*place] != new[*place];
+    let changed: Vec<Option<String>> = place_of
+        .into_iter()
+        .map(|place| place.filter(is_new).map(|place| new[place].clone()))
+        .collect();
+    for (group, new) in content.groups.iter_mut().zip(changed).filter(|(_, new)| new.is_some()) {
+        group.name = new;
+    }
+    line("groups", &told)
+}
+
+fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
+    let mut taken: Vec<String> = match holds.spelling {
+        // The coordinates are properties of vertices like data of one number.
+        Spelling::Word => ["x", "y", "z"].map(String::from).to_vec(),
+        Spelling::Variable => ugrid::NAMES.map(String::from).to_vec(),
+        _ => Vec::new(),
+    };
+    let mut changed = Vec::new();
+    for (what, held, data) in [
+        ("data of vertices", holds.point_data, &mut content.point_data),
+        ("data of elements", holds.cell_data, &mut content.cell_data),
+    ] {
+        let mut data: Vec<_> = data.iter_mut().filter(|data| held.holds(data)).collect();
+        let names: Vec<&str> = data.iter().map(|data| data.name.as_str()).collect();
+        let all: Vec<&str> = taken.iter().map(String::as_str).collect();
+        let new = distinct(&names, holds.spelling, &all, |at| format!("data{}", at + 1));
+        if holds.spelling == Spelling::Variable {
+            // Variables of vertices and of elements stand side by side.
+            taken.extend_from_slice(&new);
+        }
+        let mut told = Vec::new();
+        for (data, new) in data.iter_mut().zip(new).filter(|(data, new)| data.name != *new) {
+            told.push(format!("`{}` to `{new}`", data.name));
+            data.name = new;
+        }
+        changed.extend(line(what, &told));
+    }
+    changed
+}
+
+/// Makes a line of the first changes, and counts the rest.
+fn line(what: &str, told: &[String]) -> Vec<String> {
+    let told: Vec<&str> = told.iter().map(String::as_str).collect();
+    if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", first(&told))] }
+}

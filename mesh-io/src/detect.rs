@@ -1,0 +1,277 @@
+//! Tells which format a file is in, first by its content, then by its ending.
+
+use crate::error::ReadError;
+use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
+use crate::mike;
+use crate::nastran;
+use crate::sink::Reader;
+use crate::source::{Source, file_name};
+use crate::syntax::Syntax;
+use crate::text::Cursor;
+use crate::token::integer;
+use crate::triangle_names::{Names, appended};
+use std::path::{Path, PathBuf};
+
+/// How a file is read.
+pub(crate) enum Content {
+    /// A mesh in one file, with its reader.
+    Of(&'static Reader),
+    Triangle(Names),
+}
+
+/// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
+pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
+    let head = head(&source.bytes, b"%");
+    if head.is_empty() {
+        return Err(source.error("the file is empty", "Write the mesh again"));
+    }
+    // The title of such a grid may start with anything.
+    if ADCIRC.has_ending_of(&source.path) {
+        return of(source, &ADCIRC);
+    }
+    // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
+    // of VTK.
+    let heads = [head, &source.bytes, self::head(head, b"%#"), after_prolog(head)];
+    let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
+    let promised = |family: &&&Family| family.has_ending_of(&source.path);
+    let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
+    let known = by_content().find(promised).or_else(|| by_content().next());
+    // Nastran's may start with anything, such as a title.
+    if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
+        return of(source, &NASTRAN);
+    }
+    if let Some(family) = known {
+        return of(source, family);
+    }
+    // Files of MIKE may start with any numbers. Their ending is also that of Medit.
+    let [first, second, _] = first_rows(source, Syntax::PLAIN);
+    if mike::opens(&first, &second) {
+        return of(source, &MIKE);
+    }
+    if TRIANGLE.has_ending_of(&source.path) {
+        return Ok(Content::Triangle(Names::of(&source.path)));
+    }
+    // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
+    // first word.
+    let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
+    let by_ending = |family: &&&Family| {
+        let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
+        promised(family) && family.endings != FREEFEM.endings && !is_told_otherwise
+    };
+    match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
+        Some(family) => of(source, family),
+        None => by_rows(source),
+    }
+}
+
+/// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
+fn by_rows(source: &Source) -> Result<Content, ReadError> {
+    let [first, second, _] = first_rows(source, Syntax::PLAIN);
+    let numbers =
+        |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
+    let outline = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
+    match numbers(&first).as_deref() {
+        Some([_, 2, _, 0..=1]) if outline => {
+            let problem = "a .poly holds the outline of a mesh, not its triangles";
+            return Err(source.error(problem, "Name the mesh itself, its .node or .ele"));
+        }
+        Some([_, 2, _, 0..=1]) if second.len() > 2 => {
+            return match companion(&source.path, "ele") {
+                Some((ele, poly)) => {
+                    Ok(Content::Triangle(Names { node: source.path.clone(), ele, poly }))
+                }
+                None => {
+                    let problem = "the vertices of a Triangle mesh, without its triangles";
+                    let wanted = file_name(&source.path.with_extension("ele"));
+                    let remedy = match source.path.exists() {
+                        true => format!("Put {wanted} beside it"),
+                        false => {
+                            "Such a mesh is of several files, and is read from them".to_owned()
+                        }
+                    };
+                    Err(source.error(problem, remedy))
+                }
+            };
+        }
+        Some([_, 3 | 6, ..]) => {
+            if let Some((node, poly)) = companion(&source.path, "node") {
+                return Ok(Content::Triangle(Names { node, ele: source.path.clone(), poly }));
+            }
+        }
+        _ => {}
+    }
+    if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
+        return of(source, &FREEFEM);
+    }
+    let [_, second, third] = first_rows(source, Syntax::FORTRAN);
+    let counts = second.get(..2).and_then(numbers);
+    if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
+        return of(source, &ADCIRC);
+    }
+    // Formats that are not read may start with anything.
+    match FAMILIES.iter().find(|family| !family.is_read() && family.has_ending_of(&source.path)) {
+        Some(family) => of(source, family),
+        None => {
+            let remedy = format!("{}. Convert it, with meshio or gmsh for example", formats_read());
+            Err(source.error("the format is not recognized", remedy))
+        }
+    }
+}
+
+/// Returns the name of the format whose files end as this path does, whether it is read or not.
+pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
+    let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
+    family.map(|family| family.name)
+}
+
+fn of(source: &Source, family: &'static Family) -> Result<Content, ReadError> {
+    match &family.reader {
+        Some(reader) => Ok(Content::Of(reader)),
+        None => {
+            let remedy = match family.instead {
+                "" => formats_read(),
+                instead => instead.to_owned(),
+            };
+            Err(source.error(format!("{} is not read", family.name), remedy))
+        }
+    }
+}
+
+fn formats_read() -> String {
+    let read = FAMILIES.iter().filter(|family| family.is_read());
+    let names: Vec<_> = read.map(|family| family.name).collect();
+    format!("Formats read: {}", names.join(", "))
+}
+
+/// Returns the content without a byte order mark, blanks, and comment lines, which start with one of the bytes of
+/// `comments`.
+fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
+    let mut head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    while head.first().is_some_and(|first| comments.contains(first)) {
+        let end = memchr::memchr(b'\n', head).unwrap_or(head.len());
+        head = head[end..].trim_ascii_start();
+    }
+    head
+}
+
+/// Returns the content from the first XML element on, without declarations and comments before it.
+fn after_prolog(bytes: &[u8]) -> &[u8] {
+    let mut head = bytes;
+    while head.starts_with(b"<?") || head.starts_with(b"<!") {
+        let end: &[u8] = if head.starts_with(b"<!--") { b"-->" } else { b">" };
+        let Some(at) = memchr::memmem::find(head, end) else { break };
+        head = head[at + end.len()..].trim_ascii_start();
+    }
+    head
+}
+
+fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
+    // No format that is told apart here has longer rows.
+    const TOKENS: usize = 8;
+    let mut cursor = Cursor::new(source).of(syntax);
+    std::array::from_fn(|_| {
+        let row = cursor.next_row();
+        std::iter::from_fn(|| if row { cursor.token() } else { None }).take(TOKENS).collect()
+    })
+}
+
+/// Finds the other file of a Triangle mesh if a `.node` or `.ele` has another ending. Returns its path and that of the
+/// `.poly`, which need not exist.
+fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
+    [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
+        let other = appended(stem, &format!(".{ending}"));
+        other.is_file().then(|| (other, appended(stem, ".poly")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(name: &str, content_bytes: &[u8]) -> String {
+        let source = Source {
+            path: name.into(),
+            bytes: content_bytes.to_vec(),
+            packed: None,
+            welds: false,
+            beside: Vec::new(),
+        };
+        match content(&source) {
+            Ok(Content::Of(reader)) => {
+                let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
+                FAMILIES.iter().find(of).unwrap().name.into()
+            }
+            Ok(Content::Triangle(_)) => "triangle".into(),
+            Err(ReadError::Format { problem, .. }) => problem,
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn content_comes_before_the_ending() {
+        assert_eq!(problem("a.node", b"\n $MeshFormat\n"), "gmsh");
+        assert_eq!(problem("a.msh", b"\xEF\xBB\xBF$MeshFormat\r\n"), "gmsh");
+        assert_eq!(problem("a.node", b"# vtk DataFile Version 2.0\n"), "legacy VTK");
+        assert_eq!(problem("a.node", b"# made by hand\n3 2 0 0\n"), "triangle");
+        assert_eq!(problem("a.ELE", b"1 3 0\n"), "triangle");
+    }
+
+    #[test]
+    fn formats_are_known_by_their_content() {
+        let cases: [(&[u8], &str); 35] = [
+            (b"TITLE = \"by hand\"\nVARIABLES = \"X\"\n", "Tecplot is not read"),
+            (b"# by hand\nmesh3d\n\ndimension\n2\n", "Netgen is not read"),
+            (b"* FLAC3D grid\n* GRIDPOINTS\n", "FLAC3D is not read"),
+            (b"#RADIOSS STARTER\n", "Radioss is not read"),
+            (b"<?xml version=\"1.0\"?>\n<!DOCTYPE X3D>\n<X3D>", "X3D is not read"),
+            (b"<?xml version=\"1.0\"?>\n<!-- <Xdmf> -->\n<VTKFile>", "VTK XML"),
+            (b"<?xml version=\"1.0\"?><!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", "XDMF"),
+            (b"solid part\n", "STL"),
+            (b"CDF\x02\0\0", "HDF5 or netCDF"),
+            (b"\x89HDF\r\n", "HDF5 or netCDF"),
+            (b"(1 \"made by hand\")\n(2 2)\n", "Fluent is not read"),
+            (b"MFEM mesh v1.0\n\ndimension\n2\n", "MFEM"),
+            (b"MFEM NC mesh v1.0\n", "nonconforming, NURBS or inline MFEM is not read"),
+            (b"100079  1000  4  UTM-32\n1 0 0 0 1\n", "MIKE (DHI)"),
+            (b"100000 1014 4 PROJCS[\"WGS 84 / UTM zone 32N\"]\n1 0 0 -5e0 1\n", "MIKE (DHI)"),
+            (b"4 LONG/LAT\n 1 4.5 55.5 -3 0\n", "MIKE (DHI)"),
+            (b"Node Number = 3\nCell Number = 1\n1 1 2 3 1\n", "FVCOM"),
+            (b"# a.msh\nmshid=3;EUCLIDEAN-MESH\nndims=2\n", "JIGSAW"),
+            (b"3 islands\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+            (b"% made by\n%\nNDIME= 2\n", "SU2"),
+            (b" MeshVersionFormatted 2\n", "Medit"),
+            (&[1, 0, 0, 0, 2, 0, 0, 0], "binary Medit"),
+            (b"OFF\n3 1 0\n", "OFF"),
+            (b"# made by hand\n#\no part\nv 0 0 0\n", "Wavefront OBJ"),
+            (b"MESH2D\nE3T 1 1 2 3 1\n", "SMS 2dm"),
+            (b"\0\0\0\x50River", "SELAFIN"),
+            (b" 3 1 3\n 0.0 0.0 1\n", "FreeFem .msh"),
+            (b"title\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+            (b"$ made by hand\nGRID,1,,0.,0.\n", "Nastran"),
+            (b"TITLE = a plate\nSPC = 1\nbegin  bulk\n", "Nastran"),
+            (b"ID a,b\nSOL 101\nCEND\n", "Nastran"),
+            (b"PARAM,POST,-1\n$\nctria3  7       1       1       2       3\n", "Nastran"),
+            (b"Grid*    12                              .5-1            2.0\n", "Nastran"),
+            (b"Grid 5 of the lake\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+            (b"Grid, 5, of the lake\n 1 3\n 1 0.0 0.0 4.5\n", "ADCIRC or SCHISM grid"),
+        ];
+        for (bytes, name) in cases {
+            assert_eq!(problem("mesh.dat", bytes), name);
+        }
+        assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
+        assert_eq!(problem("mesh.bdf", b"$ made by hand\n"), "Nastran");
+        assert_eq!(problem("mesh.unv", b"    -1\n  2411\n"), "I-DEAS universal is not read");
+        assert_eq!(problem("mesh.avs", b"# by hand\n4 2 0 0 0\n"), "AVS-UCD is not read");
+        assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
+    }
+
+    #[test]
+    fn a_file_ending_belongs_to_one_format() {
+        let owner = |name: &str| owner_of_ending(Path::new(name));
+        assert_eq!(owner("a/B.VTK"), Some("legacy VTK"));
+        assert_eq!(owner("la.1.ele"), Some("Triangle .node/.ele"));
+        assert_eq!(owner("fort.14"), Some("ADCIRC or SCHISM grid"));
+        assert_eq!(owner("la.15"), None);
+        assert_eq!(owner("la"), None);
+    }
+}

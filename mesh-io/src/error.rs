@@ -1,0 +1,151 @@
+//! Errors, one enum for each kind of operation.
+
+use std::path::PathBuf;
+use std::{fmt, io};
+
+/// A position in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// One-based line of a text file.
+    Line(usize),
+    /// Offset in a binary file, in bytes.
+    Byte(usize),
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Location::Line(line) => write!(f, ":{line}"),
+            Location::Byte(at) => write!(f, ", byte {at}"),
+        }
+    }
+}
+
+/// A mesh file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The operating system reported an error.
+    #[error("{}: {source}. {remedy}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The content does not follow the format.
+    #[error("{}{location}: {problem}. {remedy}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Where the error is.
+        location: Location,
+        /// What is wrong there.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The file can be read, but its format is not known.
+    #[error("{}: {problem}. {remedy}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What was found instead.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+}
+
+/// A file could not be written. A file that was there before is unchanged.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The operating system reported an error.
+    #[error("{}: {source}. {remedy}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The name has the ending of another format than the one the mesh was read in.
+    #[error("{}: {problem}. {remedy}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the name.
+        problem: String,
+        /// What the user can do about it.
+        remedy: String,
+    },
+    /// The points do not fit the mesh: a mistake in the calling program, not of its user.
+    #[error("{}: not written: {problem}", path.display())]
+    Points {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the points.
+        problem: String,
+    },
+}
+
+/// A name does not stand for exactly one group of a mesh file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GroupError {
+    /// No group has this name.
+    #[error("{}", unknown(spelling, known))]
+    Unknown {
+        /// The name that was given.
+        spelling: String,
+        /// The names of all groups, the most similar first.
+        known: Vec<String>,
+    },
+    /// Several groups have this name.
+    #[error("'{spelling}' is ambiguous: it may be {}", first_of(spellings, " or "))]
+    Ambiguous {
+        /// The name that was given.
+        spelling: String,
+        /// For each of these groups, a spelling that no other group shares.
+        spellings: Vec<String>,
+    },
+}
+
+fn unknown(spelling: &str, known: &[String]) -> String {
+    match known {
+        [] => format!("no group is called '{spelling}': the file names none"),
+        _ => format!("no group is called '{spelling}'; there are {}", first_of(known, ", ")),
+    }
+}
+
+/// Joins the first names of a list, and says how many more there are.
+fn first_of(names: &[String], between: &str) -> String {
+    const TOLD: usize = 12;
+    let told = names[..names.len().min(TOLD)].join(between);
+    match names.len().saturating_sub(TOLD) {
+        0 => told,
+        more => format!("{told} and {more} more"),
+    }
+}
+
+/// Data or positions that are given for a mesh file do not have the length that the file needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FieldError {
+    /// A list of positions does not have exactly one for each vertex of the mesh.
+    #[error("{given} points are given for the {expected} vertices of the mesh")]
+    PointCount {
+        /// Number of vertices of the mesh.
+        expected: usize,
+        /// Number of points that were given.
+        given: usize,
+    },
+    /// A list of data does not have as many numbers as the field.
+    #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
+    ValueCount {
+        /// Number of numbers in the field.
+        expected: usize,
+        /// Number of numbers that were given.
+        given: usize,
+    },
+}

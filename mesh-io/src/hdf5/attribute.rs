@@ -1,0 +1,98 @@
+//! Attributes of objects.
+
+use super::btree;
+use super::bytes::{Bytes, Fault};
+use super::file::{Hdf5, Object};
+use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
+use super::heap::Heap;
+use super::raw::Raw;
+use super::strings;
+use super::types::{Number, Space};
+
+/// The content of an attribute.
+#[derive(Clone, Debug)]
+pub(crate) struct Attribute<'a> {
+    pub(crate) number: Number,
+    pub(crate) bytes: &'a [u8],
+}
+
+impl<'a> Hdf5<'a> {
+    /// The attribute of this name; none if there is none that can be read.
+    pub(crate) fn attribute(&self, object: &Object, name: &[u8]) -> Option<Attribute<'a>> {
+        let mut all = self.attributes(object).into_iter();
+        all.find(|(own, _)| *own == name).map(|(_, attribute)| attribute)
+    }
+
+    /// All attributes that can be read, by name.
+    pub(crate) fn attributes(&self, object: &Object) -> Vec<(&'a [u8], Attribute<'a>)> {
+        let Ok(header) = &object.header else { return Vec::new() };
+        let raw = &self.raw;
+        let own = header.of(ATTRIBUTE).filter_map(|message| {
+            let bytes = raw.at(message.content.start, "an attribute");
+            read(raw, bytes.within(message.content.clone())).ok()
+        });
+        own.chain(elsewhere(raw, header).unwrap_or_default()).collect()
+    }
+}
+
+impl<'a> Attribute<'a> {
+    /// Its text, up to where it ends.
+    pub(crate) fn text(&self) -> Option<&'a [u8]> {
+        let Number::Text(_) = self.number else { return None };
+        self.bytes.split(|&byte| byte == 0).next()
+    }
+}
+
+impl Attribute<'_> {
+    /// The first of its whole numbers.
+    pub(crate) fn whole(&self) -> Option<i64> {
+        let Number::Whole(size, order) = self.number else { return None };
+        Some(order.signed(self.bytes.get(..size)?))
+    }
+}
+
+/// Attributes of an object that has many, in a heap.
+fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attribute<'a>)>, Fault> {
+    let mut all = Vec::new();
+    for message in header.of(ATTRIBUTE_INFO) {
+        let mut bytes = raw.at(message.content.start, "attributes").within(message.content.clone());
+        bytes.expect(&[0])?;
+        let flags = bytes.byte()?;
+        bytes.skip(if flags & 1 != 0 { 2 } else { 0 })?;
+        if let (Some(heap), Some(tree)) = (bytes.address()?, bytes.address()?) {
+            let heap = Heap::read(raw, heap)?;
+            for record in btree::records(raw, tree)? {
+                all.extend(heap.object(raw, record).and_then(|own| read(raw, own)).ok());
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The name and the content of an attribute message.
+fn read<'a>(raw: &Raw<'a>, mut bytes: Bytes<'a>) -> Result<(&'a [u8], Attribute<'a>), Fault> {
+    let version = bytes.byte()?;
+    let flags = bytes.byte()?;
+    let sizes = [bytes.count(2)?, bytes.count(2)?, bytes.count(2)?];
+    if version > 3 || version == 0 || (version > 1 && flags & 3 != 0) {
+        return Err(bytes.unread("an attribute of a type that stands elsewhere"));
+    }
+    bytes.skip(if version == 3 { 1 } else { 0 })?;
+    let mut part = |size: usize| {
+        let start = bytes.at();
+        bytes.skip(if version == 1 { size.next_multiple_of(8) } else { size })?;
+        Ok(bytes.within(start..start + size))
+    };
+    let (mut name, number, space) = (part(sizes[0])?, part(sizes[1])?, part(sizes[2])?);
+    let name = name.take(sizes[0])?;
+    let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
+    let (number, space) = (Number::read(number)?, Space::read(space)?);
+    if number == Number::TextElsewhere(number.bytes()) && space.count() == Some(1) {
+        let text = strings::read(raw, bytes)?;
+        return Ok((name, Attribute { number: Number::Text(text.len()), bytes: text }));
+    }
+    let size = space.count().and_then(|count| usize::try_from(count).ok());
+    let size = size.and_then(|size| size.checked_mul(number.bytes())).unwrap_or(usize::MAX);
+    let bytes = bytes.take(size)?;
+    Ok((name, Attribute { number, bytes }))
+}

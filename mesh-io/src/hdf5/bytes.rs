@@ -1,0 +1,135 @@
+//! The bytes that the metadata of a file consist of.
+
+use crate::binary::Order;
+use std::ops::Range;
+
+/// What is wrong with a part of a file, or is not read of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Fault {
+    /// The byte at which that part starts.
+    pub(crate) at: usize,
+    pub(crate) problem: String,
+    pub(crate) remedy: &'static str,
+}
+
+/// What to do about metadata that contradict themselves.
+pub(super) const DAMAGED: &str =
+    "The file is damaged or cut off: copy it again, or write the mesh again";
+/// What to do about layouts that are not read.
+pub(super) const REPACK: &str =
+    "Rewrite it with `h5repack -l CONTI -f NONE IN OUT`, or save it in another format";
+
+impl Fault {
+    #[cold]
+    pub(super) fn damaged(at: usize, what: &str) -> Fault {
+        Fault { at, problem: format!("{what} is damaged"), remedy: DAMAGED }
+    }
+
+    #[cold]
+    pub(super) fn unread(at: usize, problem: impl Into<String>) -> Fault {
+        Fault { at, problem: format!("cannot read {}", problem.into()), remedy: REPACK }
+    }
+}
+
+/// How many bytes an address has, and a length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Widths {
+    pub(super) address: usize,
+    pub(super) length: usize,
+}
+
+/// Takes one item of metadata after another. Numbers have their lowest byte first.
+#[derive(Clone)]
+pub(super) struct Bytes<'a> {
+    all: &'a [u8],
+    at: usize,
+    end: usize,
+    widths: Widths,
+    /// What is read, for messages, and where it starts.
+    what: &'static str,
+    start: usize,
+}
+
+impl<'a> Bytes<'a> {
+    /// Stands at a byte of the file, which need not be there.
+    pub(super) fn new(all: &'a [u8], at: usize, widths: Widths, what: &'static str) -> Bytes<'a> {
+        Bytes { all, at, end: all.len(), widths, what, start: at }
+    }
+
+    /// Stands at the start of a range, of which it sees no more.
+    pub(super) fn within(&self, range: Range<usize>) -> Bytes<'a> {
+        Bytes { at: range.start, end: range.end.min(self.all.len()), ..*self }
+    }
+
+    #[cold]
+    pub(super) fn damaged(&self) -> Fault {
+        Fault::damaged(self.start, self.what)
+    }
+
+    #[cold]
+    pub(super) fn unread(&self, problem: impl Into<String>) -> Fault {
+        Fault::unread(self.start, problem)
+    }
+
+    pub(super) fn at(&self) -> usize {
+        self.at
+    }
+
+    pub(super) fn widths(&self) -> Widths {
+        self.widths
+    }
+
+    pub(super) fn left(&self) -> usize {
+        self.end.saturating_sub(self.at)
+    }
+
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+        let end = self.at.checked_add(count).filter(|&end| end <= self.end);
+        let taken = end.and_then(|end| self.all.get(self.at..end));
+        let taken = taken.ok_or_else(|| self.damaged())?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    pub(super) fn skip(&mut self, count: usize) -> Result<(), Fault> {
+        self.take(count).map(drop)
+    }
+
+    /// Takes a number of up to eight bytes.
+    pub(super) fn number(&mut self, width: usize) -> Result<u64, Fault> {
+        Ok(Order::Little.whole(self.take(width)?))
+    }
+
+    /// The same as a count or a place, the largest there is if it is beyond that.
+    pub(super) fn count(&mut self, width: usize) -> Result<usize, Fault> {
+        Ok(usize::try_from(self.number(width)?).unwrap_or(usize::MAX))
+    }
+
+    pub(super) fn byte(&mut self) -> Result<u8, Fault> {
+        Ok(self.take(1)?[0])
+    }
+
+    /// Takes an address; none if it is that of nothing.
+    pub(super) fn address(&mut self) -> Result<Option<usize>, Fault> {
+        let bytes = self.take(self.widths.address)?;
+        let is_none = bytes.iter().all(|&byte| byte == 0xFF);
+        Ok((!is_none).then(|| usize::try_from(Order::Little.whole(bytes)).unwrap_or(usize::MAX)))
+    }
+
+    pub(super) fn length(&mut self) -> Result<usize, Fault> {
+        self.count(self.widths.length)
+    }
+
+    /// Takes a word that marks what follows.
+    pub(super) fn expect(&mut self, mark: &[u8]) -> Result<(), Fault> {
+        match self.take(mark.len())? == mark {
+            true => Ok(()),
+            false => Err(self.damaged()),
+        }
+    }
+
+    /// Takes bytes up to the next multiple of so many, counted from a place.
+    pub(super) fn align(&mut self, from: usize, to: usize) -> Result<(), Fault> {
+        self.skip((to - (self.at - from) % to) % to)
+    }
+}

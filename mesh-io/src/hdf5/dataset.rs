@@ -1,0 +1,250 @@
+//! Datasets: what their headers say, and their numbers.
+
+use super::bytes::{DAMAGED, Fault};
+use super::chunks::Lattice;
+use super::entry::Chunk;
+use super::file::{Hdf5, Object};
+use super::filters::{self, Filter};
+use super::header::{FILTERS, Header, LAYOUT, SPACE, TYPE};
+use super::layout::{Index, Layout};
+use super::raw::Raw;
+use super::sum::Sum;
+use super::types::{Number, Space};
+use crate::error::ReadError;
+use crate::parallel::map_parts;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// A dataset, by its header.
+pub(crate) struct Dataset {
+    /// Where its header stands.
+    pub(crate) at: usize,
+    pub(crate) number: Number,
+    space: Space,
+    layout: Layout,
+    filters: Vec<Filter>,
+    /// The checksum that covers the layout.
+    sum: Option<Sum>,
+}
+
+/// The items of a dataset, and where they stand.
+pub(crate) struct Array<'a> {
+    /// One item after another, the last dimension first.
+    pub(crate) bytes: Cow<'a, [u8]>,
+    pub(super) pieces: Pieces,
+}
+
+/// Where the items of a dataset stand.
+#[derive(Clone, Debug)]
+pub(super) struct Pieces {
+    pub(super) lattice: Option<Lattice>,
+    pub(super) chunks: Vec<Chunk>,
+    pub(super) filters: Vec<Filter>,
+    /// The checksum that covers the items themselves, where they stand in the header.
+    pub(super) sum: Option<Sum>,
+}
+
+/// How many chunks are unpacked at a time.
+const WAVE: usize = 64;
+
+impl Dataset {
+    /// How many items there are in each dimension; none for a single item.
+    pub(crate) fn shape(&self) -> &[u64] {
+        &self.space.shape
+    }
+
+    /// Whether it may grow without limit in its first dimension.
+    pub(crate) fn grows(&self) -> bool {
+        self.space.most.first() == Some(&u64::MAX)
+    }
+}
+
+/// A message of the object, wherever it stands, and the checksum that covers it.
+fn type_of(raw: &Raw<'_>, header: &Header, at: usize) -> Result<Number, Fault> {
+    let damaged = || Fault::damaged(at, "the type of a dataset");
+    let message = header.of(TYPE).next().ok_or_else(damaged)?;
+    let mut bytes = raw.at(message.content.start, "the type of a dataset");
+    if !message.is_shared {
+        return Number::read(bytes.within(message.content.clone()));
+    }
+    // A named type, in the header of an object of its own.
+    let (version, kind) = (bytes.byte()?, bytes.byte()?);
+    bytes.skip(if version == 1 { 6 } else { 0 })?;
+    if version == 3 && kind != 2 {
+        return Err(bytes.unread("a dataset whose type stands in a heap"));
+    }
+    let header = Header::read(raw, bytes.address()?.ok_or_else(damaged)?)?;
+    let message = header.of(TYPE).find(|message| !message.is_shared).ok_or_else(damaged)?;
+    Number::read(bytes.within(message.content.clone()))
+}
+
+impl<'a> Hdf5<'a> {
+    /// The dataset that an object is. None if it is none.
+    ///
+    /// # Errors
+    /// If its header is damaged, or of a kind that is not read.
+    pub(crate) fn dataset(&self, object: &Object) -> Result<Option<Dataset>, ReadError> {
+        self.dataset_of(object).map_err(|fault| self.error(fault))
+    }
+
+    fn dataset_of(&self, object: &Object) -> Result<Option<Dataset>, Fault> {
+        let header = object.header.as_ref().map_err(Fault::clone)?;
+        let (raw, at) = (&self.raw, object.at);
+        let (Some(space), Some(layout)) = (header.of(SPACE).next(), header.of(LAYOUT).next())
+        else {
+            return Ok(None);
+        };
+        let within = |content: &Range<usize>| {
+            raw.at(content.start, "a dataset of the HDF5 file").within(content.clone())
+        };
+        let own = &space.content;
+        let space = Space::read(within(own))?;
+        let number = type_of(raw, header, at)?;
+        let filters =
+            header.of(FILTERS).next().map(|message| filters::read(within(&message.content)));
+        let sum = layout.sum.and_then(|sum| header.sums.get(sum)).cloned();
+        let layout = Layout::read(within(&layout.content), space.shape.len())?;
+        let filters = filters.transpose()?.unwrap_or_default();
+        Ok(Some(Dataset { at, number, space, layout, filters, sum }))
+    }
+
+    /// The whole numbers of the dataset that an object is; none if it has none that can be read.
+    pub(crate) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
+        let dataset = self.dataset(object).ok()??;
+        let Number::Whole(size, order) = dataset.number else { return None };
+        let array = self.array(&dataset).ok()?;
+        Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
+    }
+
+    /// The items of a dataset.
+    ///
+    /// # Errors
+    /// If they do not all stand in the file, or are damaged.
+    pub(crate) fn array(&self, dataset: &Dataset) -> Result<Array<'a>, ReadError> {
+        let array = dataset.pieces(&self.raw).and_then(|pieces| {
+            // What stands in the header was read with it.
+            if !matches!(dataset.layout, Layout::Compact(_)) {
+                let ranges = pieces.chunks.iter().map(|chunk| chunk.range.clone());
+                self.raw.take_data(ranges, dataset.at);
+            }
+            let bytes = pieces.items(self.raw.bytes, dataset.at)?;
+            Ok(Array { bytes, pieces })
+        });
+        array.map_err(|fault| self.error(fault))
+    }
+}
+
+impl Dataset {
+    /// Finds where the items stand.
+    fn pieces(&self, raw: &Raw<'_>) -> Result<Pieces, Fault> {
+        let Dataset { space, filters, at, .. } = self;
+        let damaged = || Fault::damaged(*at, "a dataset of the HDF5 file");
+        let absent = || Fault {
+            at: *at,
+            problem: "a dataset without its numbers, which were never written".into(),
+            remedy: "Write the mesh again",
+        };
+        let size = self.number.bytes();
+        let mut pieces =
+            Pieces { lattice: None, chunks: Vec::new(), filters: Vec::new(), sum: None };
+        if space.count() == Some(0) {
+            return Ok(pieces);
+        }
+        let lengths = match &self.layout {
+            Layout::Chunked { lengths, .. } => lengths,
+            _ => &space.shape,
+        };
+        let lattice = Lattice::new(&space.shape, &space.most, lengths, size).ok_or_else(damaged)?;
+        let one = |start: usize, length: usize| {
+            let range = start..start.saturating_add(length);
+            let is_inside = range.end <= raw.bytes.len();
+            is_inside.then(|| vec![Chunk { number: 0, range, mask: 0, entry: None }])
+        };
+        pieces.chunks = match &self.layout {
+            Layout::Compact(range) => {
+                pieces.sum = self.sum.clone();
+                let fits = range.len() >= lattice.bytes();
+                fits.then(|| one(range.start, lattice.bytes())).flatten().ok_or_else(damaged)?
+            }
+            Layout::Contiguous(address) => {
+                one(address.ok_or_else(absent)?, lattice.bytes()).ok_or_else(damaged)?
+            }
+            Layout::Chunked { index, address, .. } => {
+                let index = (index, address.ok_or_else(absent)?);
+                if matches!(index.0, Index::Implicit) && !filters.is_empty() {
+                    return Err(damaged());
+                }
+                pieces.filters.clone_from(filters);
+                lattice.chunks(raw, index, filters, self.sum.as_ref(), *at)?
+            }
+        };
+        pieces.lattice = Some(lattice);
+        Ok(pieces)
+    }
+}
+
+impl Pieces {
+    /// The items, from the bytes of the file.
+    fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Fault> {
+        let Some(lattice) = &self.lattice else { return Ok(Cow::default()) };
+        if let Some(range) = self.whole() {
+            return Ok(Cow::Borrowed(&file[range]));
+        }
+        let damaged = || Fault {
+            at,
+            problem: "a dataset with a chunk that is damaged".into(),
+            remedy: DAMAGED,
+        };
+        let mut all: Vec<u8> = Vec::new();
+        for (wave, chunks) in self.chunks.chunks(WAVE).enumerate() {
+            let unpacked = map_parts(chunks, |_, chunk| self.chunk(file, chunk));
+            if wave == 0 {
+                // Only once some of them are what they are said to be.
+                unpacked.iter().all(Option::is_some).then_some(()).ok_or_else(damaged)?;
+                all = vec![0; lattice.bytes()];
+            }
+            for (chunk, own) in chunks.iter().zip(unpacked) {
+                let own = own.ok_or_else(damaged)?;
+                lattice.runs(chunk.number, |to, from, length| {
+                    all[to..to + length].copy_from_slice(&own[from..from + length]);
+                });
+            }
+        }
+        Ok(all.into())
+    }
+
+    /// The range of the file that holds all items as they are; none if they are in several, compressed or under a checksum.
+    pub(super) fn whole(&self) -> Option<Range<usize>> {
+        let length = self.lattice.as_ref()?.bytes();
+        match &self.chunks[..] {
+            [chunk] if self.filters.is_empty() && chunk.range.len() == length => {
+                self.sum.is_none().then(|| chunk.range.clone())
+            }
+            _ => None,
+        }
+    }
+
+    /// What a chunk holds; none if it is damaged.
+    pub(super) fn chunk<'a>(&self, file: &'a [u8], chunk: &Chunk) -> Option<Cow<'a, [u8]>> {
+        let length = self.lattice.as_ref()?.chunk_bytes();
+        let stored = file.get(chunk.range.clone())?;
+        // One that is not in chunks may be followed by bytes that are not its own.
+        filters::unfiltered(&self.filters, chunk.mask, stored, length)
+    }
+}
+
+impl Array<'_> {
+    /// Where in the file the first of its items stands, if all stand there as they are, one after another.
+    pub(crate) fn place(&self) -> Option<usize> {
+        self.pieces.whole().map(|range| range.start)
+    }
+
+    /// The byte of the file at or near which an item stands, for messages, given where it is among the bytes of all.
+    pub(crate) fn byte_of(&self, at: usize) -> usize {
+        match (self.place(), self.pieces.chunks.first()) {
+            (Some(start), _) => start + at,
+            (None, Some(chunk)) => chunk.range.start,
+            (None, None) => 0,
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! What becomes of a file when numbers of its datasets change.
+
+use super::dataset::{Array, Pieces};
+use super::entry::{Chunk, Entry};
+use super::file::Hdf5;
+use super::filters;
+use super::raw::End;
+use super::sum::Sum;
+use crate::numbers::{Encoded, Splice};
+use std::ops::Range;
+
+/// Datasets whose numbers may change, one after another. What is compressed anew and is no longer than before takes the place it
+/// had, else it goes to the end of the file.
+pub(crate) struct Encoding {
+    parts: Vec<Part>,
+    /// The numbers of all of them.
+    bytes: Vec<u8>,
+    end: End,
+    /// How many bytes an address has.
+    address: usize,
+}
+
+struct Part {
+    pieces: Pieces,
+    /// Its bytes among those of all.
+    own: Range<usize>,
+}
+
+impl Encoding {
+    /// Of some datasets of a file.
+    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<Array<'_>>) -> Encoding {
+        let mut bytes = Vec::new();
+        let mut parts = Vec::new();
+        for array in arrays {
+            let start = bytes.len();
+            match bytes.is_empty() {
+                true => bytes = array.bytes.into_owned(),
+                false => bytes.extend_from_slice(&array.bytes),
+            }
+            parts.push(Part { pieces: array.pieces, own: start..bytes.len() });
+        }
+        Encoding { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
+    }
+
+    /// The byte of the file near which one of the bytes stands, for messages.
+    pub(crate) fn byte_of(&self, at: usize) -> usize {
+        let part = self.parts.iter().find(|part| part.own.end > at);
+        part.and_then(|part| part.pieces.chunks.first()).map_or(0, |chunk| chunk.range.start)
+    }
+
+    /// The numbers of all of them.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn chunks(&self) -> impl Iterator<Item = &Chunk> {
+        self.parts.iter().flat_map(|part| &part.pieces.chunks)
+    }
+
+    /// The checksums that may change with what they cover.
+    fn sums(&self) -> impl Iterator<Item = &Sum> {
+        let entries = self.chunks().filter_map(|chunk| chunk.entry.as_ref()?.sum.as_ref());
+        let items = self.parts.iter().filter_map(|part| part.pieces.sum.as_ref());
+        entries.chain(items).chain(&self.end.sum)
+    }
+
+    fn address_of(&self, value: usize) -> Vec<u8> {
+        (value as u64).to_le_bytes()[..self.address.min(8)].to_vec()
+    }
+
+    /// What replaces a chunk that becomes these bytes; `end` is where the file ends so far.
+    fn stored(
+        &self,
+        chunk: &Chunk,
+        bytes: Vec<u8>,
+        (file, end): (&[u8], &mut usize),
+        splices: &mut Vec<Splice>,
+    ) {
+        let Chunk { range, entry, .. } = chunk;
+        let length = bytes.len();
+        let (mut start, mut place) = (range.start, range.start..range.start + length);
+        if length > range.len() {
+            (start, place) = (*end, file.len()..file.len());
+            *end += length;
+        }
+        if let Some(Entry { address, size, .. }) = entry {
+            if start != range.start {
+                let place = *address..*address + self.address;
+                splices.push(Splice { range: place, bytes: self.address_of(start) });
+            }
+            if let Some(place) = size.as_ref().filter(|_| length != range.len()) {
+                let value = (length as u64).to_le_bytes()[..place.len()].to_vec();
+                splices.push(Splice { range: place.clone(), bytes: value });
+            }
+        }
+        splices.push(Splice { range: place, bytes });
+    }
+}
+
+impl Encoded for Encoding {
+    fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn ranges(&self) -> Vec<Range<usize>> {
+        let mut ranges: Vec<Range<usize>> =
+            self.chunks().map(|chunk| chunk.range.clone()).collect();
+        for entry in self.chunks().filter_map(|chunk| chunk.entry.as_ref()) {
+            ranges.push(entry.address..entry.address + self.address);
+            ranges.extend(entry.size.clone());
+        }
+        ranges.push(self.end.place.clone());
+        ranges.extend(self.sums().map(Sum::place));
+        ranges
+    }
+
+    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice> {
+        let mut splices = Vec::new();
+        for Part { pieces, own } in &self.parts {
+            let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
+            let Some(lattice) = pieces.lattice.as_ref().filter(|_| old != new) else { continue };
+            for chunk in &pieces.chunks {
+                let mut is_same = true;
+                lattice.runs(chunk.number, |at, _, length| {
+                    is_same &= old[at..at + length] == new[at..at + length];
+                });
+                // What was read once can be read again.
+                let Some(mut bytes) = pieces.chunk(file, chunk).filter(|_| !is_same) else {
+                    continue;
+                };
+                // What a chunk at the edge has beside the items stays.
+                lattice.runs(chunk.number, |at, to, length| {
+                    bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
+                });
+                let stored = filters::filtered(&pieces.filters, chunk.mask, bytes.into_owned());
+                self.stored(chunk, stored, (file, end), &mut splices);
+            }
+        }
+        splices
+    }
+
+    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice> {
+        let mut more = Vec::new();
+        if end > file.len() {
+            more.push(Splice { range: self.end.place.clone(), bytes: self.address_of(end) });
+        }
+        let mut sums: Vec<&Sum> = self.sums().collect();
+        sums.dedup();
+        for sum in sums {
+            if more.iter().all(|splice| splice.range != sum.place()) {
+                more.extend(sum.again(file, splices.iter().chain(&more)));
+            }
+        }
+        more
+    }
+
+    fn followers(&self, _first: usize) -> Vec<Range<usize>> {
+        Vec::new()
+    }
+
+    fn keeps_places(&self) -> bool {
+        true
+    }
+}

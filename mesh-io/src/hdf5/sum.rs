@@ -1,0 +1,106 @@
+//! Checksums of metadata: Jenkins' lookup3.
+
+use super::bytes::{Bytes, Fault};
+use crate::numbers::Splice;
+use std::ops::Range;
+
+/// A range of a file with a checksum, the four bytes after it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Sum {
+    pub(super) range: Range<usize>,
+}
+
+impl Sum {
+    /// Where the checksum stands.
+    pub(super) fn place(&self) -> Range<usize> {
+        self.range.end..self.range.end + 4
+    }
+
+    /// Takes the checksum of what was taken since `start`, which has to be right. Fuzzers do not get beyond checksums by chance, so
+    /// they are spared.
+    pub(super) fn take(start: usize, bytes: &mut Bytes<'_>) -> Result<Sum, Fault> {
+        let range = start..bytes.at();
+        let own = bytes.within(range.clone()).take(range.len())?;
+        let stored = bytes.number(4)?;
+        match cfg!(any(fuzzing, test)) || u64::from(lookup3(own)) == stored {
+            true => Ok(Sum { range }),
+            false => Err(bytes.damaged()),
+        }
+    }
+
+    /// The checksum once these ranges are replaced by as many bytes, if one of them is covered by it.
+    pub(super) fn again<'s>(
+        &self,
+        file: &[u8],
+        splices: impl Iterator<Item = &'s Splice>,
+    ) -> Option<Splice> {
+        let own = |splice: &&Splice| {
+            splice.range.start >= self.range.start && splice.range.end <= self.range.end
+        };
+        let mut bytes = file.get(self.range.clone())?.to_vec();
+        let mut is_touched = false;
+        for splice in splices.filter(own) {
+            let at = splice.range.start - self.range.start;
+            bytes.get_mut(at..at + splice.bytes.len())?.copy_from_slice(&splice.bytes);
+            is_touched = true;
+        }
+        let bytes = lookup3(&bytes).to_le_bytes().to_vec();
+        is_touched.then(|| Splice { range: self.place(), bytes })
+    }
+}
+
+/// Bob Jenkins' hash of 2006, of bytes and without an initial value.
+fn lookup3(bytes: &[u8]) -> u32 {
+    let start = 0xDEAD_BEEF_u32.wrapping_add(bytes.len() as u32);
+    let [mut a, mut b, mut c] = [start; 3];
+    let words = |bytes: &[u8]| {
+        let mut padded = [0; 12];
+        padded[..bytes.len()].copy_from_slice(bytes);
+        [0, 4, 8].map(|at| {
+            u32::from_le_bytes([padded[at], padded[at + 1], padded[at + 2], padded[at + 3]])
+        })
+    };
+    let mut rest = bytes;
+    while rest.len() > 12 {
+        let (head, tail) = rest.split_at(12);
+        let [x, y, z] = words(head);
+        (a, b, c) = (a.wrapping_add(x), b.wrapping_add(y), c.wrapping_add(z));
+        for (turn, by) in [4, 6, 8, 16, 19, 4].into_iter().enumerate() {
+            // Each of the three in turn, with the one before it and the one after.
+            let [one, other, next] = match turn % 3 {
+                0 => [&mut a, &mut c, &mut b],
+                1 => [&mut b, &mut a, &mut c],
+                _ => [&mut c, &mut b, &mut a],
+            };
+            *one = one.wrapping_sub(*other) ^ other.rotate_left(by);
+            *other = other.wrapping_add(*next);
+        }
+        rest = tail;
+    }
+    if rest.is_empty() {
+        return c;
+    }
+    let [x, y, z] = words(rest);
+    (a, b, c) = (a.wrapping_add(x), b.wrapping_add(y), c.wrapping_add(z));
+    for (turn, by) in [14, 11, 25, 16, 4, 14, 24].into_iter().enumerate() {
+        let (one, other) = match turn % 3 {
+            0 => (&mut c, b),
+            1 => (&mut a, c),
+            _ => (&mut b, a),
+        };
+        *one = (*one ^ other).wrapping_sub(other.rotate_left(by));
+    }
+    c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The values that the author of the hash gives with it.
+    #[test]
+    fn hashes_match_the_published_values_of_their_author() {
+        assert_eq!(lookup3(b""), 0xDEAD_BEEF);
+        assert_eq!(lookup3(b"Four score and seven years ago"), 0x1777_0551);
+    }
+}

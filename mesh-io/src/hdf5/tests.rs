@@ -1,0 +1,170 @@
+//! Files that other programs made, in `tests/formats/h5`.
+
+use super::{Encoding, Hdf5, Number};
+use crate::numbers::Encoded;
+use crate::rewrite::Rewrite;
+use crate::source::Source;
+use std::path::Path;
+
+const FILES: [&str; 10] = [
+    "chunked.h5",
+    "dolfin.h5",
+    "gmsh.cgns",
+    "gmsh.med",
+    "h5netcdf.nc",
+    "latest.h5",
+    "meshio.h5",
+    "netcdf4.exo",
+    "ugrid.nc",
+    "zlib.exo",
+];
+
+fn load(name: &str) -> Source {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    Source::load(&folder.join(name)).unwrap()
+}
+
+/// The paths of all datasets with real numbers, found group by group.
+fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
+    let mut groups = vec![Vec::new()];
+    let mut found = Vec::new();
+    while let Some(group) = groups.pop() {
+        // A damaged name may have slashes.
+        let Some(object) = file.find(&group) else { continue };
+        if groups.len() > 1000 {
+            break;
+        }
+        for (name, child) in file.children(object) {
+            let path = [&group[..], b"/", name].concat();
+            match file.dataset(child) {
+                Ok(None) if path.len() < 200 => groups.push(path),
+                Ok(Some(dataset)) if matches!(dataset.number, Number::Real(..)) => found.push(path),
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::Array<'a>, Number)> {
+    let dataset = file.dataset(file.find(path)?).ok()??;
+    Some((file.array(&dataset).ok()?, dataset.number))
+}
+
+/// The file with all numbers of a dataset changed.
+fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
+    let file = Hdf5::open(source).unwrap();
+    let (array, number) = array(&file, path).unwrap();
+    let size = number.bytes();
+    let encoding = Encoding::new(&file, vec![array]);
+    let mut new = Encoded::bytes(&encoding).to_vec();
+    for (k, number) in new.chunks_exact_mut(size).enumerate() {
+        // Digits that no compressor makes shorter.
+        let digits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).to_le_bytes();
+        number[..size - 2].copy_from_slice(&digits[..size - 2]);
+    }
+    let bytes = &source.bytes;
+    let mut end = bytes.len();
+    let mut splices = encoding.splices(bytes, &new, &mut end);
+    let more = encoding.follow(bytes, &splices, end);
+    splices.extend(more);
+    splices.sort_by_key(|splice| splice.range.start);
+    let mut out = Vec::new();
+    Rewrite { bytes, columns: &[], splices: &splices }.write(&mut out).unwrap();
+    assert_eq!(out.len(), end);
+    (out, new)
+}
+
+/// Every dataset of real numbers, in every layout: it alone changes, and has the numbers it was given.
+#[test]
+fn numbers_of_every_layout_are_replaced() {
+    let mut replaced = 0;
+    for name in FILES {
+        let source = load(name);
+        let file = Hdf5::open(&source).unwrap();
+        let all = paths(&file);
+        for path in &all {
+            let shown = format!("{name}{}", String::from_utf8_lossy(path));
+            let Some((old, _)) = array(&file, path).filter(|(array, _)| !array.bytes.is_empty())
+            else {
+                continue;
+            };
+            let (bytes, new) = changed(&source, path);
+            let again = Source::new(Path::new(name), bytes).unwrap();
+            let after = Hdf5::open(&again).unwrap();
+            for other in &all {
+                let (Some((before, _)), Some((after, _))) =
+                    (array(&file, other), array(&after, other))
+                else {
+                    assert!(array(&file, other).is_none(), "{shown}");
+                    continue;
+                };
+                let is_own = before.bytes == old.bytes
+                    && array(&after_of(&again), path).is_some_and(|(a, _)| a.bytes == after.bytes);
+                assert!(before.bytes == after.bytes || is_own, "{shown}");
+            }
+            assert!(array(&after, path).is_some_and(|(array, _)| array.bytes == new), "{shown}");
+            after.check_apart().unwrap();
+            replaced += 1;
+        }
+    }
+    assert!(replaced > 20, "{replaced} datasets");
+}
+
+fn after_of(source: &Source) -> Hdf5<'_> {
+    Hdf5::open(source).unwrap()
+}
+
+#[test]
+fn a_cut_file_never_panics() {
+    for name in FILES {
+        let mut source = load(name);
+        while !source.bytes.is_empty() {
+            source.bytes.pop();
+            if source.bytes.len().is_multiple_of(13) {
+                use_all(&source);
+            }
+        }
+    }
+}
+
+/// Reads all datasets of a file that may be damaged, and changes those that can be read.
+fn use_all(source: &Source) {
+    let Ok(file) = Hdf5::open(source) else { return };
+    for path in paths(&file) {
+        if array(&file, &path).is_some_and(|(array, _)| array.bytes.len() < 1 << 16) {
+            changed(source, &path);
+        }
+    }
+    let _ = file.check_apart();
+}
+
+/// Checksums are not looked at in these tests, so that damage gets beyond them.
+#[test]
+fn damaged_files_never_panic() {
+    let mut state = 7_u64;
+    let mut random = |below: usize| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let rounds = std::env::var("GPU_SMOOTH_DAMAGES").ok().and_then(|n| n.parse().ok());
+    for round in 0..rounds.unwrap_or(400) {
+        let mut source = load(FILES[round % FILES.len()]);
+        for _ in 0..=random(4) {
+            let length = source.bytes.len();
+            let at = random(length);
+            let some = [0, 1, 2, 8, 0x40, 0x7F, 0x80, 0xFE, 0xFF, random(256)];
+            match random(6) {
+                0 => source.bytes[at] ^= 1 << random(8),
+                1 => source.bytes.truncate(at.max(8)),
+                2 => {
+                    let from = random(length.saturating_sub(8).max(1));
+                    source.bytes.copy_within(from..from + 8, at.min(length - 8));
+                }
+                _ => source.bytes[at] = some[random(some.len())] as u8,
+            }
+        }
+        use_all(&source);
+    }
+}

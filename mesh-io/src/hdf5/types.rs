@@ -1,0 +1,115 @@
+//! What a dataset consists of: its type and its lengths.
+
+use super::bytes::{Bytes, Fault};
+use crate::binary::Order;
+use crate::precision::Precision;
+
+/// The types of numbers that are told apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Number {
+    /// Letters, so many to an item.
+    Text(usize),
+    /// Whole numbers of so many bytes.
+    Whole(usize, Order),
+    Real(Precision, Order),
+    /// The place of a text of any length, in so many bytes.
+    TextElsewhere(usize),
+    /// Anything else of this size.
+    Other(usize),
+}
+
+impl Number {
+    /// How many bytes an item has.
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Number::Text(bytes)
+            | Number::Whole(bytes, _)
+            | Number::TextElsewhere(bytes)
+            | Number::Other(bytes) => bytes,
+            Number::Real(precision, _) => precision.bytes(),
+        }
+    }
+
+    /// Reads a datatype message.
+    pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Number, Fault> {
+        let class = bytes.byte()? & 15;
+        let bits = bytes.number(3)?;
+        let size = bytes.count(4)?;
+        let order = if bits & 1 == 0 { Order::Little } else { Order::Big };
+        Ok(match (class, size) {
+            (0, 1 | 2 | 4 | 8) => {
+                let (offset, precision) = (bytes.count(2)?, bytes.count(2)?);
+                match (offset, precision) == (0, 8 * size) {
+                    true => Number::Whole(size, order),
+                    false => Number::Other(size),
+                }
+            }
+            (1, 4 | 8) if bits & 64 == 0 => {
+                // The offset and the number of bits, the places of exponent and mantissa, and what is added to the exponent.
+                let own = bytes.take(12)?;
+                let single = [0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0];
+                let double = [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0];
+                match size {
+                    4 if own == single => Number::Real(Precision::Single, order),
+                    8 if own == double => Number::Real(Precision::Double, order),
+                    _ => Number::Other(size),
+                }
+            }
+            (3, 1..) => Number::Text(size),
+            (9, 1..) if bits & 15 == 1 => Number::TextElsewhere(size),
+            _ => Number::Other(size),
+        })
+    }
+}
+
+/// The lengths of a dataset or attribute.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Space {
+    /// One length for each dimension; none for a single item.
+    pub(super) shape: Vec<u64>,
+    /// How large each may become; `u64::MAX` without a limit.
+    pub(super) most: Vec<u64>,
+    /// Whether there is no item at all.
+    pub(super) is_null: bool,
+}
+
+impl Space {
+    /// Reads a dataspace message.
+    pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Space, Fault> {
+        let widths = bytes.widths();
+        let version = bytes.byte()?;
+        let rank = usize::from(bytes.byte()?);
+        let flags = bytes.byte()?;
+        let is_null = match version {
+            1 => {
+                bytes.skip(5)?;
+                false
+            }
+            2 => bytes.byte()? == 2,
+            _ => return Err(bytes.unread(format!("a dataspace of version {version}"))),
+        };
+        if rank > 32 {
+            return Err(bytes.damaged());
+        }
+        let lengths = |bytes: &mut Bytes<'_>| -> Result<Vec<u64>, Fault> {
+            (0..rank).map(|_| Ok(bytes.length()? as u64)).collect()
+        };
+        let shape = lengths(&mut bytes)?;
+        let unlimited = |most: &mut u64| {
+            // All bits set, in as many bytes as a length has.
+            let has_limit = *most != u64::MAX >> (64 - 8 * widths.length.min(8));
+            *most = if has_limit { *most } else { u64::MAX };
+        };
+        let mut most = if flags & 1 == 1 { lengths(&mut bytes)? } else { shape.clone() };
+        most.iter_mut().for_each(unlimited);
+        Ok(Space { shape, most, is_null })
+    }
+
+    /// How many items there are; none if that is no number.
+    pub(super) fn count(&self) -> Option<u64> {
+        match self.is_null {
+            true => Some(0),
+            false => self.shape.iter().try_fold(1_u64, |count, &n| count.checked_mul(n)),
+        }
+    }
+}

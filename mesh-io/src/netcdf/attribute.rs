@@ -1,0 +1,39 @@
+//! Attributes of variables.
+
+use super::header::Number;
+use crate::binary::Order;
+
+/// An attribute: its name, and its content as it stands in the file.
+pub(super) struct Attribute {
+    pub(super) name: Vec<u8>,
+    pub(super) number: Number,
+    pub(super) order: Order,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Attribute {
+    /// Returns its text, up to where it ends.
+    pub(super) fn text(&self) -> Option<&[u8]> {
+        let is_text = self.number == Number::Text;
+        let text = self.bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        is_text.then(|| text.trim_ascii())
+    }
+
+    /// Returns the first of its numbers.
+    pub(super) fn real(&self) -> Option<f64> {
+        let first = self.bytes.get(..self.number.bytes())?;
+        match self.number {
+            Number::Whole(_) => Some(self.order.signed(first) as f64),
+            Number::Real(precision) => Some(self.order.real(precision, first)),
+            Number::Text | Number::Other(_) => None,
+        }
+    }
+
+    /// Returns the first of its numbers, if that is whole.
+    pub(super) fn whole(&self) -> Option<i64> {
+        match self.number {
+            Number::Whole(bytes) => Some(self.order.signed(self.bytes.get(..bytes)?)),
+            _ => self.real().filter(|x| x.fract() == 0.0 && x.abs() < 1e15).map(|x| x as i64),
+        }
+    }
+}

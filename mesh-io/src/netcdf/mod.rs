@@ -1,0 +1,27 @@
+//! netCDF: dimensions and variables by name, in the classic formats and in netCDF-4, which is HDF5.
+
+mod attribute;
+mod axes;
+mod classic;
+mod header;
+mod points;
+mod version4;
+
+use crate::error::ReadError;
+use crate::hdf5::SIGNATURE;
+use crate::source::Source;
+
+pub(crate) use axes::axes;
+pub(crate) use header::{Header, Items, Number, Variable};
+pub(crate) use points::{Parts, PointData};
+
+/// Reads the header of a file.
+///
+/// # Errors
+/// If it is damaged, of an unknown version, or tells of variables that overlap or end beyond the file.
+pub(crate) fn open(source: &Source) -> Result<Header<'_>, ReadError> {
+    match source.bytes.starts_with(SIGNATURE) {
+        true => version4::read(source),
+        false => classic::read(source),
+    }
+}

@@ -1,0 +1,85 @@
+//! NetCDF-4: variables are datasets of HDF5, in the root group of the file.
+//!
+//! The format: <https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html#netcdf_4_spec>. A dimension is a
+//! dataset too, as long as the dimension.
+
+use super::attribute::Attribute;
+use super::header::{Content, Header, Number, Variable};
+use crate::binary::Order;
+use crate::error::ReadError;
+use crate::hdf5::{self, Hdf5};
+use crate::source::Source;
+
+/// What the name of a dimension starts with that is no variable of the same name.
+const NO_VARIABLE: &[u8] = b"This is a netCDF dimension but not a netCDF variable";
+
+/// Reads which datasets there are. What is no dataset, or none that can be read, is no variable.
+pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
+    let file = Hdf5::open(source)?;
+    let (mut dimensions, mut variables) = (Vec::new(), Vec::new());
+    let named = file.children(file.root()).filter_map(|(name, object)| {
+        let dataset = file.dataset(object).ok()??;
+        Some((name, object, dataset))
+    });
+    let datasets: Vec<_> = named.collect();
+    // The dimension itself need not be as long as those that have it.
+    let growing = datasets.iter().filter(|(.., dataset)| dataset.grows());
+    let records = growing.filter_map(|(.., dataset)| dataset.shape().first().copied()).max();
+    for (name, object, dataset) in datasets {
+        let mut shape = dataset.shape().to_vec();
+        if let &[length] = &shape[..] {
+            dimensions.push((name.to_vec(), length));
+        }
+        // Such a dataset has no numbers.
+        if file
+            .attribute(object, b"NAME")
+            .is_some_and(|name| name.text().is_some_and(|text| text.starts_with(NO_VARIABLE)))
+        {
+            continue;
+        }
+        let is_record = dataset.grows() && shape.first().copied() == records;
+        if is_record {
+            shape.remove(0);
+        }
+        let (number, order) = match dataset.number {
+            hdf5::Number::Text(1) => (Number::Text, Order::Big),
+            other => number_of(other),
+        };
+        let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
+        let Some(size) = size.and_then(|size| usize::try_from(size).ok()) else { continue };
+        let attributes = file.attributes(object).into_iter().map(|(name, attribute)| {
+            // A text of an attribute is a single item.
+            let (number, order) = match attribute.number {
+                hdf5::Number::Text(_) => (Number::Text, Order::Big),
+                other => number_of(other),
+            };
+            Attribute { name: name.to_vec(), number, order, bytes: attribute.bytes.to_vec() }
+        });
+        let attributes = attributes.collect();
+        let name = name.to_vec();
+        let content = Content::Dataset(dataset);
+        variables.push(Variable {
+            name,
+            shape,
+            is_record,
+            number,
+            order,
+            attributes,
+            size,
+            content,
+        });
+    }
+    let records = records.and_then(|records| usize::try_from(records).ok()).unwrap_or(0);
+    Ok(Header { source, dimensions, variables, records, hdf5: Some(file) })
+}
+
+/// What numbers are called here, and the order of their bytes.
+fn number_of(number: hdf5::Number) -> (Number, Order) {
+    match number {
+        hdf5::Number::Whole(bytes, order) => (Number::Whole(bytes), order),
+        hdf5::Number::Real(precision, order) => (Number::Real(precision), order),
+        hdf5::Number::Text(bytes)
+        | hdf5::Number::TextElsewhere(bytes)
+        | hdf5::Number::Other(bytes) => (Number::Other(bytes), Order::Big),
+    }
+}

@@ -1,0 +1,137 @@
+//! The region of each triangle, and the vertices between regions.
+//!
+//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`Regions`] takes
+//! these names, and the rest is the same for all formats.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// Numbers names from 0, in the order in which they are first met.
+#[derive(Default)]
+pub(crate) struct Numbering<N> {
+    numbers: HashMap<N, u32>,
+    /// The last name and its number, as the next name is mostly the same.
+    last: Option<(N, u32)>,
+}
+
+impl<N: Clone + Eq + Hash> Numbering<N> {
+    #[inline]
+    pub(crate) fn number(&mut self, name: N) -> u32 {
+        match &self.last {
+            Some((last, number)) if *last == name => *number,
+            _ => self.look_up(name),
+        }
+    }
+
+    fn look_up(&mut self, name: N) -> u32 {
+        // There are no more names than triangles, of which there are fewer than 2^32.
+        let next = self.numbers.len() as u32;
+        let number = *self.numbers.entry(name.clone()).or_insert(next);
+        self.last = Some((name, number));
+        number
+    }
+}
+
+/// The regions of the triangles read so far. It needs memory only if there are several regions.
+#[derive(Default)]
+pub(crate) struct Regions {
+    triangles: usize,
+    /// The region of each triangle; empty as long as all are of region 0.
+    numbers: Vec<u32>,
+}
+
+impl Regions {
+    /// Adds a triangle that belongs to a region. The first triangle must be of region 0.
+    #[inline]
+    pub(crate) fn push(&mut self, region: u32) {
+        if region != 0 && self.numbers.is_empty() {
+            self.numbers = vec![0; self.triangles];
+        }
+        if !self.numbers.is_empty() {
+            self.numbers.push(region);
+        }
+        self.triangles += 1;
+    }
+
+    /// Returns the region of each triangle; `None` if all are of one.
+    pub(crate) fn finish(self) -> Option<Vec<u32>> {
+        (!self.numbers.is_empty()).then_some(self.numbers)
+    }
+}
+
+/// Returns the vertices of triangles of different regions, ascending. Vertices on the boundary are left out.
+pub(crate) fn interface_vertices(
+    regions: &[u32],
+    triangles: &[[u32; 3]],
+    vertices: usize,
+) -> Vec<u32> {
+    #[derive(Clone, Copy)]
+    struct Vertex {
+        /// The region of the vertex's first triangle.
+        region: Option<u32>,
+        is_between: bool,
+        /// The exclusive or of its neighbors in all its triangles. Around a vertex inside the mesh each neighbor is met
+        /// twice, which gives 0. On the boundary the two ends of the fan remain, which differ.
+        neighbors: u32,
+    }
+    let mut all = vec![Vertex { region: None, is_between: false, neighbors: 0 }; vertices];
+    for (&[a, b, c], &region) in triangles.iter().zip(regions) {
+        for [v, next, last] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let vertex = &mut all[v as usize];
+            vertex.is_between |= *vertex.region.get_or_insert(region) != region;
+            vertex.neighbors ^= next ^ last;
+        }
+    }
+    let held = |(_, vertex): &(u32, Vertex)| vertex.is_between && vertex.neighbors == 0;
+    (0..).zip(all).filter(held).map(|(v, _)| v).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_numbered_as_they_come() {
+        let mut numbering = Numbering::default();
+        let numbers = [7, 7, -1, 7, 3, -1, 3].map(|name| numbering.number(name));
+        assert_eq!(numbers, [0, 0, 1, 0, 2, 1, 2]);
+    }
+
+    #[test]
+    fn one_region_takes_no_memory() {
+        let of = |numbers: &[u32]| {
+            let mut regions = Regions::default();
+            numbers.iter().for_each(|&number| regions.push(number));
+            regions.finish()
+        };
+        assert_eq!(of(&[0, 0, 0]), None);
+        assert_eq!(of(&[0, 0, 1, 0]), Some(vec![0, 0, 1, 0]));
+        let mut regions = Regions::default();
+        (0..1000).for_each(|_| regions.push(0));
+        assert_eq!(regions.numbers.capacity(), 0);
+    }
+
+    /// Two squares side by side, each with a vertex in its middle, and a vertex in the middle of their common edge.
+    #[test]
+    fn only_vertices_inside_the_mesh_are_between_regions() {
+        let triangles = [
+            [0, 1, 6],
+            [1, 8, 6],
+            [8, 4, 6],
+            [4, 5, 6],
+            [5, 0, 6],
+            [1, 2, 7],
+            [2, 3, 7],
+            [3, 4, 7],
+            [4, 8, 7],
+            [8, 1, 7],
+        ];
+        let regions = [0, 0, 0, 0, 0, 1, 1, 1, 1, 1];
+        let between = |regions: &[u32]| interface_vertices(regions, &triangles, 9);
+        // Vertices 1 and 4 are on the boundary.
+        assert_eq!(between(&regions), [8]);
+        assert_eq!(between(&[3; 10]), [0; 0]);
+        let all_different: Vec<u32> = (0..10).collect();
+        assert_eq!(between(&all_different), [6, 7, 8]);
+    }
+}

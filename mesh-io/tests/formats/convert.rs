@@ -1,0 +1,339 @@
+//! Meshes converted to other formats: what comes back from them, and what is reported as lost.
+
+use super::facts::mesh_of;
+use super::made::base;
+use super::others::{folder, for_each};
+use super::vtu::{self, styles};
+use super::{Folder, damage};
+use mesh_io::{Conversion, Format, Group, MeshFile};
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::Mutex;
+
+/// The ending of file names in a target format.
+fn ending(format: Format) -> &'static str {
+    match format {
+        Format::Triangle => "node",
+        Format::Gmsh22 | Format::Gmsh41 | Format::FreeFem => "msh",
+        Format::Vtk => "vtk",
+        Format::Vtu => "vtu",
+        Format::Xdmf => "xdmf",
+        Format::Su2 => "su2",
+        Format::Medit => "mesh",
+        Format::MeditBinary => "meshb",
+        Format::Obj => "obj",
+        Format::Off => "off",
+        Format::Ply => "ply",
+        Format::Sms2dm => "2dm",
+        Format::Exodus => "e",
+        Format::Ugrid => "nc",
+        Format::Abaqus => "inp",
+        _ => "gr3",
+    }
+}
+
+/// The content of a group: dimension, name, triangles, and numbers of lines and quadrilaterals.
+fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
+    let triangles = group.triangles().to_vec();
+    (group.dimension, group.name.clone(), triangles, group.lines, group.quadrilaterals)
+}
+
+/// Converts a mesh to every format and reads it back: all of it must come back where nothing is reported as lost. Returns
+/// the number of formats without loss.
+fn check(file: &MeshFile, folder: &Folder) -> usize {
+    let mut clean = 0;
+    for (name, format) in Conversion::targets() {
+        let out = format!("{name}.{}", ending(format));
+        let conversion = Conversion::new(file, format).unwrap().unwrap();
+        conversion.write(&folder.path(&out)).unwrap();
+        let back = folder.read(&out);
+        assert_eq!(back.format(), format);
+        assert_eq!(back.points(), file.points(), "{name}");
+        let (mut triangles, mut own) = (back.triangles().to_vec(), file.triangles().to_vec());
+        if conversion.lost().iter().any(|lost| lost.starts_with("the order of triangles")) {
+            triangles.sort_unstable();
+            own.sort_unstable();
+        }
+        assert_eq!(triangles, own, "{name}");
+        // What was written is read completely: converted again, it gives the same file without loss.
+        let again = Conversion::new(&back, format).unwrap().unwrap();
+        let [again_text, text] = [&again, &conversion].map(|c| c.text().unwrap_or_default());
+        let differ = again_text.lines().zip(text.lines()).find(|(again, first)| again != first);
+        assert_eq!(differ, None, "{name}");
+        assert_eq!(again_text.len(), text.len(), "{name}");
+        assert!(again.bytes() == conversion.bytes(), "{name}");
+        assert_eq!(again.lost(), [""; 0], "{name}");
+        if !conversion.lost().is_empty() {
+            continue;
+        }
+        clean += 1;
+        let free = |file: &MeshFile| super::support::check::held(&mesh_of(file));
+        assert_eq!(free(&back), free(file), "{name}: other vertices are free");
+        let (before, after) = (file.groups().unwrap(), back.groups().unwrap());
+        let after: Vec<_> = after.iter().map(held).collect();
+        // A tag of zero is not a group in every format, and entities are replaced by physical groups where there are any.
+        let is_kept = |group: &&Group| {
+            let is_points = group.lines + group.triangles().len() + group.quadrilaterals == 0;
+            // An OBJ has its lines in the groups of its faces, and chains of nodes count as points.
+            let is_points =
+                is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);
+            group.tag != Some(0) && !group.what.contains("entity") && !is_points
+        };
+        for group in before.iter().filter(is_kept) {
+            let own = held(group);
+            let same = after.iter().any(|other| {
+                let named = own.1.is_none() || own.1 == other.1;
+                named && (own.0, &own.2, own.3, own.4) == (other.0, &other.2, other.3, other.4)
+            });
+            assert!(same, "{name}: {own:?} is none of {after:?}");
+        }
+        let values = |file: &MeshFile| -> BTreeMap<String, Vec<u64>> {
+            let fields = file.point_fields(None).unwrap();
+            let bits = |x: &f64| (x + 0.0).to_bits();
+            let of = |field: &mesh_io::PointField| {
+                (field.name().to_owned(), field.values().iter().map(bits).collect())
+            };
+            // gmsh pads vectors of two numbers to three, so these are left out.
+            fields.iter().filter(|field| field.components() != 2).map(of).collect()
+        };
+        let (mut before, after) = (values(file), values(&back));
+        // A third coordinate that is the same everywhere need not be written.
+        let is_flat = |z: &Vec<u64>| z.iter().all(|bits| *bits == z[0]);
+        if before.get("z").is_some_and(is_flat) {
+            before.remove("z");
+        }
+        // A depth is a height with the other sign.
+        let turned = match (file.format(), format) {
+            (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => Some(("depth", "z")),
+            (Format::Sms2dm | Format::Mike, Format::Adcirc) => Some(("z", "depth")),
+            _ => None,
+        };
+        if let Some((from, to)) = turned
+            && let Some(numbers) = before.remove(from)
+        {
+            let minus = |bits: u64| (0.0 - f64::from_bits(bits)).to_bits();
+            before.insert(to.to_owned(), numbers.into_iter().map(minus).collect());
+        }
+        for (array, values) in before {
+            let found = after.get(&array).or_else(|| after.get(&array.replace(' ', "_")));
+            assert!(found == Some(&values), "{name}: {array}");
+        }
+    }
+    clean
+}
+
+#[test]
+fn every_format_is_converted_to_every_other() {
+    let clean = Mutex::new(0);
+    for_each(&base(), |made| {
+        let folder = folder(made, &made.bytes);
+        *clean.lock().unwrap() += check(&folder.read(made.name), &folder);
+    });
+    let clean = clean.into_inner().unwrap();
+    assert!(clean > 70, "{clean} conversions lose nothing");
+}
+
+const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"in let\"\n1 2 \"wall\"\n2 1 \"steel\"\n\
+$EndPhysicalNames\n$Nodes\n6\n1 0 0 0.5\n2 1 0 1\n3 1 1 1\n4 0 1 1\n5 .5 .5 1\n6 2 .5 1\n$EndNodes\n$Elements\n9\n\
+1 1 2 1 7 1 2\n2 1 2 2 8 2 3\n3 1 2 2 8 3 4\n4 1 2 2 9 4 1\n5 2 2 1 4 1 2 5\n6 2 2 1 4 2 3 5\n7 2 2 1 4 3 4 5\n\
+8 2 2 1 4 4 1 5\n9 2 2 3 4 2 6 3\n$EndElements\n$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n6 2.5\n$EndElementData\n";
+
+/// The mesh in another format, and the list of what is lost.
+fn converted(name: &str, text: &str, to: Format) -> (String, String) {
+    let folder = Folder::new(&[(name, text)]);
+    let conversion = Conversion::new(&folder.read(name), to).unwrap().unwrap();
+    (conversion.text().unwrap(), conversion.lost().join("; "))
+}
+
+#[test]
+fn names_and_numbers_stand_where_formats_have_them() {
+    let (su2, lost) = converted("in.msh", GMSH, Format::Su2);
+    let expected = "NDIME= 2\nNELEM= 5\n5 0 1 4 0\n5 1 2 4 1\n5 2 3 4 2\n5 3 0 4 3\n5 1 5 2 4\nNPOIN= 6\n\
+        0.0 0.0 0\n1.0 0.0 1\n1.0 1.0 2\n0.0 1.0 3\n0.5 0.5 4\n2.0 0.5 5\nNMARK= 2\nMARKER_TAG= in_let\n\
+        MARKER_ELEMS= 1\n3 0 1\nMARKER_TAG= wall\nMARKER_ELEMS= 3\n3 1 2\n3 2 3\n3 3 0\n";
+    assert_eq!(su2, expected);
+    let expected = "third coordinates; groups of lines (entity): 7, 8, 9; \
+                    groups of surfaces (physical): steel, 3; data of elements: e";
+    assert_eq!(lost, expected);
+
+    let (sms, lost) = converted("in.msh", GMSH, Format::Sms2dm);
+    let expected = "MESH2D\nE3T 1 1 2 5 1\nE3T 2 2 3 5 1\nE3T 3 3 4 5 1\nE3T 4 4 1 5 1\nE3T 5 2 6 3 3\n\
+        ND 1 0.0 0.0 0.5\nND 2 1.0 0.0 1.0\nND 3 1.0 1.0 1.0\nND 4 0.0 1.0 1.0\nND 5 0.5 0.5 1.0\nND 6 2.0 0.5 1.0\n\
+        NS 1 -2 \"in let\"\nNS 2 3 4 -1 \"wall\"\nMAT 1 \"steel\"\n";
+    assert_eq!(sms, expected);
+    assert_eq!(lost, "groups of lines (entity): 7, 8, 9; data of elements: e");
+
+    let (medit, lost) = converted("in.msh", GMSH, Format::Medit);
+    assert!(medit.starts_with("MeshVersionFormatted 2\nDimension 3\nVertices\n6\n0.0 0.0 0.5 0\n"));
+    assert!(medit.ends_with(
+        "Edges\n4\n1 2 1\n2 3 2\n3 4 2\n4 1 2\nTriangles\n5\n1 2 5 1\n2 3 5 1\n\
+                             3 4 5 1\n4 1 5 1\n2 6 3 3\nEnd\n"
+    ));
+    assert!(
+        lost.contains("names of groups of lines, which become numbers: in let, wall"),
+        "{lost}"
+    );
+
+    // Groups named in one version of a format are named in the other.
+    let (newer, lost) = converted("in.msh", GMSH, Format::Gmsh41);
+    assert_eq!(lost, "");
+    let (older, lost) = converted("in.msh", &newer, Format::Gmsh22);
+    assert_eq!(lost, "");
+    let rows = |text: &str| -> Vec<String> {
+        let words = |row: &str| row.split_whitespace().collect::<Vec<_>>().join(" ");
+        text.lines().map(words).collect()
+    };
+    let (older, elements) = (rows(&older), "2 1 2 2 8 2 3".to_owned());
+    assert!(older.contains(&elements) && older.contains(&"1 2 \"wall\"".to_owned()), "{older:?}");
+    assert!(older.contains(&"6 2.5".to_owned()), "{older:?}");
+    assert!(older.contains(&"9 2 2 3 1 2 6 3".to_owned()), "{older:?}");
+}
+
+const GRID: &str = "bay\n4 5\n1 0 0 2.5\n2 1 0 3\n3 1 1 4\n4 0 1 5\n5 .5 .5 9\n1 3 1 2 5\n2 3 2 3 5\n3 3 3 4 5\n4 3 4 1 5\n\
+1 = Number of open boundaries\n2 = Total\n2 = Number of nodes for open boundary 1\n1\n2\n2 ! land\n5\n3 0 = first\n2\n3\n4\n2 1\n4\n1\n";
+
+#[test]
+fn boundaries_of_a_grid_are_groups() {
+    let folder = Folder::new(&[("in.14", GRID), ("cut.14", &GRID[..GRID.len() - 9])]);
+    let groups = folder.read("in.14").groups().unwrap();
+    let told: Vec<_> = groups.iter().map(|group| (group.to_string(), group.vertices())).collect();
+    let expected: [(String, &[u32]); 3] = [
+        ("boundary line open1".into(), &[0, 1]),
+        ("boundary line land1".into(), &[1, 2, 3]),
+        ("boundary line island2".into(), &[0, 3]),
+    ];
+    assert_eq!(told, expected);
+    // A list of a boundary that is cut off is skipped.
+    assert_eq!(folder.read("cut.14").groups().unwrap().len(), 2);
+    let (gmsh, lost) = converted("in.14", GRID, Format::Gmsh22);
+    assert_eq!(lost, "");
+    assert!(gmsh.contains("1 1 \"open1\"") && gmsh.contains("$NodeData\n1\n\"depth\""), "{gmsh}");
+    let (sms, lost) = converted("in.14", GRID, Format::Sms2dm);
+    assert!(sms.contains("NS 2 3 -4 \"land1\"\n"), "{sms}");
+    assert_eq!(lost, "");
+    let (back, lost) = converted("in.msh", &gmsh, Format::Adcirc);
+    assert_eq!(lost, "names of groups of lines, which become numbers: open1, land1, island2");
+    let tail = &back[back.find("1 = Number of open").unwrap()..];
+    let expected = "1 = Number of open boundaries\n2 = Total number of open boundary nodes\n\
+        2 = Number of nodes for open boundary\n1\n2\n2 = Number of land boundaries\n5 = Total number of land boundary nodes\n\
+        3 0 = Number of nodes for land boundary\n2\n3\n4\n2 1 = Number of nodes for land boundary\n4\n1\n";
+    assert_eq!(tail, expected);
+}
+
+#[test]
+fn content_that_a_format_cannot_hold_is_listed() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\nvt 0 0\nusemtl a b\no part\nf 1/1/1 2//1 5\n\
+               f 2 3 5\no other\nf 3 4 5\nf 4 1 5\nf 2 6 7 3\nl 1 2 3\np 5\n";
+    let of = |to| converted("in.obj", obj, to).1;
+    let left = "normals; texture coordinates";
+    let objects = "groups of points (object): other; groups of lines (object): other; \
+                   groups of surfaces (object): part, other";
+    assert_eq!(of(Format::Gmsh22), format!("{objects}; {left}"));
+    let off = of(Format::Off);
+    assert!(off.starts_with("1 point; 2 lines; groups of points (material): a b; "), "{off}");
+    let vtu = of(Format::Vtu);
+    let names = "names of groups of surfaces, which become numbers: a b, part, other; ";
+    assert!(vtu.contains(names) && vtu.ends_with(left), "{vtu}");
+    assert!(of(Format::FreeFem).starts_with("1 point; 1 quadrilateral; "));
+
+    let sparse = GMSH.replace("\n6 2 .5 1", "\n60 2 .5 1").replace("4 2 6 3\n", "4 2 60 3\n");
+    let (_, lost) = converted("in.msh", &sparse, Format::Vtu);
+    assert!(lost.contains("the vertices' own numbers, which are not consecutive"), "{lost}");
+    let (text, lost) = converted("in.msh", &sparse, Format::Gmsh41);
+    assert!(lost.is_empty() && text.contains("\n60\n"), "{lost}");
+    assert!(
+        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Selafin)
+            .unwrap()
+            .is_none()
+    );
+}
+
+#[test]
+fn every_encoding_of_vtu_is_converted() {
+    for style in styles().into_iter().step_by(7) {
+        let folder = vtu::folder(&vtu::write(&base(), style));
+        assert!(check(&folder.read("in.vtu"), &folder) >= 2, "{style:?}");
+    }
+}
+
+/// A damaged file that can be read can be converted.
+#[test]
+fn damaged_files_are_converted_or_refused() {
+    let mut random = damage::random(17);
+    let styles: Vec<_> = styles().into_iter().step_by(17).collect();
+    let vtus = styles.iter().map(|style| ("in.vtu", vtu::write(&base(), *style)));
+    let mut samples: Vec<(&str, Vec<u8>)> = vtus.collect();
+    samples.extend([("in.msh", GMSH.into()), ("in.14", GRID.into())]);
+    let mut read = 0;
+    for round in 0..200 {
+        let (name, bytes) = &samples[round % samples.len()];
+        let folder = Folder::new(&[]);
+        fs::write(folder.path(name), damage::damaged(bytes, &mut random)).unwrap();
+        let Ok(file) = MeshFile::read(&folder.path(name)) else { continue };
+        for (_, format) in Conversion::targets() {
+            if let Ok(Some(conversion)) = Conversion::new(&file, format) {
+                conversion.text();
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 300, "{read} conversions");
+}
+
+#[test]
+fn depths_of_grids_are_heights_of_sms() {
+    let grid = "t\n2 4\n1 0.0 0.0 1.5\n2 1.0 0.0 0.0\n3 1.0 1.0 -3.5\n4 0.0 1.0 NaN\n1 3 1 2 3\n2 3 1 3 4\n";
+    let folder = Folder::new(&[("a.14", grid)]);
+    let convert = |from: &str, format, to: &str| {
+        let conversion = Conversion::new(&folder.read(from), format).unwrap().unwrap();
+        conversion.write(&folder.path(to)).unwrap();
+        conversion.lost().to_vec()
+    };
+    assert_eq!(convert("a.14", Format::Sms2dm, "a.2dm"), [""; 0]);
+    let nodes = "ND 1 0.0 0.0 -1.5\nND 2 1.0 0.0 0.0\nND 3 1.0 1.0 3.5\nND 4 0.0 1.0 NaN\n";
+    assert!(folder.text("a.2dm").ends_with(nodes), "{}", folder.text("a.2dm"));
+    assert_eq!(convert("a.2dm", Format::Adcirc, "b.14"), [""; 0]);
+    assert!(folder.text("b.14").contains(&grid[2..]), "{}", folder.text("b.14"));
+    // The loss of depths is reported: z of other formats may be anything, so depths are not converted to it.
+    assert_eq!(convert("a.14", Format::Off, "a.off"), ["data of vertices: depth"]);
+    assert_eq!(convert("a.2dm", Format::Off, "b.off"), [""; 0]);
+    assert_eq!(convert("b.off", Format::Adcirc, "c.14"), ["third coordinates"]);
+    // A variable of nodes of UGRID is called so, or `z`, and what another format makes of it comes back.
+    assert_eq!(convert("a.14", Format::Ugrid, "a.nc"), [""; 0]);
+    assert_eq!(folder.read("a.nc").data_names(), ["depth"]);
+    assert_eq!(convert("a.nc", Format::Sms2dm, "d.2dm"), [""; 0]);
+    assert!(folder.text("d.2dm").ends_with(nodes), "{}", folder.text("d.2dm"));
+    assert_eq!(convert("a.2dm", Format::Ugrid, "b.nc"), [""; 0]);
+    assert_eq!(folder.read("b.nc").data_names(), ["z"]);
+    assert_eq!(convert("b.nc", Format::Adcirc, "d.14"), [""; 0]);
+    assert!(folder.text("d.14").contains(&grid[2..]), "{}", folder.text("d.14"));
+}
+
+#[test]
+fn sets_of_an_input_file_of_abaqus_are_the_groups_of_a_mesh() {
+    let (inp, lost) = converted("in.msh", GMSH, Format::Abaqus);
+    assert!(
+        lost.starts_with("groups of surfaces (entity)") || lost.contains("data of elements: e"),
+        "{lost}"
+    );
+    let expected = "*HEADING\nmesh\n*NODE\n1, 0.0, 0.0, 0.5\n2, 1.0, 0.0, 1.0\n3, 1.0, 1.0, 1.0\n4, 0.0, 1.0, 1.0\n5, 0.5, 0.5, 1.0\n\
+        6, 2.0, 0.5, 1.0\n*ELEMENT, TYPE=T3D2, ELSET=in_let\n1, 1, 2\n*ELEMENT, TYPE=T3D2, ELSET=wall\n2, 2, 3\n3, 3, 4\n4, 4, 1\n\
+        *ELEMENT, TYPE=S3, ELSET=steel\n5, 1, 2, 5\n6, 2, 3, 5\n7, 3, 4, 5\n8, 4, 1, 5\n*ELEMENT, TYPE=S3, ELSET=set3\n9, 2, 6, 3\n";
+    assert_eq!(inp, expected);
+    let exodus = "*NODE\n1, 0., 0.\n2, 2., 0.\n3, 0., 1e-7\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*NSET, NSET=\"a b\"\n1, 3\n*NSET, NSET=A_B\n2\n";
+    let (inp, lost) = converted("in.inp", exodus, Format::Abaqus);
+    assert_eq!(lost, "");
+    assert!(
+        inp.ends_with(
+            "*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*NSET, NSET=a_b_2\n1, 3\n*NSET, NSET=A_B\n2\n"
+        ),
+        "{inp}"
+    );
+    let grid = "t\n1 3\n1 0 0 0\n2 -0.0012345678901234567 0 0\n3 0 1 0\n1 3 1 2 3\n";
+    let (inp, lost) = converted("fort.14", grid, Format::Abaqus);
+    assert!(
+        lost.starts_with("digits of coordinates, of which 20 characters are written"),
+        "{lost}"
+    );
+    assert!(inp.contains("\n2, -.001234567890123457, 0.0\n"), "{inp}");
+}

@@ -1,0 +1,29 @@
+//! What a program that moves vertices makes of the facts of a file.
+
+use super::support::Mesh;
+use mesh_io::MeshFile;
+
+/// Returns the vertices that triangles of different regions share inside the mesh and that nothing else constrains,
+/// ascending.
+pub(crate) fn between_regions(file: &MeshFile) -> Vec<u32> {
+    let constrained = &file.constraints().vertices;
+    let mut between = file.interface_vertices();
+    between.retain(|v| !constrained.contains(v));
+    between
+}
+
+/// Returns the vertices that a program would fix: those of constraints, then those between regions.
+pub(crate) fn fixed(file: &MeshFile) -> Vec<u32> {
+    [file.constraints().vertices.clone(), between_regions(file)].concat()
+}
+
+/// Returns the mesh with the vertices that a program would fix.
+pub(crate) fn mesh_of(file: &MeshFile) -> Mesh {
+    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
+    Mesh { points, triangles, fixed: fixed(file) }
+}
+
+/// Returns the mesh with the vertices that a program would fix if vertices between regions may move.
+pub(crate) fn freed(file: &MeshFile) -> Mesh {
+    Mesh { fixed: file.constraints().vertices.clone(), ..mesh_of(file) }
+}

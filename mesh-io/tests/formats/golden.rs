@@ -1,0 +1,102 @@
+//! Golden files: hashes of every file that is written from the samples of all formats, recorded in `golden.txt` beside this
+//! file. A change of a recorded hash needs a commit of its own that says why.
+//! `GPU_SMOOTH_GOLDEN=write cargo test --test formats golden` writes the record.
+
+use super::facts::mesh_of;
+use super::made::{all, base};
+use super::others::folder;
+use super::{ELE, Folder, GMSH22, GMSH41, NODE, POLY};
+use mesh_io::{Conversion, MeshFile};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// FNV-1a, 64 bits.
+fn hash(bytes: impl IntoIterator<Item = u8>) -> u64 {
+    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Returns hashes of the mesh as it is read, its groups, the files that hold it with moved vertices, and all conversions.
+fn hashes(folder: &Folder, file: &MeshFile, name: &str) -> String {
+    let mesh = mesh_of(file);
+    let mut fixed = mesh.fixed.clone();
+    fixed.sort_unstable();
+    fixed.dedup();
+    let points = mesh.points.as_flattened().iter().flat_map(|x| x.to_le_bytes());
+    let numbers =
+        mesh.triangles.as_flattened().iter().chain(&fixed).chain(file.regions().unwrap_or(&[]));
+    let read = hash(points.chain(numbers.flat_map(|number| number.to_le_bytes())));
+    let mut groups = Vec::new();
+    for group in file.groups().unwrap().iter() {
+        groups.extend(format!("{} {:?} {:?}", group.dimension, group.tag, group.name).bytes());
+        let members = group.vertices().iter().chain(group.triangles());
+        groups.extend(members.flat_map(|member| member.to_le_bytes()));
+    }
+    let moved: Vec<_> = mesh.points.iter().map(|[x, y]| [1.1 * x + 0.013, y - 0.007]).collect();
+    let out = folder.path("moved").join(name);
+    std::fs::create_dir_all(folder.path("moved")).unwrap();
+    file.write(&out, &moved).unwrap();
+    let written = file.destinations(&out).unwrap();
+    let written = written.iter().flat_map(|path| std::fs::read(path).unwrap());
+    let converted = Conversion::targets().flat_map(|(name, format)| {
+        let conversion = Conversion::new(file, format).unwrap().unwrap();
+        let out = folder.path("moved").join(name);
+        conversion.write(&out).unwrap();
+        let paths = conversion.destinations(&out);
+        // A Triangle mesh without lines has no `.poly`.
+        let there = paths.into_iter().filter(|path| path.exists());
+        there.flat_map(|path| std::fs::read(path).unwrap()).collect::<Vec<_>>()
+    });
+    let [groups, written, converted] = [hash(groups), hash(written), hash(converted)];
+    format!(
+        "read {read:016x} groups {groups:016x} written {written:016x} converted {converted:016x}"
+    )
+}
+
+#[test]
+fn files_written_from_every_sample_have_the_recorded_bytes() {
+    let mut lines = String::new();
+    for (index, made) in all(&base()).iter().enumerate() {
+        let folder = folder(made, &made.bytes);
+        let hashes = hashes(&folder, &folder.read(made.name), made.name);
+        writeln!(lines, "{index} {} {hashes}", made.what.replace('\n', " ")).unwrap();
+    }
+    let texts: [&[(&str, &str)]; 4] = [
+        &[("a.node", NODE), ("a.ele", ELE)],
+        &[("a.node", NODE), ("a.ele", ELE), ("a.poly", POLY)],
+        &[("a.msh", GMSH22)],
+        &[("a.msh", GMSH41)],
+    ];
+    for files in texts {
+        let folder = Folder::new(files);
+        let name = files[0].0;
+        writeln!(lines, "{name} {}", hashes(&folder, &folder.read(name), name)).unwrap();
+    }
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    let mut names: Vec<_> =
+        std::fs::read_dir(&samples).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    for name in names.iter().map(|name| name.to_str().unwrap()) {
+        let folder = Folder::new(&[]);
+        for other in &names {
+            std::fs::copy(samples.join(other), folder.path(other.to_str().unwrap())).unwrap();
+        }
+        if let Ok(file) = MeshFile::read(&folder.path(name)) {
+            writeln!(lines, "{name} {}", hashes(&folder, &file, name)).unwrap();
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/golden.txt");
+    if std::env::var("GPU_SMOOTH_GOLDEN").is_ok_and(|what| what == "write") {
+        std::fs::write(&path, &lines).unwrap();
+    }
+    let recorded = std::fs::read_to_string(&path).unwrap();
+    let differ: Vec<_> = recorded
+        .lines()
+        .zip(lines.lines())
+        .filter(|(recorded, found)| recorded != found)
+        .map(|(recorded, found)| format!("- {recorded}\n+ {found}"))
+        .collect();
+    assert!(differ.is_empty(), "{} samples differ:\n{}", differ.len(), differ.join("\n"));
+    assert_eq!(recorded.lines().count(), lines.lines().count());
+}

@@ -1,0 +1,363 @@
+//! Meshes in HDF5, as several programs write them: `h5/make.py` has made the files.
+
+use super::damage::{self, damaged, random};
+use super::facts::{between_regions, fixed, mesh_of};
+use super::{Folder, support::check};
+use mesh_io::{Conversion, Format, MeshFile, PointField};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A file, and those beside it that it names.
+pub(crate) struct Sample {
+    pub(crate) name: &'static str,
+    pub(crate) beside: &'static [&'static str],
+    /// Whether all numbers stand in the file as they are, so that its length does not change.
+    is_plain: bool,
+}
+
+pub(crate) const SAMPLES: [Sample; 11] = [
+    Sample { name: "dolfin.xdmf", beside: &["dolfin.h5"], is_plain: true },
+    Sample { name: "meshio.xdmf", beside: &["meshio.h5"], is_plain: false },
+    Sample { name: "latest.xdmf", beside: &["latest.h5"], is_plain: false },
+    Sample { name: "chunked.xdmf", beside: &["chunked.h5"], is_plain: false },
+    Sample { name: "raw.xdmf", beside: &["raw-cells.bin", "raw.bin"], is_plain: true },
+    Sample { name: "gmsh.cgns", beside: &[], is_plain: true },
+    Sample { name: "gmsh.med", beside: &[], is_plain: true },
+    Sample { name: "netcdf4.exo", beside: &[], is_plain: true },
+    Sample { name: "zlib.exo", beside: &[], is_plain: false },
+    Sample { name: "ugrid.nc", beside: &[], is_plain: false },
+    Sample { name: "h5netcdf.nc", beside: &[], is_plain: true },
+];
+
+pub(crate) fn made(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5").join(name)
+}
+
+impl Sample {
+    /// A folder with the files.
+    pub(crate) fn folder(&self) -> Folder {
+        let folder = Folder::new(&[]);
+        for name in [self.name].iter().chain(self.beside) {
+            fs::copy(made(name), folder.path(name)).unwrap();
+        }
+        folder
+    }
+
+    /// What the files that are called so hold.
+    fn bytes(&self, file: &MeshFile) -> Vec<Vec<u8>> {
+        file.paths().map(|path| fs::read(path).unwrap()).collect()
+    }
+}
+
+/// What files give that may be damaged: a mesh whose parts are found again, or an error of one line with the name of one of them.
+fn mesh_or_error(folder: &Folder, sample: &Sample) -> Option<MeshFile> {
+    match MeshFile::read(&folder.path(sample.name)) {
+        Ok(file) => {
+            let (vertices, triangles) = (file.points().len(), file.triangles().len());
+            let held = fixed(&file);
+            let mut named = file.triangles().iter().flatten().chain(&held);
+            assert!(named.all(|&v| (v as usize) < vertices));
+            assert_eq!(file.vertex_places(0..vertices as u32).len(), vertices);
+            assert_eq!(file.triangle_places(0..triangles).len(), triangles);
+            Some(file)
+        }
+        Err(error) => {
+            let error = error.to_string();
+            let stem = sample.name.split('.').next().unwrap();
+            assert!(error.contains(stem) && error.lines().count() == 1, "{error}");
+            None
+        }
+    }
+}
+
+pub(crate) fn bits(points: &[[f64; 2]]) -> Vec<[u64; 2]> {
+    points.iter().map(|p| p.map(f64::to_bits)).collect()
+}
+
+/// Where the corners of each triangle are, in any order.
+fn corners(mesh: &super::support::Mesh) -> Vec<[[u64; 2]; 3]> {
+    let of = |triangle: &[u32; 3]| {
+        let mut corners = triangle.map(|v| mesh.points[v as usize].map(f64::to_bits));
+        let first = (0..3).min_by_key(|&k| corners[k]).unwrap();
+        corners.rotate_left(first);
+        corners
+    };
+    let mut all: Vec<_> = mesh.triangles.iter().map(of).collect();
+    all.sort_unstable();
+    all
+}
+
+/// The points with those that may move at other places, of digits that take room.
+pub(crate) fn moved(file: &MeshFile, by: f64) -> Vec<[f64; 2]> {
+    let mut points = file.points().to_vec();
+    let held = check::held(&mesh_of(file));
+    for (v, point) in points.iter_mut().enumerate().filter(|(v, _)| !held[*v]) {
+        let at = (v as f64 + by).sin() * 0.1;
+        *point = point.map(|x| file.precision().rounded(x + at));
+    }
+    points
+}
+
+/// Demands an error with all of these parts.
+pub(crate) fn refused(read: Result<MeshFile, mesh_io::ReadError>, parts: &[&str]) {
+    let error = read.unwrap_err().to_string();
+    assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+}
+
+/// What is read of each is what the plain file has.
+#[test]
+fn every_sample_holds_the_same_mesh() {
+    let plain = MeshFile::read(&made("plain.xdmf")).unwrap();
+    for sample in &SAMPLES {
+        let file = MeshFile::read(&made(sample.name)).unwrap();
+        let rounded: Vec<_> =
+            plain.points().iter().map(|p| p.map(|x| file.precision().rounded(x))).collect();
+        let given = super::support::Mesh { points: rounded, ..mesh_of(&plain) };
+        assert_eq!(corners(&mesh_of(&file)), corners(&given), "{}", sample.name);
+        if !sample.name.starts_with("gmsh") {
+            assert_eq!(bits(file.points()), bits(&given.points), "{}", sample.name);
+            assert_eq!(file.triangles(), given.triangles, "{}", sample.name);
+        }
+        assert_eq!(file.paths().count(), 1 + sample.beside.len());
+    }
+}
+
+#[test]
+fn an_hdf5_mesh_that_did_not_move_keeps_its_bytes() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let file = folder.read(sample.name);
+        let before = sample.bytes(&file);
+        file.write(&folder.path(sample.name), file.points()).unwrap();
+        assert!(sample.bytes(&file) == before, "{}", sample.name);
+        let fields = file.point_fields(None).unwrap();
+        file.write_with(&folder.path(sample.name), file.points(), &fields).unwrap();
+        assert!(sample.bytes(&file) == before, "{}", sample.name);
+    }
+}
+
+/// Again and again, as chunks that have gone to the end of the file may go there once more.
+#[test]
+fn only_coordinates_change() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let first = folder.read(sample.name);
+        for round in 0..4 {
+            let file = folder.read(sample.name);
+            let to = moved(&file, f64::from(round));
+            let before = sample.bytes(&file);
+            file.write(&folder.path(sample.name), &to).unwrap();
+            let again = folder.read(sample.name);
+            assert_eq!(bits(again.points()), bits(&to), "{}", sample.name);
+            assert_eq!(again.triangles(), first.triangles());
+            let after = sample.bytes(&again);
+            assert!(before != after);
+            let lengths = before.iter().zip(&after).map(|(a, b)| b.len().cmp(&a.len()));
+            assert!(lengths.into_iter().all(|length| length.is_eq() || !sample.is_plain));
+            for other in [&first, &file] {
+                assert_eq!(other.difference(&again), None, "{}", sample.name);
+                assert_eq!(again.difference(other), None, "{}", sample.name);
+            }
+            let groups = |file: &MeshFile| format!("{:?}", file.groups().unwrap());
+            assert_eq!(groups(&first), groups(&again));
+            let values = |file: &MeshFile| -> Vec<_> {
+                let fields = file.point_fields(None).unwrap();
+                fields.iter().map(|field| field.values().to_vec()).collect()
+            };
+            assert_eq!(values(&first), values(&again), "{}", sample.name);
+        }
+    }
+}
+
+/// A byte that is none of a coordinate shows, wherever it is.
+#[test]
+fn compare_finds_a_changed_byte_outside_coordinates() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let first = folder.read(sample.name);
+        first.write(&folder.path(sample.name), &moved(&first, 1.0)).unwrap();
+        let path = first.paths().nth(usize::from(!sample.beside.is_empty())).unwrap().to_owned();
+        let bytes = fs::read(&path).unwrap();
+        let mut told = 0;
+        for at in (0..bytes.len()).step_by(97) {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            fs::write(&path, &changed).unwrap();
+            let Ok(again) = MeshFile::read(&folder.path(sample.name)) else { continue };
+            told += usize::from(first.difference(&again).is_some());
+        }
+        assert!(told >= bytes.len() / 97 / 4, "{}: {told} were told", sample.name);
+    }
+}
+
+/// Data of vertices are written as coordinates are, and with them.
+#[test]
+fn data_are_replaced() {
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let file = folder.read(sample.name);
+        let mut fields = file.point_fields(None).unwrap();
+        let original: Vec<Vec<f64>> = fields.iter().map(|field| field.values().to_vec()).collect();
+        for (k, field) in fields.iter_mut().enumerate() {
+            let change = |(v, x): (usize, &f64)| x + (v as f64 * 0.7 + k as f64).sin();
+            let values = field.values().iter().enumerate().map(change).collect();
+            field.set(values).unwrap();
+        }
+        let to = moved(&file, 3.0);
+        file.write_with(&folder.path(sample.name), &to, &fields).unwrap();
+        let again = folder.read(sample.name);
+        assert_eq!(bits(again.points()), bits(&to));
+        let found = again.point_fields(None).unwrap();
+        assert_eq!(found.len(), fields.len());
+        for (found, wanted) in found.iter().zip(&fields) {
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * (1.0 + b.abs());
+            assert!(found.values().iter().zip(wanted.values()).all(close), "{}", sample.name);
+        }
+        let sides = [&found[..], &fields[..]];
+        assert_eq!(again.difference_besides(&file, sides), None, "{}", sample.name);
+        // And back to the same numbers.
+        let mut back = found;
+        let set =
+            |(field, values): (&mut PointField, &Vec<f64>)| field.set(values.clone()).unwrap();
+        back.iter_mut().zip(&original).for_each(|pair| _ = set(pair));
+        again.write_with(&folder.path(sample.name), file.points(), &back).unwrap();
+        let again = folder.read(sample.name);
+        assert_eq!(bits(again.points()), bits(file.points()));
+        let values: Vec<Vec<f64>> =
+            again.point_fields(None).unwrap().iter().map(|f| f.values().to_vec()).collect();
+        assert_eq!(values, original, "{}", sample.name);
+    }
+}
+
+/// Families of MED tell regions, and groups have their names.
+#[test]
+fn groups_of_med_have_their_names() {
+    let file = MeshFile::read(&made("gmsh.med")).unwrap();
+    assert_eq!(file.format(), Format::Med);
+    let groups = file.groups().unwrap();
+    assert_eq!(groups.find("steel").unwrap().triangles().len(), 30);
+    assert_eq!(groups.find("sand").unwrap().triangles().len(), 10);
+    assert_eq!(groups.find("group:line:wire").unwrap().vertices(), [7, 8]);
+    assert_eq!(groups.find("family:surface:-2").unwrap().triangles().len(), 10);
+    assert!(file.regions().is_some());
+    assert!(fixed(&file).contains(&7) && !between_regions(&file).is_empty());
+    let text = Conversion::new(&file, Format::Gmsh41).unwrap().unwrap().text().unwrap();
+    assert!(text.contains("\"steel\""), "{text}");
+}
+
+/// Sections of CGNS tell regions; boundary conditions and families are groups.
+#[test]
+fn sections_and_boundaries_of_cgns_are_groups() {
+    let file = MeshFile::read(&made("gmsh.cgns")).unwrap();
+    assert_eq!(file.format(), Format::Cgns);
+    let groups = file.groups().unwrap();
+    for name in ["steel", "section:surface:3_S_5", "boundary:S_5", "family:S_5"] {
+        assert_eq!(groups.find(name).unwrap().triangles().len(), 30, "{name}");
+    }
+    assert_eq!(groups.find("sand").unwrap().triangles().len(), 10);
+    let wire = groups.find("wire").unwrap().vertices();
+    assert!(wire.len() == 2 && wire.iter().all(|v| fixed(&file).contains(v)));
+    assert!(file.regions().is_some());
+    let place = file.triangle_place(0);
+    assert_eq!(place.label, 2);
+}
+
+/// Under an ending of HDF5, or none, the content tells what it is, and in place it keeps its name.
+#[test]
+fn any_file_of_hdf5_is_known_by_its_content() {
+    let all = [
+        ("gmsh.med", Format::Med),
+        ("gmsh.cgns", Format::Cgns),
+        ("zlib.exo", Format::Exodus),
+        ("ugrid.nc", Format::Ugrid),
+    ];
+    for (name, format) in all {
+        let folder = Folder::new(&[]);
+        for under in ["in.h5", "in.hdf5", "in", "in.dat"] {
+            fs::copy(made(name), folder.path(under)).unwrap();
+            let file = folder.read(under);
+            assert_eq!(file.format(), format);
+            file.write(&folder.path(under), &moved(&file, 1.0)).unwrap();
+            assert_eq!(folder.read(under).difference(&file), None);
+        }
+    }
+    refused(
+        MeshFile::read(&made("dolfin.h5")),
+        &["no mesh of Exodus II, UGRID, MED or CGNS", "name the .xdmf"],
+    );
+}
+
+/// What netCDF-4 has is what the classic format has: groups and their names, and data in every time step.
+#[test]
+fn netcdf_files_of_every_format_hold_the_same_mesh() {
+    let classic = MeshFile::read(&made("classic.exo")).unwrap();
+    for name in ["netcdf4.exo", "zlib.exo"] {
+        let file = MeshFile::read(&made(name)).unwrap();
+        assert_eq!(file.format(), Format::Exodus);
+        assert_eq!(mesh_of(&file), mesh_of(&classic));
+        assert_eq!(file.regions(), classic.regions());
+        let groups = |file: &MeshFile| format!("{:?}", file.groups().unwrap());
+        assert_eq!(groups(&file), groups(&classic));
+        assert_eq!(file.data_names(), ["T"]);
+        let values = |file: &MeshFile| -> Vec<_> {
+            let fields = file.point_fields(None).unwrap();
+            fields.iter().map(|field| field.values().to_vec()).collect()
+        };
+        assert_eq!(values(&file).len(), 2);
+        assert_eq!(values(&file), values(&classic));
+        let text = |file: &MeshFile| Conversion::new(file, Format::Gmsh41).unwrap().unwrap().text();
+        assert_eq!(text(&file), text(&classic));
+    }
+}
+
+/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+#[test]
+fn damaged_files_of_hdf5_never_panic() {
+    let mut random = random(23);
+    for sample in &SAMPLES {
+        let folder = sample.folder();
+        let files: Vec<&str> = [sample.name].iter().chain(sample.beside).copied().collect();
+        let whole: Vec<Vec<u8>> = files.iter().map(|name| fs::read(made(name)).unwrap()).collect();
+        let ending = |name: &str| name.split('.').next_back().map(str::to_owned);
+        let alike = SAMPLES.iter().filter(|other| ending(other.name) == ending(sample.name));
+        let rounds = damage::rounds(2000) / alike.count();
+        let mut read = 0;
+        for round in 0..rounds {
+            let part = round % files.len();
+            let content = match round % 3 {
+                // Text and counts of another length are seldom read: a byte more often is.
+                0 => damaged(&whole[part], &mut random),
+                _ => {
+                    let mut content = whole[part].clone();
+                    let at = random(content.len());
+                    content[at] = [0, 1, 0xFF, content[at] ^ 1][random(4)];
+                    content
+                }
+            };
+            fs::write(folder.path(files[part]), &content).unwrap();
+            let start = Instant::now();
+            let read_again = mesh_or_error(&folder, sample);
+            read += usize::from(read_again.is_some());
+            if let Some(file) = read_again.filter(|_| round % 7 == 0) {
+                let before = sample.bytes(&file);
+                file.write(&folder.path(sample.name), file.points()).unwrap();
+                assert!(sample.bytes(&file) == before, "{}", sample.name);
+                let to = moved(&file, 1.0);
+                file.write(&folder.path(sample.name), &to).unwrap();
+                if let Ok(fields) = file.point_fields(None) {
+                    assert!(fields.len() < 100);
+                }
+            }
+            assert!(start.elapsed().as_secs() < 10, "{} takes forever", sample.name);
+            // What was damaged, and what was written.
+            for (name, bytes) in files.iter().zip(&whole) {
+                if name == &files[part] || round % 7 == 0 {
+                    fs::write(folder.path(name), bytes).unwrap();
+                }
+            }
+        }
+        let few = rounds / 50;
+        assert!((few..rounds - few).contains(&read), "{}: {read} of {rounds}", sample.name);
+    }
+}

@@ -1,0 +1,232 @@
+//! Meshes in the formats of other programs, each written in several legal ways, and what reading them must give.
+
+mod abaqus;
+pub(crate) mod binary;
+mod exodus;
+mod gmsh;
+mod grids;
+mod nastran;
+mod netcdf;
+mod ply;
+mod text;
+mod ugrid;
+mod vtk;
+pub(crate) mod vtu;
+mod xdmf;
+
+use super::regions::interfaces;
+use super::support::Mesh;
+use super::support::{SplitMix64, lattice};
+use mesh_io::Format;
+use mesh_io::Precision;
+use std::ops::Range;
+
+/// A line inside the mesh. The file fixes its ends.
+pub(crate) const LINE: [u32; 2] = [7, 8];
+/// A vertex inside the mesh that the file fixes on its own.
+pub(crate) const POINT: u32 = 9;
+/// A quadrilateral inside the mesh, whose corners stay fixed. It stands before triangle 10.
+pub(crate) const QUADRILATERAL: [u32; 4] = [15, 16, 22, 21];
+/// The vertex and the triangle whose places in the file are known.
+pub(crate) const PROBED: (u32, usize) = (14, 17);
+/// The first triangle of the second region.
+const SECOND_REGION: usize = 30;
+
+/// A file, and what it holds.
+pub(crate) struct Made {
+    /// How this file differs from others, for messages.
+    pub(crate) what: String,
+    /// The name of the file.
+    pub(crate) name: &'static str,
+    pub(crate) format: Format,
+    pub(crate) precision: Precision,
+    pub(crate) bytes: Vec<u8>,
+    /// The mesh. Its points have all digits, also where the file rounds them. Its fixed vertices are those that the file's
+    /// elements fix, ascending.
+    pub(crate) mesh: Mesh,
+    pub(crate) regions: Option<Vec<u32>>,
+    /// The label of the probed vertex, and the range of bytes that contains it.
+    pub(crate) vertex: (u64, Range<usize>),
+    /// The label of the probed triangle, and the range of bytes that contains it.
+    pub(crate) triangle: (u64, Range<usize>),
+    /// The byte ranges of lists: a file that ends within one of these is not a mesh.
+    pub(crate) lists: Vec<Range<usize>>,
+    /// The byte ranges of the numbers that tell how long lists are.
+    pub(crate) counts: Vec<Range<usize>>,
+    /// Where x and y of each vertex start, in bytes, if they are in binary.
+    pub(crate) coordinates: Vec<[usize; 2]>,
+    /// Whether binary numbers are big-endian.
+    pub(crate) big: bool,
+}
+
+impl Made {
+    pub(crate) fn is_text(&self) -> bool {
+        self.coordinates.is_empty()
+    }
+
+    /// The points as they are read: rounded to the file's precision.
+    pub(crate) fn points(&self) -> Vec<[f64; 2]> {
+        self.mesh.points.iter().map(|p| p.map(|x| self.precision.rounded(x))).collect()
+    }
+
+    /// The vertices that are fixed only because they lie between regions.
+    pub(crate) fn interfaces(&self) -> Vec<u32> {
+        let regions = self.regions.as_deref().unwrap_or_default();
+        let mut between = interfaces(&self.mesh, regions);
+        between.retain(|v| !self.mesh.fixed.contains(v));
+        between
+    }
+}
+
+/// A mesh with 12 inner vertices whose coordinates have many digits.
+pub(crate) fn base() -> Mesh {
+    let mut mesh = lattice(5, 4);
+    let on_boundary = super::support::boundary(&mesh);
+    let mut rng = SplitMix64::new(11);
+    for (point, _) in mesh.points.iter_mut().zip(on_boundary).filter(|(_, on)| !on) {
+        *point = point.map(|x| x + rng.range(-0.2, 0.2));
+    }
+    mesh
+}
+
+/// Every variant of every format. The mesh must have the triangles of [`base`]; its vertices may be elsewhere.
+pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
+    let families = [
+        text::all,
+        grids::all,
+        gmsh::all,
+        ply::all,
+        vtk::all,
+        binary::all,
+        exodus::all,
+        ugrid::all,
+        xdmf::all,
+        abaqus::all,
+        nastran::all,
+    ];
+    families.into_iter().flat_map(|all| all(mesh)).collect()
+}
+
+/// The mesh with these vertices fixed.
+fn fixing(mesh: &Mesh, fixed: impl IntoIterator<Item = u32>) -> Mesh {
+    let mut fixed: Vec<_> = fixed.into_iter().collect();
+    fixed.sort_unstable();
+    fixed.dedup();
+    Mesh { fixed, ..mesh.clone() }
+}
+
+/// The corners of every triangle.
+fn triples(mesh: &Mesh) -> Vec<Vec<u32>> {
+    mesh.triangles.iter().map(|t| t.to_vec()).collect()
+}
+
+/// The corners of every triangle, and of the quadrilateral among them.
+fn cells(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let mut cells = triples(mesh);
+    cells.insert(10, QUADRILATERAL.to_vec());
+    cells
+}
+
+/// The number that names the region of a triangle.
+fn region(triangle: usize) -> i32 {
+    if triangle < SECOND_REGION { 5 } else { 2 }
+}
+
+/// The region of each triangle as it is read, numbered from zero.
+fn regions(mesh: &Mesh) -> Option<Vec<u32>> {
+    Some((0..mesh.triangles.len()).map(|t| u32::from(t >= SECOND_REGION)).collect())
+}
+
+/// The third coordinate of a vertex.
+fn z(vertex: usize) -> f64 {
+    vertex as f64 * -0.75 + 1.5
+}
+
+/// A number in one of the styles in which programs write it.
+fn number(style: usize, x: f64) -> String {
+    match style % 4 {
+        0 => format!("{x}"),
+        1 => format!("{x:e}"),
+        2 => format!("{x:+.17}"),
+        _ => format!("{x:E}"),
+    }
+}
+
+/// x and y in several styles, after a number of blanks.
+fn point(vertex: usize, [x, y]: [f64; 2]) -> String {
+    let blank = [" ", "\t", "   "][vertex % 3];
+    format!("{}{blank}{}", number(vertex, x), number(vertex + 1, y))
+}
+
+fn points(mesh: &Mesh) -> impl Iterator<Item = (usize, String)> {
+    mesh.points.iter().enumerate().map(|(i, &at)| (i, point(i, at)))
+}
+
+/// Numbers of vertices as text, counted from `first`.
+fn joined(vertices: &[u32], first: u32) -> String {
+    let numbers: Vec<_> = vertices.iter().map(|v| (v + first).to_string()).collect();
+    numbers.join(" ")
+}
+
+/// A text file under construction.
+#[derive(Default)]
+struct Text {
+    text: String,
+    lists: Vec<Range<usize>>,
+    counts: Vec<Range<usize>>,
+}
+
+impl Text {
+    fn new(head: &str) -> Text {
+        Text { text: head.to_owned(), ..Text::default() }
+    }
+
+    fn put(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    /// Adds a number that tells how long a list is.
+    fn count(&mut self, count: usize) {
+        let start = self.text.len();
+        self.text.push_str(&count.to_string());
+        self.counts.push(start..self.text.len());
+    }
+
+    /// Adds the rows of a list. Returns where each starts.
+    fn rows(&mut self, rows: impl IntoIterator<Item = String>) -> Vec<usize> {
+        let mut starts = Vec::new();
+        for row in rows {
+            starts.push(self.text.len());
+            self.text.push_str(&row);
+            self.text.push('\n');
+        }
+        self.lists.push(starts[0]..starts[starts.len() - 1]);
+        starts
+    }
+
+    /// Finishes the file. Takes the labels and places of the probed vertex and triangle.
+    fn made(
+        self,
+        what: &str,
+        name: &'static str,
+        format: Format,
+        mesh: Mesh,
+        [vertex, triangle]: [(u64, usize); 2],
+    ) -> Made {
+        Made {
+            what: format!("{format}, {what}"),
+            name,
+            format,
+            precision: Precision::Double,
+            bytes: self.text.into_bytes(),
+            mesh,
+            regions: None,
+            vertex: (vertex.0, vertex.1..vertex.1 + 1),
+            triangle: (triangle.0, triangle.1..triangle.1 + 1),
+            lists: self.lists,
+            counts: self.counts,
+            coordinates: Vec::new(),
+            big: false,
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! Formats of other programs: what is read from each variant of them, and what is written.
+
+use super::Folder;
+use super::facts::{between_regions, fixed, freed};
+use super::made::{Made, PROBED, all, base};
+use super::nastran;
+use super::support::Mesh;
+use super::support::{SplitMix64, check};
+use mesh_io::{Format, Location, MeshFile};
+use std::collections::BTreeSet;
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Runs a check on every variant, and fails with the names of those that failed.
+#[track_caller]
+pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made)) {
+    let all = all(mesh);
+    let fails = |made: &&Made| catch_unwind(AssertUnwindSafe(|| check(made))).is_err();
+    let failed: Vec<_> = all.iter().filter(fails).map(|made| &made.what).collect();
+    assert!(failed.is_empty(), "{} of {} failed: {failed:#?}", failed.len(), all.len());
+}
+
+/// A folder with a file of these bytes under the sample's name.
+pub(crate) fn folder(made: &Made, bytes: &[u8]) -> Folder {
+    let folder = Folder::new(&[]);
+    fs::write(folder.path(made.name), bytes).unwrap();
+    folder
+}
+
+/// The text with a carriage return before each line feed.
+fn with_crlf(bytes: &[u8]) -> Vec<u8> {
+    str::from_utf8(bytes).unwrap().replace('\n', "\r\n").into_bytes()
+}
+
+/// The bytes of the file; for text, also with carriage returns before line feeds.
+fn both_ends(made: &Made) -> Vec<Vec<u8>> {
+    let mut both = vec![made.bytes.clone()];
+    if made.is_text() {
+        both.push(with_crlf(&made.bytes));
+    }
+    both
+}
+
+fn bits(points: &[[f64; 2]]) -> Vec<[u64; 2]> {
+    points.iter().map(|p| p.map(f64::to_bits)).collect()
+}
+
+fn set(vertices: &[u32]) -> BTreeSet<u32> {
+    vertices.iter().copied().collect()
+}
+
+#[test]
+fn every_variant_is_read_as_what_it_holds() {
+    for_each(&base(), |made| {
+        for bytes in both_ends(made) {
+            let file = folder(made, &bytes).read(made.name);
+            assert_eq!((file.format(), file.precision()), (made.format, made.precision));
+            assert_eq!(bits(file.points()), bits(&made.points()));
+            assert_eq!(file.triangles(), made.mesh.triangles);
+            assert_eq!(file.regions(), made.regions.as_deref());
+            let interfaces = made.interfaces();
+            assert_eq!(between_regions(&file), interfaces);
+            let held = [made.mesh.fixed.as_slice(), &interfaces].concat();
+            assert_eq!(set(&fixed(&file)), set(&held));
+            assert_eq!(set(&file.constraints().vertices), set(&made.mesh.fixed));
+            assert!(check::mover_count(&freed(&file)) >= 4, "nothing is left to move");
+        }
+    });
+}
+
+/// Every format is tested here or, as those of Triangle and gmsh, in other files, and has its row in docs/formats.md.
+#[test]
+fn every_format_is_tried_and_documented() {
+    let made: BTreeSet<String> = all(&base()).iter().map(|made| made.format.to_string()).collect();
+    let documented = include_str!("../../../docs/formats.md");
+    let first_column =
+        documented.lines().filter_map(|line| line.strip_prefix("| ")?.split('|').next());
+    let names: BTreeSet<&str> =
+        first_column.flat_map(|names| names.split(", ")).map(str::trim).collect();
+    for format in Format::ALL {
+        let name = format.to_string();
+        assert!(names.contains(name.as_str()), "{name} has no row in docs/formats.md");
+        let elsewhere = ["Triangle", "gmsh 2.2", "gmsh 4.1", "VTK XML", "STL", "MED", "CGNS"];
+        assert!(
+            made.contains(&name) || elsewhere.iter().any(|other| name.starts_with(other)),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn unmoved_points_give_the_same_bytes_in_every_variant() {
+    for_each(&base(), |made| {
+        for bytes in both_ends(made) {
+            let folder = folder(made, &bytes);
+            let file = folder.read(made.name);
+            file.write(&folder.path("out"), file.points()).unwrap();
+            assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
+            // Digits that the file's precision cannot hold do not count as a move.
+            file.write(&folder.path("out"), &made.mesh.points).unwrap();
+            assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
+        }
+    });
+}
+
+/// The points with all free vertices moved.
+fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
+    let mut rng = SplitMix64::new(3);
+    let mut points = file.points().to_vec();
+    let movers = check::held(&freed(file)).into_iter().enumerate().filter(|(_, held)| !held);
+    for (count, (v, _)) in movers.enumerate() {
+        let [x, y] = points[v];
+        points[v] = match count {
+            0 => [x + 1.0 / 3.0, y],
+            1 => [x, -0.0],
+            2 => [1e-7, 1e16],
+            _ => [x + rng.range(-0.3, 0.3), y - rng.range(-0.3, 0.3)],
+        };
+    }
+    points
+}
+
+/// Words and the separators between them, in turn; of Nastran what stands in each field.
+pub(crate) fn pieces(format: Format, bytes: &[u8]) -> Vec<String> {
+    if format == Format::Nastran {
+        return nastran::fields(str::from_utf8(bytes).unwrap());
+    }
+    let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b';';
+    let pieces = bytes.chunk_by(|a, b| is_between(a) == is_between(b));
+    pieces.map(|piece| String::from_utf8_lossy(piece).into_owned()).collect()
+}
+
+pub(crate) fn value(word: &str) -> f64 {
+    let number = word.replace('D', "E");
+    number.parse().unwrap_or_else(|_| nastran::value(&number))
+}
+
+/// Checks that the words that differ are exactly the coordinates that moved.
+fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) {
+    let [old, new] = [before, after].map(|bytes| pieces(made.format, bytes));
+    assert_eq!(old.len(), new.len());
+    let round = |x: f64| made.precision.rounded(x);
+    let differing: Vec<_> = old
+        .iter()
+        .zip(&new)
+        .filter(|(old, new)| old != new)
+        .map(|(old, new)| [round(value(old)), round(value(new))].map(f64::to_bits))
+        .collect();
+    let from = made.points();
+    let expected: Vec<_> = from
+        .as_flattened()
+        .iter()
+        .zip(to.as_flattened())
+        .map(|(&from, &to)| [from, round(to)].map(f64::to_bits))
+        .filter(|[from, to]| from != to)
+        .collect();
+    assert!(expected.len() > 6, "only {} coordinates have moved", expected.len());
+    assert_eq!(differing, expected);
+}
+
+/// The bytes of a binary file with the coordinates `to` put in place.
+fn rewritten(made: &Made, to: &[[f64; 2]]) -> Vec<u8> {
+    let mut bytes = made.bytes.clone();
+    for (places, point) in made.coordinates.iter().zip(to) {
+        for (&at, &x) in places.iter().zip(point) {
+            let mut number = super::support::Binary::empty(made.big);
+            number.reals(made.precision, &[x]);
+            bytes[at..at + number.bytes.len()].copy_from_slice(&number.bytes);
+        }
+    }
+    bytes
+}
+
+#[test]
+fn only_moved_coordinates_change_in_every_variant() {
+    for_each(&base(), |made| {
+        for bytes in both_ends(made) {
+            let folder = folder(made, &bytes);
+            let file = folder.read(made.name);
+            let to = moved(&file);
+            // Overwrites its input.
+            file.write(&folder.path(made.name), &to).unwrap();
+            let after = fs::read(folder.path(made.name)).unwrap();
+            let again = folder.read(made.name);
+            let rounded: Vec<_> = to.iter().map(|p| p.map(|x| made.precision.rounded(x))).collect();
+            assert_eq!(bits(again.points()), bits(&rounded));
+            assert_eq!(again.triangles(), file.triangles());
+            if made.is_text() {
+                assert_text_moved(made, &bytes, &after, &to);
+            } else {
+                assert!(after == rewritten(made, &to), "other bytes have changed");
+            }
+        }
+    });
+}
+
+#[test]
+fn places_in_the_file_are_those_of_vertices_and_triangles() {
+    for_each(&base(), |made| {
+        let line = |at: usize| 1 + made.bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+        for bytes in both_ends(made) {
+            let file = folder(made, &bytes).read(made.name);
+            let vertex = file.vertex_place(PROBED.0);
+            let triangle = file.triangle_place(PROBED.1);
+            for (what, place, (label, range)) in
+                [("vertex", vertex, &made.vertex), ("triangle", triangle, &made.triangle)]
+            {
+                assert_eq!(place.label, *label, "the label of the {what}");
+                let name = place.path.file_name().unwrap();
+                assert_eq!(name, made.name);
+                match place.location {
+                    Location::Line(at) => {
+                        let lines = line(range.start)..=line(range.end - 1);
+                        assert!(made.is_text() && lines.contains(&at), "{what}: {at}, {lines:?}");
+                    }
+                    Location::Byte(at) => {
+                        assert!(!made.is_text() && range.contains(&at), "{what}: {at}, {range:?}");
+                    }
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn places_asked_for_together_are_the_same_in_every_variant() {
+    for_each(&base(), |made| {
+        let file = folder(made, &made.bytes).read(made.name);
+        let (vertices, triangles) = (made.mesh.points.len(), made.mesh.triangles.len());
+        let places = file.vertex_places(0..vertices as u32);
+        assert_eq!(places.len(), vertices);
+        assert!(places.iter().all(|(&v, place)| *place == file.vertex_place(v)));
+        let places = file.triangle_places(0..triangles);
+        assert_eq!(places.len(), triangles);
+        assert!(places.iter().all(|(&t, place)| *place == file.triangle_place(t)));
+    });
+}

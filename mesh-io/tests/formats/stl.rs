@@ -1,0 +1,222 @@
+//! STL, which repeats the coordinates of a vertex in every triangle.
+
+use super::Folder;
+use super::damage::{damaged, random, rounds};
+use super::facts::{between_regions, freed};
+use super::made::base;
+use super::spoiled::mesh_or_error;
+use super::support::Mesh;
+use super::support::{Binary, check};
+use mesh_io::Precision;
+use mesh_io::{Format, Location, MeshFile};
+use std::fs;
+
+/// The mesh with its vertices numbered in the order in which its triangles first use them.
+fn in_order() -> Mesh {
+    let mesh = base();
+    let mut numbers = vec![u32::MAX; mesh.points.len()];
+    let mut points = Vec::new();
+    let mut number = |v: u32| {
+        if numbers[v as usize] == u32::MAX {
+            numbers[v as usize] = points.len() as u32;
+            points.push(mesh.points[v as usize]);
+        }
+        numbers[v as usize]
+    };
+    let triangles = mesh.triangles.iter().map(|t| t.map(&mut number)).collect();
+    Mesh { points, triangles, fixed: Vec::new() }
+}
+
+/// The mesh as text: two solids, the second from triangle 30 on, with words and numbers written in several ways.
+fn ascii(mesh: &Mesh, points: &[[f64; 2]], z: &str) -> String {
+    let mut text = "solid  left half\r\n".to_owned();
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        if t == 30 {
+            text += "endsolid left half\nSOLID right # half\n";
+        }
+        text += &format!("  facet normal 0 0 {}\n    outer loop\n", t % 2);
+        for (c, &v) in corners.iter().enumerate() {
+            let [x, y] = points[v as usize];
+            text += &match (t + c) % 2 {
+                0 => format!("      vertex {x} {y:e} {z}\n"),
+                _ => format!("\tVertex\t{x:E}  {y:?} {z}\r\n"),
+            };
+        }
+        text += "    endloop\n  endfacet\n\n";
+    }
+    text + "endsolid"
+}
+
+/// The mesh in binary, under a header that looks like text.
+fn binary(mesh: &Mesh, points: &[[f64; 2]], z: f64) -> Vec<u8> {
+    let mut out = Binary::empty(false);
+    out.bytes = b"solid of another program".to_vec();
+    out.bytes.resize(80, b' ');
+    out.ints(&[mesh.triangles.len() as i32]);
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        out.reals(Precision::Single, &[0.0, 0.0, 1.0]);
+        for &v in corners {
+            let [x, y] = points[v as usize];
+            out.reals(Precision::Single, &[x, y, z]);
+        }
+        out.bytes.extend_from_slice(&[t as u8, 7]);
+    }
+    out.bytes
+}
+
+fn read(name: &str, bytes: &[u8]) -> (Folder, MeshFile) {
+    let folder = Folder::new(&[]);
+    fs::write(folder.path(name), bytes).unwrap();
+    let file = MeshFile::read_welded(&folder.path(name)).unwrap();
+    (folder, file)
+}
+
+fn samples() -> [(Format, Vec<u8>); 2] {
+    let mesh = in_order();
+    [
+        (Format::Stl, ascii(&mesh, &mesh.points, "-2.5").into_bytes()),
+        (Format::StlBinary, binary(&mesh, &mesh.points, 7.0)),
+    ]
+}
+
+#[test]
+fn corners_are_joined_where_that_is_asked_for() {
+    let mesh = in_order();
+    for (format, bytes) in samples() {
+        let (folder, file) = read("in.stl", &bytes);
+        let rounded = |x: f64| file.precision().rounded(x);
+        assert_eq!(file.format(), format);
+        assert_eq!(file.triangles(), mesh.triangles);
+        let points: Vec<_> = mesh.points.iter().map(|p| p.map(rounded)).collect();
+        assert_eq!(file.points(), points);
+        assert_eq!(file.notes(), ["120 corners are joined to 30 vertices"]);
+        let error = MeshFile::read(&folder.path("in.stl")).unwrap_err().to_string();
+        assert!(error.contains("no vertices") && error.contains("--weld"), "{error}");
+        // Two solids are two regions.
+        assert_eq!(file.regions().is_some(), format == Format::Stl);
+        assert_eq!(between_regions(&file).is_empty(), format == Format::StlBinary);
+        let groups = file.groups().unwrap();
+        let named: Vec<_> = groups.iter().map(ToString::to_string).collect();
+        if format == Format::Stl {
+            assert_eq!(named, ["solid surface left half", "solid surface right # half"]);
+            assert_eq!(groups.find("left half").unwrap().triangles().len(), 30);
+        } else {
+            assert!(named.is_empty());
+        }
+        assert!(check::mover_count(&freed(&file)) >= 12);
+    }
+}
+
+#[test]
+fn every_copy_of_a_moved_corner_is_written() {
+    let mesh = in_order();
+    for (format, bytes) in samples() {
+        let (folder, file) = read("in.stl", &bytes);
+        file.write(&folder.path("out.stl"), file.points()).unwrap();
+        assert!(fs::read(folder.path("out.stl")).unwrap() == bytes);
+        let mut moved = file.points().to_vec();
+        for (v, [x, y]) in moved.iter_mut().enumerate().filter(|(v, _)| v % 3 > 0) {
+            (*x, *y) = (*x + 1.0 / (v + 2) as f64, -*y / 3.0 + 0.01 * v as f64);
+        }
+        file.write(&folder.path("out.stl"), &moved).unwrap();
+        let written = fs::read(folder.path("out.stl")).unwrap();
+        let again = MeshFile::read_welded(&folder.path("out.stl")).unwrap();
+        let rounded = |p: &[f64; 2]| p.map(|x| file.precision().rounded(x));
+        assert_eq!(again.points(), moved.iter().map(rounded).collect::<Vec<_>>());
+        assert_eq!(again.triangles(), mesh.triangles);
+        assert_eq!(file.difference(&again), None);
+        if format == Format::StlBinary {
+            assert!(written == binary(&mesh, &moved, 7.0));
+        } else {
+            // Compares text with all numbers written alike.
+            let plain = |bytes: &[u8]| -> Vec<String> {
+                let text = String::from_utf8(bytes.to_vec()).unwrap();
+                let word =
+                    |word: &str| word.parse().map_or(word.to_owned(), |x: f64| x.to_string());
+                text.split([' ', '\t', '\n', '\r']).map(word).collect()
+            };
+            assert_eq!(plain(&written), plain(ascii(&mesh, &moved, "-2.5").as_bytes()));
+        }
+        // A changed copy of a corner is another vertex, so the triangles differ.
+        let mut torn = written.clone();
+        let at = match format {
+            Format::StlBinary => 84 + 50 * 20 + 14,
+            _ => torn.windows(6).rposition(|w| w == b"vertex").unwrap() + 7,
+        };
+        torn[at] ^= 1;
+        fs::write(folder.path("out.stl"), torn).unwrap();
+        let torn = MeshFile::read_welded(&folder.path("out.stl")).unwrap();
+        assert!(file.difference(&torn).is_some());
+    }
+}
+
+#[test]
+fn places_are_those_of_the_first_copy() {
+    let mesh = in_order();
+    let (_folder, file) = read("in.stl", ascii(&mesh, &mesh.points, "0").as_bytes());
+    // A triangle takes seven lines and a blank one, after one line of the solid.
+    assert_eq!(file.triangle_place(2).location, Location::Line(18));
+    let first = mesh.triangles.iter().position(|t| t.contains(&9)).unwrap();
+    let corner = mesh.triangles[first].iter().position(|&v| v == 9).unwrap();
+    let place = file.vertex_place(9);
+    assert_eq!((place.location, place.label), (Location::Line(2 + 8 * first + 2 + corner), 10));
+    let (_folder, file) = read("in.stl", &binary(&mesh, &mesh.points, 0.0));
+    assert_eq!(file.triangle_place(2).location, Location::Byte(84 + 100));
+    let at = 84 + 50 * first + 12 + 12 * corner;
+    assert_eq!(file.vertex_place(9).location, Location::Byte(at));
+}
+
+#[test]
+fn an_stl_that_is_no_plane_mesh_is_refused() {
+    let mesh = in_order();
+    let text = ascii(&mesh, &mesh.points, "1");
+    let bytes = binary(&mesh, &mesh.points, 1.0);
+    let refused = |bytes: &[u8], parts: &[&str]| {
+        let folder = Folder::new(&[]);
+        fs::write(folder.path("a.stl"), bytes).unwrap();
+        let error = mesh_or_error(&folder, "a.stl").unwrap_err();
+        assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+    };
+    let raised = text.replacen(" 1\n", " 2\n", 3);
+    refused(raised.as_bytes(), &["corners with different z make this a volume mesh"]);
+    refused(&bytes[..bytes.len() - 1], &["a.stl, byte 80: the file ends before its 40 triangles"]);
+    let four = text.replacen("endloop", "vertex 0 0 1", 1);
+    refused(four.as_bytes(), &["a.stl:7: a vertex beyond the three"]);
+    let two = text.replacen("      vertex", "#", 1);
+    refused(two.as_bytes(), &["a.stl:7: the facet has 2 vertices, not three"]);
+    refused(text.replace("endsolid left half\n", "").as_bytes(), &["do not alternate"]);
+    refused(text.replace("outer", "inner").as_bytes(), &["a.stl:3: a row starts with `inner`"]);
+    let twice = "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex -0 0 0\nendfacet\nendsolid\n";
+    refused(twice.as_bytes(), &["a.stl:2: triangle 1 lists node 1 twice"]);
+    let mut infinite = bytes.clone();
+    infinite[84 + 50 + 12..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    refused(&infinite, &["byte 146: a corner of triangle 2 is not finite"]);
+    for count in [41, 0x7FFF_FFFF, u32::MAX] {
+        let mut huge = bytes.clone();
+        huge[80..84].copy_from_slice(&count.to_le_bytes());
+        refused(&huge, &["byte 80: the file ends before its"]);
+    }
+}
+
+#[test]
+fn files_cut_off_or_damaged_never_panic() {
+    let folder = Folder::new(&[]);
+    let mut random = random(29);
+    for (format, bytes) in samples() {
+        for cut in 0..bytes.len() {
+            fs::write(folder.path("a.stl"), &bytes[..cut]).unwrap();
+            let last = bytes[..cut].split(|&byte| byte == b'\n').rfind(|line| !line.is_empty());
+            let is_whole = last.is_some_and(|line| line.starts_with(b"endsolid"));
+            let read = mesh_or_error(&folder, "a.stl");
+            assert_eq!(read.is_ok(), is_whole, "the first {cut} bytes");
+        }
+        let mut read = 0;
+        let rounds = rounds(2000);
+        for _ in 0..rounds {
+            fs::write(folder.path("a.stl"), damaged(&bytes, &mut random)).unwrap();
+            read += usize::from(mesh_or_error(&folder, "a.stl").is_ok());
+        }
+        let few = rounds / 50;
+        assert!((few..rounds - few).contains(&read), "{format}: {read} of {rounds} were read");
+    }
+}

@@ -1,0 +1,167 @@
+//! UGRID: data of nodes, what stays as it is, and refused files.
+
+use super::Folder;
+use super::hdf5;
+use super::made::{Made, all, base};
+use super::others::folder;
+use mesh_io::{Format, MeshFile};
+use std::fs;
+
+fn samples() -> Vec<Made> {
+    let mut all = all(&base());
+    all.retain(|made| made.format == Format::Ugrid);
+    all
+}
+
+#[test]
+fn variables_of_nodes_are_data_in_every_time_step_and_layer() {
+    for made in samples() {
+        let file = folder(&made, &made.bytes).read(made.name);
+        assert_eq!(file.data_names(), ["lon", "bay_node_z", "u", "level"]);
+        let fields = file.point_fields(None).unwrap();
+        let told: Vec<_> = fields.iter().map(|field| (field.name(), field.components())).collect();
+        assert_eq!(told, [("lon", 1), ("bay_node_z", 1), ("u", 2), ("level", 1), ("level", 1)]);
+        assert_eq!(fields[2].values()[9], 1.125);
+        assert_eq!(fields[4].values()[7], 14.0);
+        // A missing depth is no number, so that it is in no mean of others.
+        let depths = fields[1].values();
+        assert!(depths[3].is_nan() && depths[4] == -2.0);
+    }
+}
+
+#[test]
+fn a_missing_number_stays_where_others_are_replaced() {
+    for made in samples() {
+        let folder = folder(&made, &made.bytes);
+        let file = folder.read(made.name);
+        let mut fields = file.point_fields(Some(&["bay_node_z".to_owned()])).unwrap();
+        let values = fields[0].values().iter().map(|x| x * 3.0).collect();
+        assert_eq!(fields[0].set(values).unwrap(), 0);
+        file.write_with(&folder.path("out.nc"), file.points(), &fields).unwrap();
+        let again = folder.read("out.nc").point_fields(Some(&["bay_node_z".to_owned()])).unwrap();
+        assert!(again[0].values()[3].is_nan());
+        assert_eq!(again[0].values()[4], -6.0);
+        let changed = fs::read(folder.path("out.nc")).unwrap();
+        let differ = changed.iter().zip(&made.bytes).filter(|(a, b)| a != b).count();
+        assert!(changed.len() == made.bytes.len() && differ < 8 * 29, "{differ} bytes differ");
+    }
+}
+
+#[test]
+fn centers_of_faces_follow_the_vertices() {
+    for made in samples() {
+        let folder = folder(&made, &made.bytes);
+        let file = folder.read(made.name);
+        assert!(file.has_centers() && file.notes().iter().all(|note| !note.contains("face_")));
+        let to = hdf5::moved(&file, 0.0);
+        let (mut fields, others) = file.centers(&to).unwrap();
+        let names: Vec<_> = fields.iter().map(|field| field.name()).collect();
+        assert_eq!((&names[..], &others[..]), (&["face_x"][..], &["face_y".to_owned()][..]));
+        file.write_with(&folder.path("out.nc"), &to, &fields).unwrap();
+        let again = folder.read("out.nc");
+        let (theirs, _) = again.centers(&to).unwrap();
+        assert_eq!(theirs[0].values(), fields[0].values());
+        assert!(file.difference(&again).is_some());
+        assert_eq!(file.difference_besides(&again, [&fields, &theirs]), None);
+        // The last triangle of the file is the last face.
+        let corners = again.triangles().last().unwrap();
+        let x = |&v: &u32| to[v as usize][0];
+        let mean = corners.iter().map(x).sum::<f64>() / 3.0;
+        assert!((fields[0].values().last().unwrap() - mean).abs() < 1e-6);
+        // Where nothing has moved, no bit changes.
+        fields = file.centers(file.points()).unwrap().0;
+        file.write_with(&folder.path("out.nc"), file.points(), &fields).unwrap();
+        assert!(fs::read(folder.path("out.nc")).unwrap() == made.bytes);
+    }
+}
+
+/// Texts of attributes stand in a heap, and y before x.
+#[test]
+fn a_file_by_h5netcdf_is_read() {
+    let file = MeshFile::read(&hdf5::made("h5netcdf.nc")).unwrap();
+    assert_eq!(file.format(), Format::Ugrid);
+    assert_eq!(file.data_names(), ["depth"]);
+    assert_eq!(file.vertex_place(4).label, 4);
+    let file = MeshFile::read(&hdf5::made("ugrid.nc")).unwrap();
+    assert_eq!(file.data_names(), ["T"]);
+    assert_eq!(file.vertex_place(4).label, 5);
+}
+
+/// The message names the filter, and not a mesh without coordinates.
+#[test]
+fn coordinates_packed_by_a_filter_that_is_not_read_are_refused_by_its_name() {
+    hdf5::refused(
+        MeshFile::read(&hdf5::made("zstd.nc")),
+        &[
+            "zstd.nc, byte ",
+            "cannot read a dataset compressed by Zstandard. Rewrite it with `h5repack",
+        ],
+    );
+}
+
+fn refused(bytes: &[u8], parts: &[&str]) {
+    let folder = Folder::new(&[]);
+    fs::write(folder.path("in.nc"), bytes).unwrap();
+    let error = MeshFile::read(&folder.path("in.nc")).unwrap_err().to_string();
+    assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+}
+
+/// The bytes with the last of these words replaced by another of the same length.
+fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    assert_eq!(from.len(), to.len());
+    let at = bytes.windows(from.len()).rposition(|part| part == from.as_bytes()).unwrap();
+    [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
+}
+
+#[test]
+fn files_without_one_mesh_of_faces_are_refused_with_a_remedy() {
+    let all = samples();
+    let usual = all.last().unwrap();
+    let refuse = |from: &str, to: &str, parts: &[&str]| {
+        refused(&replaced(&usual.bytes, from, to), parts);
+    };
+    refuse(
+        "bay_y bay_x lon",
+        "bay_y bay_q    ",
+        &["in.nc, byte ", "bay has no two variables that"],
+    );
+    refuse("bay_y bay_x lon", "lon level      ", &["lon and level are not two lists of real"]);
+    refuse("bay_y bay_x lon", "bay_x bay_x    ", &["bay_x and bay_x are not two lists"]);
+    let no_faces = replaced(&usual.bytes, "face_node_connectivity", "face_face_connectivity");
+    refused(&no_faces, &["bay has no variable that its face_node_connectivity names"]);
+    // The dimensions of both meshes, one after the other.
+    let dimension = b"topology_dimension\0\0\0\0\0\x04\0\0\0\x01\0\0\0";
+    let places: Vec<usize> = (0..usual.bytes.len() - dimension.len())
+        .filter(|&at| usual.bytes[at..].starts_with(dimension))
+        .map(|at| at + dimension.len())
+        .collect();
+    let [lines, faces] = places[..] else { panic!("{places:?}") };
+    let mut bytes = usual.bytes.clone();
+    bytes[lines] = 2;
+    refused(
+        &bytes,
+        &["in.nc, byte 0: several meshes: network, bay. Save each in a file of its own"],
+    );
+    bytes[lines] = 1;
+    bytes[faces] = 3;
+    refused(&bytes, &["a UGRID file without a mesh of faces (topology_dimension 2)"]);
+}
+
+#[test]
+fn faces_that_are_none_are_refused_by_number_and_place() {
+    let all = samples();
+    let usual = all.last().unwrap();
+    let rows = usual.triangle.1.clone();
+    let with = |face: usize, corner: usize, node: i32| {
+        let mut bytes = usual.bytes.clone();
+        let at = rows.start + 4 * (4 * face + corner);
+        bytes[at..at + 4].copy_from_slice(&node.to_be_bytes());
+        (bytes, format!("in.nc, byte {}: face {}", rows.start + 16 * face, face + 1))
+    };
+    let (bytes, place) = with(5, 2, -999);
+    refused(&bytes, &[&place, " has 2 corners"]);
+    let (bytes, place) = with(5, 1, -999);
+    refused(&bytes, &[&place, " has a corner after a missing one"]);
+    let (bytes, place) = with(5, 0, -7);
+    refused(&bytes, &[&place, " has the corner -7, which is no node"]);
+}
