@@ -21,6 +21,6 @@ for scheme in imr edge edge+imr; do
 done
 "$smooth" bench --engine gpu "${adapter[@]}" --json \
     --vertices 10000,100000,1000000,4000000,10000000 > "$folder/bench.json"
-cargo bench --bench whole -- 62534 1000000 | tee "$folder/whole.txt"
+cargo bench -p gpu-smooth-cli --bench whole -- 62534 1000000 | tee "$folder/whole.txt"
 cargo bench --bench convergence -- 57000 1000000 | tee "$folder/convergence.txt"
 cargo test --release | tee "$folder/tests.txt"

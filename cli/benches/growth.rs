@@ -2,7 +2,7 @@
 //! draws a figure.
 //!
 //! ```text
-//! cargo bench --bench growth -- docs/performance-growth.svg 10000,100000,1000000,10000000
+//! cargo bench -p gpu-smooth-cli --bench growth -- docs/performance-growth.svg 10000,100000,1000000,10000000
 //! ```
 
 #![allow(clippy::print_stdout)]

@@ -2,7 +2,7 @@
 //! mmg2d for comparison if `mmg2d_O3` is on the path.
 //!
 //! ```text
-//! cargo bench --bench whole -- 62534 1000000          # vertices
+//! cargo bench -p gpu-smooth-cli --bench whole -- 62534 1000000          # vertices
 //! ```
 
 #![allow(clippy::print_stdout)]

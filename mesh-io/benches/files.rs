@@ -1,7 +1,7 @@
 //! Measures the speed of reading and writing mesh files in megabytes per second, beside plain copies of the same bytes.
 //!
 //! ```text
-//! cargo bench --bench files -- 1000000
+//! cargo bench -p mesh-io --bench files -- 1000000
 //! ```
 //!
 //! All coordinates change before they are written. Files are in the system's temporary folder (`TMPDIR`). A written mesh is

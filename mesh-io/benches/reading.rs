@@ -1,7 +1,7 @@
 //! Measures how fast mesh files are read, in megabytes per second, and the memory this takes, as a multiple of their size.
 //!
 //! ```text
-//! cargo bench --bench reading -- MESH...
+//! cargo bench -p mesh-io --bench reading -- MESH...
 //! ```
 //!
 //! A process of its own reads each file five times. There are two times, the least of five each:
@@ -31,7 +31,7 @@ fn main() {
     let meshes: Vec<PathBuf> =
         env::args_os().skip(1).filter(|name| name != "--bench").map(PathBuf::from).collect();
     if meshes.is_empty() {
-        println!("Name mesh files: cargo bench --bench reading -- MESH...");
+        println!("Name mesh files: cargo bench -p mesh-io --bench reading -- MESH...");
         return;
     }
     let program = env::current_exe().expect("this program has a name");

@@ -1,4 +1,20 @@
-//! Mesh files, which are read once and written with nothing changed but moved vertices.
+//! Reads 2D triangle meshes in some 20 file formats, writes them again with nothing changed but moved vertices, and converts
+//! them.
+//!
+//! [`MeshFile::read`] finds the format by the content of a file. A [`MeshFile`] never changes: it reports points, triangles,
+//! regions, [`Groups`], data of vertices ([`PointField`]) and [`Constraints`], and [`MeshFile::write`] writes the file with
+//! vertices at other points. A [`Conversion`] writes the mesh in another [`Format`], and lists what that format does not
+//! hold. [`atomic`] replaces any file safely.
+//!
+//! ```no_run
+//! use mesh_io::MeshFile;
+//! use std::path::Path;
+//!
+//! let file = MeshFile::read(Path::new("in.msh"))?;
+//! let moved: Vec<[f64; 2]> = file.points().iter().map(|[x, y]| [x + 1.0, *y]).collect();
+//! file.write(Path::new("out.msh"), &moved)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod abaqus;
 mod adcirc;
@@ -108,3 +124,8 @@ pub use view::View;
 pub mod atomic {
     pub use crate::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
 }
+
+/// Compiles the code of the README with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
