@@ -99,19 +99,16 @@ pub(crate) enum Became {
     StillTangled,
 }
 
-/// Six significant digits, as text of a fixed width has them.
-const SIX_DIGITS: Rounding = Rounding {
-    name: "six digits",
-    round: |number| format!("{number:.5e}").parse().unwrap_or(number),
-    error: |size| 1e-5 * size,
-};
-
-/// Multiples of a sixteenth.
-const SIXTEENTHS: Rounding = Rounding {
-    name: "sixteenths",
-    round: |number| (number * 16.0).round() / 16.0,
-    error: |_| 1.0 / 32.0,
-};
+/// Rounds to so many significant digits, as text of a fixed width does.
+macro_rules! digits {
+    ($digits:literal) => {
+        Rounding {
+            name: concat!($digits, " digits"),
+            round: |number| format!("{number:.*e}", $digits - 1).parse().unwrap_or(number),
+            error: |size| 10f64.powi(1 - $digits) * size,
+        }
+    };
+}
 
 fn options(bytes: &mut Bytes<'_>) -> Options {
     let metric = |i: usize| Metric::ALL[i % Metric::ALL.len()].name();
@@ -127,8 +124,9 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
         method: if flags & 1 == 0 { Method::Auto } else { Method::Sweeps },
         stored: match flags & 14 {
             2 => Precision::Single,
-            6 => Precision::Custom(SIX_DIGITS),
-            10 => Precision::Custom(SIXTEENTHS),
+            6 => Precision::Custom(digits!(15)),
+            10 => Precision::Custom(digits!(11)),
+            14 => Precision::Custom(digits!(5)),
             _ => Precision::Double,
         },
         inner: if flags & 48 == 16 { 3 } else { 1 },

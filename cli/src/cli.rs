@@ -30,6 +30,7 @@ use crate::surface_args::SurfaceArgs;
 /// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
 #[derive(Parser)]
 #[command(
+    name = "gpu-smooth",
     version,
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",

@@ -136,7 +136,7 @@ fn the_file_written_by_a_run_holds_what_its_report_says() {
 /// An XDMF with its numbers in HDF5 beside it: to another folder, in place, with a report, many at once and through a pipe.
 #[test]
 fn an_xdmf_comes_with_the_files_beside_it() {
-    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh-io/tests/formats/h5");
     let folder = Folder::new(&[]);
     for name in ["dolfin.xdmf", "dolfin.h5", "meshio.xdmf", "meshio.h5"] {
         fs::copy(made.join(name), folder.path(name)).unwrap();
@@ -169,7 +169,7 @@ fn an_xdmf_comes_with_the_files_beside_it() {
 /// A mesh of UGRID in netCDF-4: its data and the places of its faces follow the vertices, also through a conversion.
 #[test]
 fn places_and_data_of_ugrid_follow_the_vertices() {
-    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/h5");
+    let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh-io/tests/formats/h5");
     let folder = Folder::new(&[]);
     fs::copy(made.join("ugrid.nc"), folder.path("in.nc")).unwrap();
     let line = "in.nc out.nc --interpolate all --report run.json --engine cpu";
