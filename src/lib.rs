@@ -88,6 +88,7 @@
 //! result. But every kernel needs all positions, in two bindings at most: a device that binds 128 MiB at once takes 16
 //! million vertices. [`Gpu::check_size`] checks this without allocating.
 
+mod adapter;
 mod chart;
 mod choice;
 mod cpu;
@@ -133,13 +134,13 @@ pub use choice::Reason;
 pub use error::{BadTriangle, GpuError, MeshError, SmoothError};
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
-    MeshSize, ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
+    ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
 };
 pub use interpolate::Interpolation;
 pub use measure::{
     Better, Change, Definition, Measure, Measured, QUANTILES, Spread, Statistics, UnknownMeasure,
 };
-pub use mesh::Mesh;
+pub use mesh::{Mesh, MeshSize};
 pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
 pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
 pub use periodic::{Motion, Periodic};

@@ -1,4 +1,4 @@
-//! The mesh that a caller supplies.
+//! The mesh that a caller supplies, and its size.
 
 /// A 2D triangle mesh: double-precision positions and vertex triples, in the order of their file or application.
 ///
@@ -13,4 +13,13 @@ pub struct Mesh {
     /// Interior vertices that must not move: those on constraint lines, those of elements that are not triangles, and
     /// those between regions. In any order, repeats allowed. Boundary vertices never move and need not be listed.
     pub fixed: Vec<u32>,
+}
+
+/// The size of a mesh, for [`Backend::auto`](crate::Backend::auto), `Gpu::required_limits` and `Gpu::check_size`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshSize {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of triangles.
+    pub triangles: usize,
 }

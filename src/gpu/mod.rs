@@ -14,7 +14,7 @@ mod mesh;
 mod run;
 pub(crate) mod scope;
 
-pub use device::{AdapterSummary, Gpu, MeshSize, adapters, checked_adapters};
+pub use device::{Gpu, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, LastValid,
@@ -24,4 +24,6 @@ pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{Interface, Kernel};
 pub(crate) use run::GpuEngine;
 
+pub use crate::adapter::AdapterSummary;
 pub use crate::error::GpuError;
+pub use crate::mesh::MeshSize;

@@ -1,20 +1,8 @@
 //! The adapters of this machine.
 
+use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
 use crate::gpu::device::blocking::blocking;
-
-/// The name of an adapter, and how wgpu drives it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterSummary {
-    /// The name, for example of the graphics card. Browsers may keep it to themselves: "unnamed adapter" then.
-    pub name: String,
-    /// Driver and version.
-    pub driver: String,
-    /// wgpu's backend: vulkan, metal, dx12 or gl.
-    pub backend: String,
-    /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" (software) or "other".
-    pub kind: &'static str,
-}
 
 impl AdapterSummary {
     pub(crate) fn new(info: &wgpu::AdapterInfo) -> Self {
@@ -37,11 +25,6 @@ impl AdapterSummary {
             backend: info.backend.to_string(),
             kind,
         }
-    }
-
-    /// Whether the driver computes on the CPU, as Mesa's lavapipe does.
-    pub fn is_software(&self) -> bool {
-        self.kind == "CPU"
     }
 }
 

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
+use crate::adapter::AdapterSummary;
 use crate::error::{GpuError, SmoothError};
-use crate::gpu::device::adapters::AdapterSummary;
 use crate::gpu::device::limits;
-use crate::gpu::device::size::MeshSize;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::table::{Kernel, Positions};
 use crate::gpu::scope::poll;
+use crate::mesh::MeshSize;
 use crate::run::Options;
 
 /// A device with its pipelines. Created once, it serves many meshes. It is a handle: clones refer to the same device.

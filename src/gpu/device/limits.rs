@@ -1,11 +1,11 @@
 //! The limits that an application's device must have.
 
 use crate::error::GpuError;
-use crate::gpu::device::size::MeshSize;
 use crate::gpu::kernels::dispatch::FOLD;
 use crate::gpu::kernels::pipelines::storage_bindings;
 use crate::gpu::kernels::table::Positions;
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, WORKGROUP};
+use crate::mesh::MeshSize;
 
 /// The name of a limit, its field, the value that the kernels need, and what they need it for.
 type Row = (&'static str, fn(&mut wgpu::Limits) -> &mut u32, u32, &'static str);

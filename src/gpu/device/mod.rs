@@ -10,9 +10,8 @@ mod open;
 pub(crate) mod readback;
 pub(crate) mod size;
 
+pub use adapters::adapters;
 pub(crate) use adapters::ranked_adapters;
-pub use adapters::{AdapterSummary, adapters};
 pub use gpu::Gpu;
 pub use open::checked_adapters;
 pub(crate) use readback::Waiting;
-pub use size::MeshSize;

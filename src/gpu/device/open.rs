@@ -2,9 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::adapters::{AdapterSummary, ranked_adapters, ranked_adapters_async};
+use crate::gpu::device::adapters::{ranked_adapters, ranked_adapters_async};
 use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::scope::caught;

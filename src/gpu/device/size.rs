@@ -4,16 +4,7 @@ use crate::error::GpuError;
 use crate::gpu::kernels::pipelines::storage_bindings;
 use crate::gpu::kernels::table::Positions;
 use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
-
-/// The size of a mesh, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits) and
-/// [`Gpu::check_size`](crate::gpu::Gpu::check_size).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeshSize {
-    /// Number of vertices.
-    pub vertices: usize,
-    /// Number of triangles.
-    pub triangles: usize,
-}
+use crate::mesh::MeshSize;
 
 /// The bytes that a buffer needs for a mesh.
 struct Need {

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use crate::gpu::device::{Gpu, MeshSize};
+use crate::gpu::device::Gpu;
 use crate::gpu::embed::{BoundMask, BoundMove, BoundObjective, BoundVertices};
 use crate::gpu::embed::{DeviceMesh, LastValid, Sweeps, UntanglingSweeps};
 use crate::gpu::encode::{Spans, Timestamps};
+use crate::mesh::MeshSize;
 
 impl fmt::Debug for Gpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,11 +9,12 @@ use std::ops::Range;
 
 use crate::error::GpuError;
 use crate::gpu::device::size::{
-    MeshSize, NUMBER, POSITION, TRIANGLE, check_limit, check_rows, objective_invocations,
+    NUMBER, POSITION, TRIANGLE, check_limit, check_rows, objective_invocations,
 };
 use crate::gpu::kernels::table::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
+use crate::mesh::MeshSize;
 
 /// The parts into which the data of a mesh are cut, for each kind of data. A kind that fits one binding has one part.
 #[derive(Clone)]
