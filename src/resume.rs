@@ -66,6 +66,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
+    use crate::run::checksum::crc32;
     use crate::run::{Keeper, Progress, Stop};
     use crate::{Backend, Gpu, GpuError, Outcome, Smoother, validity};
 
@@ -189,9 +190,8 @@ mod tests {
                     let at = random(most - 8);
                     hostile[at..at + 8].copy_from_slice(&word.to_le_bytes());
                 }
-                let mut sum = flate2::Crc::new();
-                sum.update(&hostile);
-                hostile.extend(sum.sum().to_le_bytes());
+                let sum = crc32(&hostile);
+                hostile.extend(sum.to_le_bytes());
                 let Some(from) = Checkpoint::from_bytes(&hostile) else {
                     refused += 1;
                     continue;

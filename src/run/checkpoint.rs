@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::metric::Metric;
+use crate::run::checksum::crc32;
 use crate::run::objectives::Objectives;
 use crate::run::opening::Opened;
 use crate::run::saved::{CPU, EngineState, Saved};
@@ -77,7 +78,7 @@ impl Checkpoint {
             out.bytes(name.as_bytes());
             out.bytes(bytes);
         });
-        let sum = checksum(&out.0);
+        let sum = crc32(&out.0);
         out.0.extend(sum.to_le_bytes());
         out.0
     }
@@ -86,7 +87,7 @@ impl Checkpoint {
     /// else, or were changed.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (content, sum) = bytes.split_last_chunk()?;
-        if checksum(content) != u32::from_le_bytes(*sum) {
+        if crc32(content) != u32::from_le_bytes(*sum) {
             return None;
         }
         let mut from = Reader(content.strip_prefix(Self::MAGIC)?);
@@ -114,13 +115,6 @@ impl Checkpoint {
         };
         from.0.is_empty().then_some(Self { about, saved })
     }
-}
-
-/// The checksum that gzip uses.
-fn checksum(bytes: &[u8]) -> u32 {
-    let mut sum = flate2::Crc::new();
-    sum.update(bytes);
-    sum.sum()
 }
 
 /// Writes numbers with their least byte first, and lists after their length.
@@ -262,7 +256,7 @@ mod tests {
             let mut huge = bytes[..bytes.len() - 4].to_vec();
             let end = (at + 8).min(huge.len());
             huge[at.min(end)..end].fill(0xFF);
-            let sum = checksum(&huge);
+            let sum = crc32(&huge);
             huge.extend(sum.to_le_bytes());
             let _ = Checkpoint::from_bytes(&huge);
         }

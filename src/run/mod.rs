@@ -2,6 +2,7 @@
 //! the sweeps, on the CPU or a device.
 
 mod checkpoint;
+pub(crate) mod checksum;
 mod corrections;
 mod drive;
 mod engine;
