@@ -3,7 +3,7 @@
 
 mod checkpoint;
 pub(crate) mod checksum;
-mod corrections;
+pub(crate) mod corrections;
 mod drive;
 mod engine;
 mod history;
@@ -26,7 +26,6 @@ mod yielding;
 
 pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
-pub(crate) use corrections::OMEGA_BETWEEN;
 pub(crate) use drive::{Course, DriveError, End, Strategy, drive};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};

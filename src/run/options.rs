@@ -24,7 +24,7 @@ pub enum Method {
     /// Requires a base metric that [is corrected](crate::Properties::is_corrected) (all but area), analytic
     /// derivatives, one Newton step per visit, and [`Options::omega`] left at `None`.
     ///
-    /// [`Sweeps`](crate::Sweeps) that an application encodes with this method are corrected from the first sweep on.
+    /// `Sweeps` that an application encodes with this method are corrected from the first sweep on.
     /// With [`Auto`](Self::Auto) they are not corrected, and edge and alternating metrics cannot be corrected there.
     Multilevel,
     /// Sweeps alone, over-relaxed by [`Options::omega`].
@@ -41,7 +41,7 @@ pub enum Guard {
     ByMetric,
     /// With any metric, a step may leave no triangle worse than the worst triangle with a free vertex before the run,
     /// by the inverse mean ratio after target maps are applied. So the worst element of a run never gets worse. Only
-    /// for whole runs: [`Sweeps`](crate::Sweeps), which an application encodes itself, refuse it.
+    /// for whole runs: `Sweeps`, which an application encodes itself, refuse it.
     Worst,
 }
 
@@ -170,21 +170,6 @@ impl Options {
             });
         }
         Ok(())
-    }
-
-    /// Checks that an application can encode sweeps with these options.
-    pub(crate) fn check_encoded(&self) -> Result<(), SmoothError> {
-        let refuse = |option, value| {
-            let remedy = "encoded sweeps cannot do this: leave it out, or do a whole run";
-            Err(SmoothError::Option { option, value, remedy })
-        };
-        match (self.guard, self.max_move) {
-            (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
-            (_, Some(most)) => refuse("max move", most.to_string()),
-            _ if self.keep_altitude => refuse("keep altitude", "on".to_owned()),
-            _ if self.improve_worst.is_some() => refuse("improve worst", "on".to_owned()),
-            _ => Ok(()),
-        }
     }
 
     /// Checks every field against its range.

@@ -25,14 +25,6 @@ pub enum Stop {
 }
 
 impl Stop {
-    /// The codes by which finish.wgsl names the reasons that a device can find; 0 means that the run continues.
-    pub(crate) const CODES: [(Stop, u32); 4] =
-        [(Stop::Reached, 1), (Stop::Converged, 2), (Stop::Stalled, 3), (Stop::MaxSweeps, 4)];
-
-    pub(crate) fn from_code(code: u32) -> Option<Self> {
-        Self::CODES.iter().find(|&&(_, c)| c == code).map(|&(stop, _)| stop)
-    }
-
     /// Returns the reason in one word, for reports.
     pub fn name(self) -> &'static str {
         match self {

@@ -15,7 +15,8 @@ use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
-use crate::run::{Method, OMEGA_BETWEEN, Options, Plan, Step};
+use crate::run::corrections::OMEGA_BETWEEN;
+use crate::run::{Guard, Method, Options, Plan, Step};
 
 /// A scheme bound to a mesh on the device. It encodes sweeps into the application's command encoder; it never submits
 /// and never reads back. Sweeps made by [`new`](Self::new) never end. Those made by
@@ -112,7 +113,7 @@ impl Sweeps {
         waiting: Waiting,
     ) -> Result<Self, SmoothError> {
         options.check_for(&mesh.problem)?;
-        options.check_encoded()?;
+        check_encoded(options)?;
         let is_corrected = options.method == Method::Multilevel;
         if is_corrected {
             let refuse = |remedy| {
@@ -231,6 +232,21 @@ impl Sweeps {
         offset: u64,
     ) -> Result<BoundObjective, GpuError> {
         BoundObjective::new(&self.gpu, &self.run, None, buffer, offset)
+    }
+}
+
+/// Checks that an application can encode sweeps with these options.
+fn check_encoded(options: &Options) -> Result<(), SmoothError> {
+    let refuse = |option, value| {
+        let remedy = "encoded sweeps cannot do this: leave it out, or do a whole run";
+        Err(SmoothError::Option { option, value, remedy })
+    };
+    match (options.guard, options.max_move) {
+        (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
+        (_, Some(most)) => refuse("max move", most.to_string()),
+        _ if options.keep_altitude => refuse("keep altitude", "on".to_owned()),
+        _ if options.improve_worst.is_some() => refuse("improve worst", "on".to_owned()),
+        _ => Ok(()),
     }
 }
 

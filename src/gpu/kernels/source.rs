@@ -7,8 +7,10 @@ use crate::gpu::kernels::uniforms::{
     FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS, SLOTS,
     WORKGROUP, WORST,
 };
-use crate::metric::{Metric, PENALTY};
-use crate::run::multilevel::{CLOSE, LEAST_FIRST, MOST_FIRST, NONE, SMOOTHING};
+use crate::metric::Metric;
+use crate::metric::smoothing::PENALTY;
+use crate::run::multilevel::search::{CLOSE, MOST_FIRST};
+use crate::run::multilevel::{LEAST_FIRST, NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
 use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};

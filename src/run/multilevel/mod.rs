@@ -13,10 +13,10 @@
 mod aggregate;
 mod dense;
 mod hierarchy;
-mod search;
+pub(crate) mod search;
 mod sparse;
 
 pub(crate) use aggregate::NONE;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
-pub(crate) use search::{CLOSE, LEAST_FIRST, MOST_FIRST, Search};
+pub(crate) use search::{LEAST_FIRST, Search};
 pub(crate) use sparse::Sparse;

@@ -69,7 +69,7 @@ impl Sparse {
 
     /// Number of rows.
     pub(crate) fn rows(&self) -> usize {
-        self.start.len() - 1
+        self.starts().len() - 1
     }
 
     /// Where each row starts in [`Self::columns`] and [`Self::values`], and one past the last.
@@ -89,9 +89,9 @@ impl Sparse {
 
     /// The entries of a row.
     pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
-        let range = self.start[row] as usize..self.start[row + 1] as usize;
-        let columns = self.column[range.clone()].iter().map(|&c| c as usize);
-        columns.zip(self.value[range].iter().copied())
+        let range = self.starts()[row] as usize..self.starts()[row + 1] as usize;
+        let columns = self.columns()[range.clone()].iter().map(|&c| c as usize);
+        columns.zip(self.values()[range].iter().copied())
     }
 
     /// Returns the reciprocals of the diagonal entries.
