@@ -241,7 +241,7 @@ pub enum GpuError {
         most_triangles: usize,
     },
     /// The adapter's compiler reorders or drops operations that the kernels rely on, so results would be silently
-    /// wrong. Found by [`Gpu::check_arithmetic`](crate::Gpu::check_arithmetic).
+    /// wrong. Found by `Gpu::check_arithmetic`.
     #[error(
         "the adapter {adapter} cannot be used: {operation}. Use another adapter or the CPU (--engine cpu)"
     )]

@@ -1,36 +1,24 @@
 //! Functions for benchmarks, experiments and this library's own tests. They change without notice.
 
+#[cfg(feature = "gpu")]
+mod device;
+
 use glam::DVec2;
 
 use crate::cpu::CpuEngine;
-use crate::gpu::{GpuEngine, Waiting};
 use crate::run::StepwiseRun;
 use crate::untangle::energy::Corner;
 
-pub use crate::gpu::{Interface, Kernel};
+#[cfg(feature = "gpu")]
+pub use device::{Interface, Kernel, run_on_gpu};
+
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
 pub use crate::metric::{Dual, InvariantSlopes, Invariants, Real, Slopes};
 pub use crate::run::{Plan, Step, Stepwise, StopRule};
-use crate::{Gpu, GpuError};
 
 /// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.
 pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> impl Stepwise + 'a {
     StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), &plan), plan)
-}
-
-/// Starts a run of sweeps on a device from `positions`, which are normalized and in the problem's order.
-///
-/// # Errors
-/// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
-pub fn run_on_gpu<'a>(
-    gpu: &'a Gpu,
-    problem: &'a Problem,
-    positions: &'a [DVec2],
-    plan: Plan,
-) -> Result<impl Stepwise + 'a, GpuError> {
-    let steps = plan.steps();
-    let engine = GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block)?;
-    Ok(StepwiseRun::new(engine, plan))
 }
 
 /// Returns the energy that untangling lowers, for a triangle spanned by `edges` from a corner, which should have the

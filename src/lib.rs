@@ -26,58 +26,16 @@
 //! # Ok::<(), gpu_smooth::SmoothError>(())
 //! ```
 //!
-//! A [`Gpu`] is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
+//! A `Gpu` is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
 //! [`Outcome`]. An [`Interpolation`] takes data of vertices to their new positions. Vertices listed in [`Mesh::fixed`] do
 //! not move; [`select`] helps to list them. [`Measured`] evaluates triangles by each [`Measure`] of the field, and
 //! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files.
 //!
-//! # Inside an application
-//! A [`Gpu`] can be made from the application's own device. A [`DeviceMesh`] then stays on the device as long as its
-//! triangles stay the same, and [`Sweeps`] are encoded into the application's own command buffers. Nothing is
-//! submitted, nothing is waited for, and the vertex buffer that the application draws is the one that is smoothed.
-//! Everything that can fail, compile or allocate is done once; a frame only encodes.
+//! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the
+//! dependency wgpu. Without the feature, all runs are on the CPU.
 //!
-//! ```no_run
-//! # use gpu_smooth::*;
-//! # fn draw(_: &mut wgpu::CommandEncoder, _: &wgpu::Buffer) {}
-//! # fn f(
-//! #     (device, queue): (wgpu::Device, wgpu::Queue), mesh: &Mesh, vertices: &wgpu::Buffer,
-//! #     numbers: &wgpu::Buffer
-//! # ) -> Result<(), SmoothError> {
-//! // Once; the device was made with the limits of `Gpu::required_limits`.
-//! let gpu = Gpu::new(device.clone(), queue.clone())?;
-//! let device_mesh = DeviceMesh::new(&gpu, mesh)?;
-//! let place = VertexBuffer::new(vertices, 12);
-//! let bound = device_mesh.bind_vertices(&place)?;
-//! let mut sweeps = Sweeps::new(&device_mesh, &Options::default())?;
-//! let objective = sweeps.bind_objective(numbers, 0)?;
-//!
-//! // In each frame, for a mesh whose boundary or vertices the application moves.
-//! let mut encoder = device.create_command_encoder(&Default::default());
-//! bound.encode_import(&mut encoder);
-//! sweeps.encode_sweeps(&mut encoder, 5);
-//! bound.encode_export(&mut encoder);
-//! objective.encode_objective(&mut encoder); // writes `ObjectiveValues`: f, inverted triangles, the worst
-//! draw(&mut encoder, vertices);
-//! queue.submit([encoder.finish()]);
-//! # Ok(())
-//! # }
-//! ```
-//!
-//! - [`DeviceMesh::bind_move`] moves vertices that a user drags and stops before a triangle inverts;
-//!   [`Topology::move_clamped`] does so with positions on the host.
-//! - [`UntanglingSweeps`] turn back triangles that the application has inverted.
-//! - [`Sweeps::until_converged`] makes sweeps that end by the stop rule, on the device; a [`Budget`] chooses how many
-//!   sweeps a frame has time for.
-//! - A [`Readback`] reads objectives or vertices in each frame and never waits.
-//! - [`Topology::boundary_loops`] and [`signed_area`] find the boundary of the mesh and tell holes from the outside.
-//! - [`Timestamps`] measure how long each kernel takes.
-//! - [`Gpu::prepare`] compiles ahead, for an application that changes schemes while it runs.
-//! - [`Smoother::run_async`] does a whole run, with its stop rule, without blocking the thread.
-//!
-//! `docs/embedding.md` covers all of this: frames, devices, precision, drags, pins, budgets, readbacks, other meshes
-//! and lost devices. `examples/embed`, `examples/moving_boundary` and `examples/outside` are complete applications.
+#![cfg_attr(feature = "gpu", doc = include_str!("gpu/application.md"))]
 //!
 //! # Limits
 //!
@@ -86,13 +44,14 @@
 //!
 //! On a GPU, buffers that are larger than a device can bind at once are bound part by part, which changes no bit of the
 //! result. But every kernel needs all positions, in two bindings at most: a device that binds 128 MiB at once takes 16
-//! million vertices. [`Gpu::check_size`] checks this without allocating.
+//! million vertices. `Gpu::check_size` checks this without allocating.
 
 mod adapter;
 mod chart;
 mod choice;
 mod cpu;
 mod error;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 mod interpolate;
 mod layout;
@@ -121,7 +80,7 @@ pub mod validity {
 }
 
 /// Compiles the code of docs/embedding.md with the tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "gpu"))]
 #[doc = include_str!("../docs/embedding.md")]
 mod embedding {}
 
@@ -132,6 +91,7 @@ pub mod internal;
 pub use chart::Chart;
 pub use choice::Reason;
 pub use error::{BadTriangle, GpuError, MeshError, SmoothError};
+#[cfg(feature = "gpu")]
 pub use gpu::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
     ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
@@ -155,4 +115,5 @@ pub use smoother::{Backend, Smoother, smooth};
 pub use targets::{Outside, Surface, TargetField, Targets};
 pub use topology::{Crossing, HangingNode, Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};
+#[cfg(feature = "gpu")]
 pub use wgpu;

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::run::checksum::crc32;
     use crate::run::{Keeper, Progress, Stop};
-    use crate::{Backend, Gpu, GpuError, Outcome, Smoother, validity};
+    use crate::{Backend, GpuError, Outcome, Smoother, validity};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
@@ -114,16 +114,23 @@ mod tests {
         Mesh { points, triangles: squares.flat_map(of_square).collect(), fixed: Vec::new() }
     }
 
+    /// The CPU, and the GPU if its engine is compiled.
+    fn backends() -> Vec<Backend> {
+        Vec::from([
+            Backend::Cpu,
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(crate::Gpu::open(None).unwrap()),
+        ])
+    }
+
     /// A position that overflows comes in with a checkpoint, as if memory had failed. The sweep that reveals it is
     /// undone, and the mesh that is returned is no worse than before the run.
     #[test]
     fn a_sweep_that_makes_a_number_that_is_not_finite_is_undone() {
         let mesh = lattice(12);
         let smoother = Smoother::new(&mesh).unwrap();
-        let gpu = Backend::Gpu(Gpu::open(None).unwrap());
-        for (backend, scheme) in
-            [(&Backend::Cpu, "imr"), (&Backend::Cpu, "edge+imr"), (&gpu, "imr"), (&gpu, "edge+imr")]
-        {
+        let of_each = |backend| ["imr", "edge+imr"].map(|scheme| (backend, scheme));
+        for (backend, scheme) in backends().iter().flat_map(of_each) {
             let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
             let mut first = First::default();
             let whole = smoother.run_kept(&options, backend, None, &mut first, &mut go_on).unwrap();
@@ -147,7 +154,7 @@ mod tests {
             assert_eq!(outcome.stop, Stop::NotFinite, "{scheme}");
             check(&outcome);
             assert!(outcome.sweeps < whole.sweeps);
-            if let Backend::Gpu(_) = backend {
+            if !matches!(backend, Backend::Cpu) {
                 assert!(matches!(first.told[..], [GpuError::NotFinite { .. }]), "{:?}", first.told);
             }
         }
@@ -159,7 +166,6 @@ mod tests {
     fn a_hostile_checkpoint_does_no_harm() {
         let mesh = lattice(6);
         let smoother = Smoother::new(&mesh).unwrap();
-        let gpu = Backend::Gpu(Gpu::open(None).unwrap());
         let mut state = 1_u64;
         let (mut refused, mut went_on) = (0, 0);
         let mut random = |below: usize| {
@@ -168,12 +174,9 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % below
         };
-        for (backend, scheme, rounds) in [
-            (&Backend::Cpu, "imr", 150),
-            (&Backend::Cpu, "edge+imr", 150),
-            (&gpu, "imr", 12),
-            (&gpu, "edge+imr", 12),
-        ] {
+        let of_each = |backend| ["imr", "edge+imr"].map(|scheme| (backend, scheme));
+        for (backend, scheme) in backends().iter().flat_map(of_each) {
+            let rounds = if matches!(backend, Backend::Cpu) { 150 } else { 12 };
             let options =
                 Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
             let mut kept = Latest::default();

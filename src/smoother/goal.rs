@@ -1,11 +1,10 @@
 //! The desired objective of a goal.
 
 use crate::error::SmoothError;
-use crate::gpu::{Gpu, Waiting};
 use crate::metric::{Metric, Scheme};
 use crate::outcome::GoalOutcome;
 use crate::run::{Desired, Goal, Keeper, Keeping, NOISE, Observer, Options, Phase, ROUNDING, Stop};
-use crate::whole::Attempt;
+use crate::whole::{Attempt, Device};
 
 use super::Smoother;
 
@@ -16,7 +15,7 @@ impl Smoother<'_> {
         &self,
         goal: Goal,
         options: &Options,
-        device: Option<(&Gpu, Waiting)>,
+        device: Option<Device<'_>>,
         keeper: &mut K,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Option<GoalOutcome>, SmoothError> {

@@ -1,6 +1,8 @@
 //! A prepared mesh, and its runs.
 
 mod goal;
+#[cfg(feature = "gpu")]
+mod on_device;
 mod running;
 mod ways;
 
@@ -13,9 +15,8 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{DeviceMesh, Gpu, MeshSize, Waiting};
 use crate::layout::{Problem, prepare, prepare_to_slide};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::outcome::Outcome;
 use crate::quality::Quality;
@@ -30,7 +31,8 @@ pub enum Backend {
     /// All cores of the CPU, in double precision.
     Cpu,
     /// A wgpu device.
-    Gpu(Gpu),
+    #[cfg(feature = "gpu")]
+    Gpu(crate::gpu::Gpu),
 }
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
@@ -191,17 +193,6 @@ impl<'a> Smoother<'a> {
         self.prepare
     }
 
-    /// Uploads the mesh as [`DeviceMesh::new`] does, with the layout and the targets that are prepared already: sweeps then give
-    /// the same bits, and no more than the upload is left to do. Only a mesh with [`Mesh::fixed`] vertices is laid out again. A
-    /// field of targets is taken as it is at the vertices before a run; nothing slides on a device.
-    ///
-    /// # Errors
-    /// [`SmoothError::Gpu`] with [`GpuError::Limit`](crate::GpuError::Limit) if the mesh is too large for the device, and
-    /// [`SmoothError::Mesh`] if no vertex is free.
-    pub fn to_device(&self, gpu: &Gpu) -> Result<DeviceMesh, SmoothError> {
-        DeviceMesh::of(gpu, &self.mesh, &self.problem)
-    }
-
     /// Returns the number of triangles, and the number of vertices that some triangle uses.
     pub fn size(&self) -> MeshSize {
         let triangles = self.problem.triangles().len();
@@ -278,35 +269,10 @@ impl<'a> Smoother<'a> {
     ) -> Result<Outcome, SmoothError> {
         let device = match backend {
             Backend::Cpu => None,
-            Backend::Gpu(gpu) => Some((gpu, Waiting::Block)),
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(gpu) => Some(crate::whole::Device::blocking(gpu)),
         };
         pollster::block_on(self.run_at(options, device, from, keeper, observe))
-    }
-
-    /// Smooths the mesh on a device without blocking the thread while the device works.
-    ///
-    /// The future completes only if the application polls the device meanwhile, as one that draws frames does
-    /// (`Device::poll` with `PollType::Poll` is enough). Dropping the future cancels the run without a result. The
-    /// future is `Send`.
-    ///
-    /// # Errors
-    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
-    pub async fn run_async(&self, options: &Options, gpu: &Gpu) -> Result<Outcome, SmoothError> {
-        self.run_async_observed(options, gpu, &mut unobserved).await
-    }
-
-    /// Smooths the mesh as [`run_async`](Self::run_async) does. `observe` is called every few sweeps and can end the run; the best
-    /// state so far is then returned. The future is `Send` if `observe` is.
-    ///
-    /// # Errors
-    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`run`](Self::run) gives the conditions.
-    pub async fn run_async_observed(
-        &self,
-        options: &Options,
-        gpu: &Gpu,
-        observe: &mut (impl Observer + ?Sized),
-    ) -> Result<Outcome, SmoothError> {
-        self.run_at(options, Some((gpu, Waiting::Await)), None, &mut NoKeeper, observe).await
     }
 
     /// Returns the objective by a metric at normalized positions.

@@ -6,7 +6,6 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::gpu::{Gpu, Waiting};
 use crate::metric::Metric;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
@@ -15,7 +14,7 @@ use crate::run::{
     Phase, ROUNDING, Stop,
 };
 use crate::slide::Sliding;
-use crate::whole::{Attempt, Ended, Improving, altitude};
+use crate::whole::{Attempt, Device, Ended, Improving, altitude};
 
 use super::Smoother;
 use super::ways::Ways;
@@ -24,7 +23,7 @@ impl Smoother<'_> {
     pub(super) async fn run_at<K: Keeper + ?Sized>(
         &self,
         options: &Options,
-        device: Option<(&Gpu, Waiting)>,
+        device: Option<Device<'_>>,
         from: Option<&Checkpoint>,
         keeper: &mut K,
         observe: &mut (impl Observer + ?Sized),
@@ -95,12 +94,12 @@ impl Smoother<'_> {
     /// it drops digits, `keeper` may let the run begin on the CPU.
     async fn checked<'g, K: Keeper + ?Sized>(
         &self,
-        device: Option<(&'g Gpu, Waiting)>,
+        device: Option<Device<'g>>,
         keeper: &mut K,
-    ) -> Result<(Option<(&'g Gpu, Waiting)>, Option<DeviceFault>), SmoothError> {
-        let Some((gpu, waiting)) = device else { return Ok((None, None)) };
-        gpu.check_size(self.size())?;
-        match gpu.arithmetic_checked(waiting).await {
+    ) -> Result<(Option<Device<'g>>, Option<DeviceFault>), SmoothError> {
+        let Some(checked) = device else { return Ok((None, None)) };
+        checked.check_size(self.size())?;
+        match checked.check_arithmetic().await {
             Ok(()) => Ok((device, None)),
             Err(error) if keeper.goes_on_without(&error, 0) => {
                 Ok((None, Some(DeviceFault { sweep: 0, error })))

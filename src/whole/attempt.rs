@@ -6,7 +6,6 @@ use glam::DVec2;
 
 use crate::cpu::{CpuEngine, held_back, mean_excess};
 use crate::error::{GpuError, SmoothError};
-use crate::gpu::{Gpu, GpuEngine, Waiting};
 use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::outcome::DeviceFault;
@@ -16,6 +15,7 @@ use crate::run::{
     CPU, Checkpoint, Course, DriveError, End, Guard, History, Keeper, Keeping, Method, Objectives,
     Observer, Options, Phase, Plan, Progress, Saved, Stop, Strategy, drive, set_guards,
 };
+use crate::whole::device::Device;
 use crate::whole::in_rounds::objectives;
 
 /// The largest sum of q² - ideal² that a device is given. It is far below the largest single, 3e38, as formulas of
@@ -25,7 +25,7 @@ const MOST_ON_DEVICE: f64 = 1e15;
 /// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
 pub(crate) struct Attempt<'s> {
     pub(crate) problem: &'s Problem,
-    pub(crate) device: Option<(&'s Gpu, Waiting)>,
+    pub(crate) device: Option<Device<'s>>,
     pub(crate) phase: Phase,
     /// Number of sweeps before this attempt, to be added in reports to the observer.
     pub(crate) done: u32,
@@ -106,11 +106,11 @@ impl Attempt<'_> {
                     let engine = CpuEngine::new(problem, from.to_vec(), &plan);
                     drive(engine, course, strategy, keeping, observe).await
                 }
-                Some((gpu, waiting)) => {
+                Some(device) => {
                     let steps = Strategy::steps(&plan, corrected);
                     // The host judges a run with corrections, so the device must not end it.
                     let judged = if corrected { plan.clone().endless() } else { plan.clone() };
-                    match GpuEngine::new(gpu, problem, from, judged, steps, waiting) {
+                    match device.engine(problem, from, judged, steps) {
                         Ok(engine) => drive(engine, course, strategy, keeping, observe).await,
                         Err(error) => Err(error.into()),
                     }
@@ -204,7 +204,7 @@ impl Attempt<'_> {
         &self,
         plan: &Plan,
         from: &[DVec2],
-    ) -> Result<(Option<(&Gpu, Waiting)>, Option<Opened>), SmoothError> {
+    ) -> Result<(Option<Device<'_>>, Option<Opened>), SmoothError> {
         if self.device.is_none() {
             return Ok((None, None));
         }

@@ -3,6 +3,8 @@
 
 pub(crate) mod altitude;
 mod attempt;
+#[cfg_attr(not(feature = "gpu"), path = "no_device.rs")]
+mod device;
 mod holding;
 mod improving;
 pub(crate) mod in_rounds;
@@ -11,6 +13,7 @@ mod places;
 mod rounds;
 
 pub(crate) use attempt::{Attempt, Ended};
+pub(crate) use device::Device;
 pub(crate) use improving::Improving;
 pub(crate) use limit::Limit;
 pub(crate) use places::Places;

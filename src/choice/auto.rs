@@ -1,0 +1,52 @@
+//! The choice of a backend.
+
+#[cfg(feature = "gpu")]
+use crate::choice::estimate::choose;
+use crate::choice::reason::Reason;
+use crate::error::GpuError;
+use crate::mesh::MeshSize;
+use crate::run::Options;
+use crate::smoother::Backend;
+
+impl Backend {
+    /// Returns the backend on which a run is estimated to end soonest, and why. The estimate includes the start of the
+    /// GPU's driver.
+    ///
+    /// If the mesh is too small for any GPU to be faster, no driver is started. A software adapter is never chosen;
+    /// `Gpu::open` opens one. The estimate assumes slow GPUs, as none has been measured yet: `gpu-smooth bench`
+    /// measures which backend is fastest. Without the feature `gpu` the CPU is chosen.
+    pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
+        Self::auto_tried(size, options, || Ok(()))
+    }
+
+    /// Chooses like [`auto`](Self::auto), but has the drivers tried first, as a driver that crashes would end this
+    /// process. `try_drivers` may start them in a separate process and watch it, as the `gpu-smooth` command does. If
+    /// it returns an error, such as [`GpuError::Crashed`], the CPU is chosen. It is not called if no driver would be
+    /// started.
+    pub fn auto_tried(
+        size: MeshSize,
+        options: &Options,
+        try_drivers: impl FnOnce() -> Result<(), GpuError>,
+    ) -> (Self, Reason) {
+        choose(size, options, try_drivers)
+    }
+}
+
+/// Returns the CPU, as there is no other engine.
+#[cfg(not(feature = "gpu"))]
+fn choose(_: MeshSize, _: &Options, _: impl FnOnce() -> Result<(), GpuError>) -> (Backend, Reason) {
+    (Backend::Cpu, Reason::OnlyCpu)
+}
+
+#[cfg(all(test, not(feature = "gpu")))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cpu_is_chosen_where_there_is_no_other_engine() {
+        let size = MeshSize { vertices: 100_000_000, triangles: 200_000_000 };
+        let tried = || panic!("there is no driver to try");
+        let (backend, reason) = Backend::auto_tried(size, &Options::default(), tried);
+        assert!(matches!((backend, &reason), (Backend::Cpu, Reason::OnlyCpu)), "{reason}");
+    }
+}

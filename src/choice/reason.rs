@@ -1,0 +1,81 @@
+//! Why a backend was chosen.
+
+use std::fmt;
+
+use crate::adapter::AdapterSummary;
+use crate::error::GpuError;
+
+/// Why [`Backend::auto`](crate::Backend::auto) chose its backend. Displays as an English phrase.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The library was built without its GPU engine, the feature `gpu`.
+    OnlyCpu,
+    /// The CPU is estimated to finish before a GPU.
+    CpuIsFaster {
+        /// The GPU that was found. `None` if none was looked for because none could be faster.
+        adapter: Option<AdapterSummary>,
+        /// The number of vertices from which the GPU is estimated to be faster. `None` if it never is.
+        pays_from: Option<usize>,
+    },
+    /// The only adapter is a driver that computes on the CPU. The CPU engine is faster.
+    OnlySoftware(AdapterSummary),
+    /// There is no GPU, or it cannot do the run.
+    GpuFails(GpuError),
+    /// The GPU is estimated to finish before the CPU.
+    GpuIsFaster {
+        /// The number of vertices from which the GPU is estimated to be faster.
+        pays_from: usize,
+    },
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OnlyCpu => write!(f, "built without the GPU engine"),
+            Self::CpuIsFaster { pays_from: Some(least), adapter: None } => {
+                write!(f, "fewer than {} vertices", grouped(*least))
+            }
+            Self::CpuIsFaster { pays_from: Some(least), adapter: Some(adapter) } => {
+                write!(f, "fewer than {} vertices for {}", grouped(*least), adapter.name)
+            }
+            Self::CpuIsFaster { pays_from: None, adapter } => {
+                let gpu = adapter.as_ref().map_or("a GPU", |adapter| &adapter.name);
+                write!(f, "so many cores are estimated to be faster than {gpu}")
+            }
+            Self::OnlySoftware(adapter) => {
+                write!(f, "only a software adapter ({})", adapter.name)
+            }
+            Self::GpuFails(error) => write!(f, "{error}"),
+            Self::GpuIsFaster { pays_from } => {
+                write!(f, "{} vertices or more", grouped(*pays_from))
+            }
+        }
+    }
+}
+
+/// Writes a number with commas between groups of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_in_groups_of_three() {
+        assert_eq!(
+            [7, 1234, 500_000, 1_200_000].map(grouped),
+            ["7", "1,234", "500,000", "1,200,000"]
+        );
+    }
+}

@@ -1,0 +1,24 @@
+//! Functions for benchmarks, experiments and tests of the GPU engine.
+
+use glam::DVec2;
+
+use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
+use crate::layout::Problem;
+use crate::run::{Plan, Stepwise, StepwiseRun};
+
+pub use crate::gpu::{Interface, Kernel};
+
+/// Starts a run of sweeps on a device from `positions`, which are normalized and in the problem's order.
+///
+/// # Errors
+/// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
+pub fn run_on_gpu<'a>(
+    gpu: &'a Gpu,
+    problem: &'a Problem,
+    positions: &'a [DVec2],
+    plan: Plan,
+) -> Result<impl Stepwise + 'a, GpuError> {
+    let steps = plan.steps();
+    let engine = GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block)?;
+    Ok(StepwiseRun::new(engine, plan))
+}

@@ -1,0 +1,35 @@
+//! Stands in for the device of a run in a build without the feature `gpu`.
+
+use glam::DVec2;
+
+use crate::cpu::CpuEngine;
+use crate::error::GpuError;
+use crate::layout::Problem;
+use crate::mesh::MeshSize;
+use crate::run::{Plan, Step};
+
+/// A device, of which there is none.
+pub(crate) type Device<'s> = &'s NoDevice;
+
+/// A type without values.
+pub(crate) enum NoDevice {}
+
+impl NoDevice {
+    pub(crate) fn check_size(&self, _: MeshSize) -> Result<(), GpuError> {
+        match *self {}
+    }
+
+    pub(crate) async fn check_arithmetic(&self) -> Result<(), GpuError> {
+        match *self {}
+    }
+
+    pub(crate) fn engine<'s>(
+        &self,
+        _: &'s Problem,
+        _: &'s [DVec2],
+        _: Plan,
+        _: Vec<Step>,
+    ) -> Result<CpuEngine<'s>, GpuError> {
+        match *self {}
+    }
+}
