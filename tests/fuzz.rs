@@ -10,7 +10,7 @@ use std::env;
 use std::path::Path;
 
 use checks::Became;
-use gpu_smooth::{Backend, Gpu};
+use gpu_smooth::Backend;
 use support::SplitMix64;
 
 /// The number of rounds: `usual`, which takes about a second, times `FUZZ_ROUNDS`.
@@ -36,10 +36,11 @@ fn meshes_of_any_shape() {
     }
 }
 
+#[cfg(feature = "gpu")]
 #[test]
 fn meshes_of_any_shape_on_a_gpu() {
     let mut random = SplitMix64::new(14);
-    let gpu = Backend::Gpu(Gpu::open(None).unwrap());
+    let gpu = Backend::Gpu(gpu_smooth::Gpu::open(None).unwrap());
     for _ in 0..rounds(15) {
         checks::any_mesh(&any_bytes(&mut random, 260), &gpu);
     }
