@@ -1,7 +1,6 @@
 //! The exponent of EDGE's p-norm in a run with corrections: when it doubles, how far it does, and what it leaves of f.
 
-use std::ops::RangeInclusive;
-
+use super::plan_steps::exponents;
 use super::{Corrections, Stage};
 use crate::run::history::History;
 use crate::run::plan::Plan;
@@ -71,11 +70,4 @@ impl Corrections<'_> {
             Stage::Without { .. } => self.stage = Stage::Without { since: last },
         }
     }
-}
-
-/// The values of log2 k that a run by `plan` takes one after the other, k the exponent of EDGE's p-norm.
-pub(super) fn exponents(plan: &Plan) -> RangeInclusive<u32> {
-    let Sharpness { first, .. } = plan.sharpness;
-    let last = plan.sharpness.largest();
-    if plan.scheme.base().is_smooth() { last..=last } else { first.min(last)..=last }
 }

@@ -2,6 +2,7 @@
 
 mod exponent;
 mod levels;
+mod plan_steps;
 mod reopening;
 mod words;
 
@@ -15,7 +16,7 @@ use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
 use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
-use exponent::exponents;
+use plan_steps::{OMEGA_BEFORE, exponents, reopening_sweep};
 
 /// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
 /// a few bad triangles would force every correction to be short.
@@ -24,9 +25,6 @@ const SWEEPS_PAY: f64 = 0.1;
 /// excess by the same 15 %, for hundreds of sweeps.
 const MANY_SWEEPS_PAY: f64 = 0.2;
 const MANY_SWEEPS: usize = 12;
-/// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
-/// perturbed and smoothly distorted meshes of 2,000 to a million vertices.
-const OMEGA_BEFORE: f64 = 1.5;
 /// Over-relaxation of sweeps before corrections begin, if metrics alternate: each metric would have to undo the
 /// overshoot of the one before.
 const OMEGA_ALTERNATING: f64 = 1.0;
@@ -153,7 +151,7 @@ impl<'a> Corrections<'a> {
         let by_base = by_base.map(|omega| (base, omega));
         let others = plan.scheme.metrics().iter().filter(|&&metric| metric != base);
         let others = others.map(|&metric| (metric, OMEGA_ALTERNATING));
-        let reopening = reopening::kind(plan);
+        let reopening = reopening_sweep(plan);
         let kinds: Vec<_> = by_base.into_iter().chain(others).chain(reopening).collect();
         let of_exponent = |sharpness| {
             let step = move |&(metric, omega)| plan.step_with(metric, omega, sharpness);

@@ -5,20 +5,13 @@
 //! exponent grows they are flattened up to the shape guard. Where flat triangles are good by EDGE, they are so by high exponents
 //! alone, and come again.
 
-use super::exponent::exponents;
-use super::{Corrections, OMEGA_BEFORE, Stage};
+use super::plan_steps::{FLAT, exponents, reopening_sweep};
+use super::{Corrections, Stage};
 use crate::error::GpuError;
-use crate::metric::Metric;
 use crate::run::engine::Engine;
 use crate::run::history::History;
-use crate::run::plan::Plan;
 use crate::run::shape_guard::worst_movable;
 
-/// The metric that opens triangles.
-const OPENER: Metric = Metric::Imr;
-/// Triangles are flat if they have a larger inverse mean ratio. Of 600 lattices of 121 vertices that had been untangled, 25 ended 0.1 to 6 %
-/// above the best; 24 of these had triangles as flat when the exponent first doubled, and all when it had done so twice.
-const FLAT: f64 = 3.0;
 /// The log2 of the exponent up to which flat triangles are not by the choice of EDGE.
 const LAST: u32 = 3;
 /// If the exponent has not doubled after this number of sweeps, flat triangles are reopened then. Most runs take three to eight.
@@ -28,13 +21,6 @@ const SWEEPS: u32 = 8;
 const MOST_SWEEPS: u32 = 32;
 /// Sweeps end in vain if one lowers the largest inverse mean ratio by less than this share.
 const OPENS: f64 = 0.02;
-
-/// The metric and over-relaxation of the sweeps by which a run can reopen triangles; `None` if its guard allows no flat ones.
-pub(super) fn kind(plan: &Plan) -> Option<(Metric, f64)> {
-    let base = plan.scheme.base();
-    let can_be_flat = plan.step_with(base, 1.0, 0).shape_guard > FLAT;
-    (!base.is_smooth() && can_be_flat).then_some((OPENER, OMEGA_BEFORE))
-}
 
 impl Corrections<'_> {
     /// Reopens flat triangles if there are any after the exponent `has_doubled` or was to do so, and goes back to the first exponent.
@@ -46,7 +32,7 @@ impl Corrections<'_> {
         history: &mut History,
         has_doubled: bool,
     ) -> Result<(), GpuError> {
-        let Some((metric, omega)) = kind(self.plan) else { return Ok(()) };
+        let Some((metric, omega)) = reopening_sweep(self.plan) else { return Ok(()) };
         let first = *exponents(self.plan).start();
         let is_late = history.sweeps() == LATEST && self.sharpness == first;
         let is_due = self.sharpness <= LAST && (has_doubled || is_late);

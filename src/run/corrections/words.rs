@@ -1,6 +1,6 @@
 //! The state of a corrected run as words of a checkpoint.
 
-use super::exponent::exponents;
+use super::plan_steps::exponents;
 use super::{Corrections, ESTIMATES, Stage};
 
 impl Corrections<'_> {

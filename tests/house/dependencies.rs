@@ -1,0 +1,286 @@
+//! The files of a crate, and which of its files each file uses.
+//!
+//! Files are parsed by syn. An import, a path in code, and a path in the tokens of a macro are uses. Declarations of modules and
+//! re-exports (`pub use`, `pub(crate) use`) are not: a use of a re-exported name is a use of the file that defines the name.
+//! Code under `#[cfg(test)]` is left out.
+
+use proc_macro2::{TokenStream, TokenTree};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use syn::visit::{self, Visit};
+use syn::{Attribute, Item, ItemMod, ItemUse, UseTree, Visibility};
+
+/// The files that each file uses, by paths such as `run/drive` or `run/mod`.
+pub(crate) type Uses = BTreeMap<String, BTreeSet<String>>;
+
+/// The names of nested modules from the root of the crate on.
+type ModulePath = Vec<String>;
+
+/// Returns the uses of all files below a folder with the sources of a crate.
+pub(crate) fn of_crate(source: &Path) -> Uses {
+    let mut texts = BTreeMap::new();
+    collect(source, source, &mut texts);
+    of_texts(&texts)
+}
+
+fn collect(folder: &Path, source: &Path, texts: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, source, texts);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            let name = path.strip_prefix(source).unwrap().with_extension("");
+            let name: Vec<_> = name.iter().map(|part| part.to_str().unwrap()).collect();
+            texts.insert(name.join("/"), fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
+/// Returns the uses of files with these contents.
+pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
+    let mut parsed = BTreeMap::new();
+    for (name, text) in texts {
+        let file = syn::parse_file(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        parsed.insert(module_of(name), (name.clone(), file));
+    }
+    let mut skipped = BTreeSet::new();
+    for (module, (_, file)) in &parsed {
+        for item in &file.items {
+            if let Item::Mod(item) = item
+                && is_for_tests(&item.attrs)
+            {
+                skipped.insert(child(module, &item.ident.to_string()));
+            }
+        }
+    }
+    parsed.retain(|module, _| !(1..=module.len()).any(|n| skipped.contains(&module[..n])));
+    let exports: BTreeMap<&ModulePath, BTreeMap<String, ModulePath>> = parsed
+        .iter()
+        .map(|(module, (_, file))| {
+            let imports = file.items.iter().filter_map(|item| match item {
+                Item::Use(item) => Some(leaves(item, module)),
+                _ => None,
+            });
+            (module, imports.flatten().collect())
+        })
+        .collect();
+    // Returns the module of the file that defines the name at the end of a path.
+    let defined_in = |path: &[String]| -> Option<ModulePath> {
+        let mut path = path.to_vec();
+        for _ in 0..10 {
+            let length = (0..=path.len()).rev().find(|&n| parsed.contains_key(&path[..n]))?;
+            let module = path[..length].to_vec();
+            match path.get(length).and_then(|name| exports[&module].get(name)) {
+                Some(to) => path = [to, &path[length + 1..]].concat(),
+                None => return Some(module),
+            }
+        }
+        None
+    };
+    let mut uses = Uses::new();
+    for (module, (name, file)) in &parsed {
+        let children = parsed.keys().filter(|own| own.len() == module.len() + 1);
+        let children =
+            children.filter(|own| own.starts_with(module)).map(|own| own[module.len()].clone());
+        let mut names: BTreeMap<String, ModulePath> = exports[module].clone();
+        names.extend(children.map(|name| (name.clone(), child(module, &name))));
+        let mut paths = Paths { module: module.clone(), names, found: Vec::new() };
+        paths.visit_file(file);
+        let used = paths.found.iter().filter_map(|path| defined_in(path));
+        let used = used.filter(|used| used != module).map(|used| parsed[&used].0.clone());
+        uses.insert(name.clone(), used.collect());
+    }
+    uses
+}
+
+fn module_of(name: &str) -> ModulePath {
+    let mut parts: ModulePath = name.split('/').map(str::to_owned).collect();
+    if matches!(parts.last().map(String::as_str), Some("mod")) || name == "lib" || name == "main" {
+        parts.pop();
+    }
+    parts
+}
+
+fn child(module: &[String], name: &str) -> ModulePath {
+    [module, &[name.to_owned()]].concat()
+}
+
+fn is_for_tests(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        let tokens = || attribute.meta.require_list().map(|list| list.tokens.to_string());
+        attribute.path().is_ident("cfg")
+            && tokens().is_ok_and(|tokens| tokens.contains("test") && !tokens.contains("not"))
+    })
+}
+
+/// Makes a path absolute. `None` if it leads out of the crate.
+fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
+    let ups = path.iter().take_while(|part| *part == "super").count();
+    match path.first()?.as_str() {
+        "crate" => Some(path[1..].to_vec()),
+        "self" => Some([module, &path[1..]].concat()),
+        "super" => Some([&module[..module.len().checked_sub(ups)?], &path[ups..]].concat()),
+        _ => None,
+    }
+}
+
+/// Lists the names that an import brings in, with the paths that they stand for.
+fn leaves(item: &ItemUse, module: &[String]) -> Vec<(String, ModulePath)> {
+    fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, ModulePath)>) {
+        let with = |name: &syn::Ident| child(before, &name.to_string());
+        match tree {
+            UseTree::Path(path) => walk(&path.tree, &with(&path.ident), found),
+            UseTree::Name(name) if name.ident == "self" => {
+                found.extend(before.last().map(|last| (last.clone(), before.to_vec())));
+            }
+            UseTree::Name(name) => found.push((name.ident.to_string(), with(&name.ident))),
+            UseTree::Rename(name) => found.push((name.rename.to_string(), with(&name.ident))),
+            UseTree::Glob(_) => found.push(("*".into(), before.to_vec())),
+            UseTree::Group(group) => group.items.iter().for_each(|tree| walk(tree, before, found)),
+        }
+    }
+    let mut found = Vec::new();
+    walk(&item.tree, &[], &mut found);
+    // A facade names its children without `self`.
+    let inside = |path: Vec<String>| absolute(&path, module).or(Some([module, &path].concat()));
+    found.into_iter().filter_map(|(name, path)| Some((name, inside(path)?))).collect()
+}
+
+/// Collects the paths into the crate that a file names.
+struct Paths {
+    module: ModulePath,
+    /// Paths that names at the start of other paths stand for: imports and child modules.
+    names: BTreeMap<String, ModulePath>,
+    found: Vec<ModulePath>,
+}
+
+impl Paths {
+    fn add(&mut self, path: &[String]) {
+        let found = absolute(path, &self.module).or_else(|| {
+            let start = self.names.get(path.first()?)?;
+            Some([start, &path[1..]].concat())
+        });
+        self.found.extend(found);
+    }
+
+    fn add_tokens(&mut self, tokens: TokenStream) {
+        let (mut path, mut colons) = (Vec::new(), 0);
+        for token in tokens {
+            match token {
+                TokenTree::Ident(name) if path.is_empty() || colons == 2 => {
+                    path.push(name.to_string());
+                    colons = 0;
+                }
+                TokenTree::Punct(sign) if sign.as_char() == ':' => colons += 1,
+                other => {
+                    if path.len() > 1 {
+                        self.add(&path);
+                    }
+                    path.clear();
+                    colons = 0;
+                    match other {
+                        TokenTree::Group(group) => self.add_tokens(group.stream()),
+                        TokenTree::Ident(name) => path.push(name.to_string()),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        if path.len() > 1 {
+            self.add(&path);
+        }
+    }
+}
+
+impl<'a> Visit<'a> for Paths {
+    fn visit_item(&mut self, item: &'a Item) {
+        let attributes = match item {
+            Item::Fn(item) => &item.attrs,
+            Item::Impl(item) => &item.attrs,
+            Item::Mod(item) => &item.attrs,
+            Item::Use(item) => &item.attrs,
+            Item::Const(item) => &item.attrs,
+            Item::Static(item) => &item.attrs,
+            Item::Struct(item) => &item.attrs,
+            _ => &Vec::new(),
+        };
+        if !is_for_tests(attributes) {
+            visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'a ItemUse) {
+        if matches!(item.vis, Visibility::Inherited) {
+            self.found.extend(leaves(item, &self.module).into_iter().map(|(_, path)| path));
+        }
+    }
+
+    fn visit_item_mod(&mut self, item: &'a ItemMod) {
+        if item.content.is_some() {
+            self.module.push(item.ident.to_string());
+            visit::visit_item_mod(self, item);
+            self.module.pop();
+        }
+    }
+
+    fn visit_impl_item_fn(&mut self, item: &'a syn::ImplItemFn) {
+        if !is_for_tests(&item.attrs) {
+            visit::visit_impl_item_fn(self, item);
+        }
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        let parts: Vec<String> = path.segments.iter().map(|part| part.ident.to_string()).collect();
+        if parts.len() > 1 {
+            self.add(&parts);
+        }
+        visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, item: &'a syn::Macro) {
+        self.add_tokens(item.tokens.clone());
+    }
+}
+
+/// Finds files or folders that use each other in a circle: each strongly connected component of more than one, sorted.
+pub(crate) fn circles(uses: &Uses) -> Vec<Vec<String>> {
+    let reached = |from: &str| -> BTreeSet<&str> {
+        let (mut open, mut done) = (vec![from], BTreeSet::new());
+        while let Some(at) = open.pop() {
+            for used in uses.get(at).into_iter().flatten() {
+                if done.insert(used.as_str()) {
+                    open.push(used);
+                }
+            }
+        }
+        done
+    };
+    let all: BTreeMap<&str, BTreeSet<&str>> =
+        uses.keys().map(|name| (name.as_str(), reached(name))).collect();
+    let mut found = BTreeSet::new();
+    for (name, reached) in &all {
+        let back = |other: &&&str| all.get(**other).is_some_and(|others| others.contains(name));
+        let circle: Vec<String> =
+            reached.iter().filter(back).map(|name| (*name).to_owned()).collect();
+        if circle.len() > 1 {
+            found.insert(circle);
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// Merges the files of each folder that is `depth` folders deep. Files above stay by themselves.
+pub(crate) fn by_folder(uses: &Uses, depth: usize) -> Uses {
+    let folder = |file: &str| {
+        let parts: Vec<&str> = file.split('/').collect();
+        if parts.len() > depth { parts[..depth].join("/") } else { file.to_owned() }
+    };
+    let mut folders = Uses::new();
+    for (file, used) in uses {
+        let own = folder(file);
+        let others = used.iter().map(|used| folder(used)).filter(|used| *used != own);
+        folders.entry(own.clone()).or_default().extend(others);
+    }
+    folders
+}

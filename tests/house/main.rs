@@ -1,0 +1,199 @@
+//! Rules of this project that a compiler does not check.
+
+mod dependencies;
+
+use dependencies::{Uses, by_folder, circles};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            rust_files(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The folders with the sources of each crate.
+const CRATES: [&str; 3] = ["src", "mesh-io/src", "cli/src"];
+
+/// The crates whose folders have an order in ARCHITECTURE.md.
+const ORDERED: [&str; 1] = ["src"];
+
+/// Circles of files that are still there, by crate.
+const KNOWN_CIRCLES: [(&str, &str); 6] = [
+    ("mesh-io/src", "abaqus/elements abaqus/mod"),
+    ("mesh-io/src", "cgns/boundaries cgns/mod"),
+    (
+        "mesh-io/src",
+        "gmsh/binary2 gmsh/binary4 gmsh/binary40 gmsh/data gmsh/mod gmsh/model gmsh/periodic gmsh/text2 gmsh/text4 gmsh/text40",
+    ),
+    ("mesh-io/src", "netcdf/attribute netcdf/header"),
+    ("mesh-io/src", "vtk/data vtk/lists vtk/mod vtk/passed"),
+    ("cli/src", "bench/baseline bench/mod bench/report"),
+];
+
+fn uses_of(source: &str) -> Uses {
+    let uses = dependencies::of_crate(&root().join(source));
+    let count: usize = uses.values().map(BTreeSet::len).sum();
+    assert!(count > 200, "only {count} uses in {source}: the test looks in the wrong place");
+    uses
+}
+
+#[test]
+fn files_do_not_use_each_other_in_a_circle() {
+    for source in CRATES {
+        let known = KNOWN_CIRCLES.iter().filter(|(of, _)| *of == source);
+        let known: Vec<&str> = known.map(|(_, circle)| *circle).collect();
+        let found: Vec<String> =
+            circles(&uses_of(source)).iter().map(|circle| circle.join(" ")).collect();
+        assert_eq!(found, known, "{source}: break the circle, or take it out of the list");
+    }
+}
+
+#[test]
+fn folders_do_not_use_each_other_in_a_circle() {
+    for source in CRATES {
+        let uses = uses_of(source);
+        for depth in [1, 2] {
+            assert_eq!(circles(&by_folder(&uses, depth)), [[""; 0]; 0], "{source}, {depth} deep");
+        }
+    }
+}
+
+/// Reads the floors of a crate from ARCHITECTURE.md: in a block that begins with the crate's folder, a line has the folders and
+/// files of one floor, the lowest floor first.
+fn floors(source: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let block = text.split(&format!("```text\n{source}\n")).nth(1);
+    let block = block.unwrap_or_else(|| panic!("ARCHITECTURE.md has no floors of {source}"));
+    let lines = block.split("```").next().unwrap().lines();
+    lines.map(|line| line.split_whitespace().map(str::to_owned).collect()).collect()
+}
+
+/// Returns each use that does not go from a floor to a lower floor.
+fn uses_against_the_order(folders: &Uses, floors: &[Vec<String>]) -> Vec<String> {
+    let floor = |name: &str| floors.iter().position(|floor| floor.iter().any(|own| own == name));
+    let mut against = Vec::new();
+    for (folder, used) in folders {
+        let Some(own) = floor(folder) else {
+            against.push(format!("{folder} is on no floor"));
+            continue;
+        };
+        let not_below = used.iter().filter(|used| floor(used).is_none_or(|floor| floor >= own));
+        against.extend(not_below.map(|used| format!("{folder} uses {used}")));
+    }
+    against
+}
+
+#[test]
+fn folders_use_folders_of_lower_floors_alone() {
+    for source in ORDERED {
+        let against = uses_against_the_order(&by_folder(&uses_of(source), 1), &floors(source));
+        assert_eq!(against, [""; 0], "{source}");
+    }
+}
+
+#[test]
+fn every_kind_of_use_and_of_circle_is_found() {
+    let texts = |files: &[(&str, &str)]| {
+        files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let uses = dependencies::of_texts(&texts(&[
+        ("lib", "mod a; mod b; pub use b::Deep;"),
+        ("a", "use crate::b::{Deep, own}; #[cfg(test)] mod tests { use crate::d::D; }"),
+        ("b/mod", "mod deep; mod other; pub(crate) use deep::Deep; pub(crate) fn own() {}"),
+        ("b/deep", "pub struct Deep; fn f() { super::other::g(); }"),
+        ("b/other", "use super::own; fn g() -> String { format!(\"{}\", crate::c::h()) }"),
+        ("c", "use crate::d; fn h() { d::D::new(); }"),
+        ("d", "pub struct D; impl D { fn new(_: super::a::A) {} }"),
+    ]));
+    let used = |file: &str| uses[file].iter().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!(used("lib"), [""; 0], "a re-export is no use");
+    assert_eq!(used("a"), ["b/deep", "b/mod"], "a re-export is followed, tests are left out");
+    assert_eq!(used("b/deep"), ["b/other"]);
+    assert_eq!(used("b/other"), ["b/mod", "c"], "`super::` and paths in macros are uses");
+    assert_eq!(used("c"), ["d"]);
+    assert_eq!(used("d"), ["a"]);
+    assert_eq!(circles(&uses), [["a", "b/deep", "b/other", "c", "d"]]);
+    assert_eq!(circles(&by_folder(&uses, 1)), [["a", "b", "c", "d"]]);
+    let floors = [vec!["d".to_owned()], vec!["c".into(), "lib".into()], vec!["b".into()]];
+    let against = uses_against_the_order(&by_folder(&uses, 1), &floors);
+    assert_eq!(against, ["a is on no floor", "d uses a"]);
+}
+
+#[test]
+fn only_the_gpu_modules_name_wgpu() {
+    let source = root().join("src");
+    let mut files = Vec::new();
+    rust_files(&source, &mut files);
+    for file in files {
+        let inside = file.strip_prefix(&source).unwrap();
+        let text = fs::read_to_string(&file).unwrap();
+        let may = ["gpu", "lib.rs"];
+        if !may.iter().any(|place| inside.starts_with(place)) {
+            assert!(!text.contains("wgpu::"), "{} names wgpu", inside.display());
+        }
+    }
+}
+
+/// The clock of the standard library compiles for browsers, but panics there.
+#[test]
+fn only_the_command_asks_the_clock_of_the_standard_library() {
+    let clocks = |text: &str| {
+        let imports = text.split("std::time::").skip(1);
+        let named = imports.filter_map(|named| named.split(';').next());
+        named.filter(|named| named.contains("Instant") || named.contains("SystemTime")).count()
+    };
+    assert_eq!(clocks("use std::time::{Duration, Instant};"), 1);
+    assert_eq!(clocks("use std::time::Duration;\nuse web_time::Instant;"), 0);
+    for source in ["src", "mesh-io/src"] {
+        let mut files = Vec::new();
+        rust_files(&root().join(source), &mut files);
+        for file in files {
+            let text = fs::read_to_string(&file).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap();
+            assert_eq!(
+                clocks(code),
+                0,
+                "{} asks the clock of the standard library",
+                file.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn no_dependency_needs_a_newer_rust_than_the_package_promises() {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked"])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let version = |text: &str| {
+        let mut parts = text.split('.').map(|part| part.parse::<u32>().unwrap());
+        [(); 3].map(|()| parts.next().unwrap_or(0))
+    };
+    let packages = metadata["packages"].as_array().unwrap();
+    let own = packages.iter().find(|p| p["name"] == "gpu-smooth").unwrap();
+    let promised = version(own["rust_version"].as_str().unwrap());
+    let mut told = 0;
+    for package in packages {
+        if let Some(needed) = package["rust_version"].as_str() {
+            told += 1;
+            assert!(version(needed) <= promised, "{} needs Rust {needed}", package["name"]);
+        }
+    }
+    assert!(told > 20);
+}
