@@ -2,14 +2,14 @@
 
 use crate::error::ReadError;
 use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
-use crate::mike;
-use crate::nastran;
+use crate::formats::mike;
+use crate::formats::nastran;
+use crate::formats::triangle::names::{Names, appended};
 use crate::sink::Reader;
 use crate::source::{Source, file_name};
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 use crate::token::integer;
-use crate::triangle_names::{Names, appended};
 use std::path::{Path, PathBuf};
 
 /// How a file is read.

@@ -3,11 +3,11 @@
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::field::PointField;
+use crate::formats::triangle;
 use crate::group::distance;
 use crate::mesh_file::MeshFile;
 use crate::point_data::{self, PointData, Wanted};
 use crate::token::quoted;
-use crate::triangle_data;
 
 impl MeshFile {
     /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The
@@ -99,7 +99,7 @@ impl MeshFile {
         let sources = self.sources();
         match &Family::of(self.format()).reader {
             Some(reader) => point_data::point_data(reader, &sources[0], wanted),
-            None => triangle_data::point_data(&sources[0], wanted),
+            None => triangle::point_data(&sources[0], wanted),
         }
     }
 

@@ -2,14 +2,13 @@
 
 use crate::error::ReadError;
 use crate::families::Family;
+use crate::formats::triangle;
 use crate::gather;
 use crate::group::Groups;
 use crate::mesh_file::MeshFile;
 use crate::source::Source;
 use crate::tags::TagMap;
 use crate::text::Cursor;
-use crate::triangle;
-use crate::triangle_groups;
 use std::path::Path;
 
 impl MeshFile {
@@ -44,7 +43,7 @@ impl MeshFile {
         let sources = self.sources();
         let table = match &Family::of(self.format()).reader {
             Some(reader) => gather::groups(reader, &sources[0])?,
-            None => triangle_groups::groups(&sources[0], &sources[1], sources.get(2))?,
+            None => triangle::groups(&sources[0], &sources[1], sources.get(2))?,
         };
         Ok(table.finish(self.triangles(), self.points().len()))
     }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// A file with all its objects.
 pub(crate) struct Hdf5<'a> {
-    pub(super) source: &'a Source,
+    pub(crate) source: &'a Source,
     pub(super) raw: Raw<'a>,
     /// The root group is the first.
     objects: Vec<Object>,
