@@ -1,11 +1,13 @@
 //! Third coordinates and depths, which are data of points.
 
+use crate::binary::number_field::Field;
 use crate::error::ReadError;
 use crate::numbers::{Form, Places};
 use crate::precision::Precision;
-use crate::records::{Field, LONG};
+use crate::records::LONG;
 use crate::sink::{Home, PointNumbers, Sink, Stored};
 use crate::text::Cursor;
+use crate::text_numbers::NO_HEIGHT;
 
 /// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
 /// data.
@@ -16,9 +18,6 @@ pub(crate) struct Heights {
     /// Whether some points have no third coordinate.
     is_partial: bool,
 }
-
-/// The third coordinate of a point that has only two in the file.
-pub(crate) const NO_HEIGHT: (usize, f64) = (usize::MAX, 0.0);
 
 impl Heights {
     pub(crate) fn new(sink: &dyn Sink) -> Heights {

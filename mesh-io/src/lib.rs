@@ -57,20 +57,19 @@ mod tags;
 mod text;
 mod text_numbers;
 mod token;
-mod whole;
 
-pub use compare::Difference;
-pub use constraints::{Affine, Constraints, PeriodicPairs};
-pub use convert::Conversion;
-pub use error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use field::PointField;
-pub use format::Format;
-pub use formats::side::solution::Solution;
-pub use formats::side::view::View;
-pub use group::{Group, Groups};
-pub use mesh_file::MeshFile;
-pub use place::Place;
-pub use precision::Precision;
+pub use crate::compare::Difference;
+pub use crate::constraints::{Affine, Constraints, PeriodicPairs};
+pub use crate::convert::Conversion;
+pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
+pub use crate::field::PointField;
+pub use crate::format::Format;
+pub use crate::formats::side::solution::Solution;
+pub use crate::formats::side::view::View;
+pub use crate::group::{Group, Groups};
+pub use crate::mesh_file::MeshFile;
+pub use crate::place::Place;
+pub use crate::precision::Precision;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {

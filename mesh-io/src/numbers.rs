@@ -1,6 +1,6 @@
 //! How coordinates and other numbers are stored in a file.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::card;
 use crate::field_text::{ALL, field_text};
 use crate::precision::{Precision, short_text};

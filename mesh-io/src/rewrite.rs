@@ -114,7 +114,7 @@ fn write_blocks(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::binary::Order;
+    use crate::binary::order::Order;
     use crate::numbers::{Form, Numbers, Places};
     use crate::precision::Precision;
 

@@ -1,11 +1,13 @@
 //! Reads the numbers of a text file.
 
 use crate::error::ReadError;
-use crate::heights::NO_HEIGHT;
 use crate::syntax::Commas;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::{float, fortran_float, integer, quoted, short_float};
 use std::fmt::Display;
+
+/// The third coordinate of a point that has only two in the file.
+pub(crate) const NO_HEIGHT: (usize, f64) = (usize::MAX, 0.0);
 
 const WHOLE: &str = "a whole number from 0 to 2^64-1";
 const SIGNED: &str = "a whole number from -2^63 to 2^63-1";

@@ -1,13 +1,14 @@
 //! Coordinates of which those of each axis stand by themselves.
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Array, Encoding, Hdf5};
 use crate::heights::Heights;
 use crate::numbers::{Encoded, Form, Numbers};
 use crate::precision::Precision;
-use crate::records::{Field, NodeRecords, Tags};
+use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};
 use crate::source::Source;
 use crate::text::Cursor;

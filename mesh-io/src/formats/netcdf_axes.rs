@@ -1,6 +1,6 @@
 //! Coordinates of nodes, in variables of a netCDF file.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::formats::axes::Axes;
 use crate::netcdf::{Header, Items, Variable};

@@ -3,12 +3,13 @@
 //! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
 //! between two copies of its length. All x come before all y. The time steps after them are kept.
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
-use crate::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 use crate::source::Source;
 use crate::text::{CUT_OFF, Cursor};

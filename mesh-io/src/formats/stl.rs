@@ -3,7 +3,7 @@
 //! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices. A
 //! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;

@@ -5,7 +5,7 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Number, Variable};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::source::Source;

@@ -1,7 +1,7 @@
 //! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
 
 use super::attribute::Attribute;
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Dataset, Hdf5};
 use crate::precision::Precision;

@@ -2,11 +2,12 @@
 
 use super::boundaries::Boundaries;
 use super::{File, labeled};
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Number, Object};
 use crate::label::Label;
-use crate::records::{Field, Region, TriangleRecords};
+use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Sink, volume};
 use crate::text::CORRECT;
 use crate::token::quoted;

@@ -1,10 +1,11 @@
 //! The blocks of elements of an Exodus file.
 
 use super::File;
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
-use crate::records::{Field, Region, TriangleRecords};
+use crate::records::{Region, TriangleRecords};
 use crate::sink::{Element, Kind, Sink, volume};
 use crate::text::{CORRECT, Cursor};
 use crate::token::quoted;

@@ -5,10 +5,11 @@ use super::kind::kind_of;
 use super::text2::columns;
 use super::words::Words;
 use super::{block_fits, row};
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::heights::Heights;
-use crate::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Sink};
 use crate::text::Cursor;
 

@@ -4,11 +4,12 @@ use super::kind::kind_of;
 use super::model::Model;
 use super::words::Words;
 use super::{Version, all_in_blocks, block_fits};
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::numbers::Places;
-use crate::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, PointNumbers, Sink, Stored};
 use crate::text::Cursor;
 

@@ -4,7 +4,7 @@
 use super::binary4::{BLOCK_HEADER, counts};
 use super::words::Words;
 use super::{Version, all_in_blocks, block_fits};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::sink::Sink;

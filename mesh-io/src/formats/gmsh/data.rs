@@ -1,7 +1,7 @@
 //! Data of nodes and elements: `$NodeData` and `$ElementData`.
 
 use super::form;
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::heights::TextNumbers;
 use crate::numbers::Places;
 use crate::precision::Precision;

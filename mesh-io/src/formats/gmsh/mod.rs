@@ -18,7 +18,7 @@ mod text40;
 mod words;
 pub(crate) mod write;
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::heights::Heights;

@@ -2,7 +2,7 @@
 
 use super::words::Words;
 use super::{Encoding, Version, row};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::label::Label;
 use crate::sink::{Kind, Sink, Within};

@@ -1,7 +1,7 @@
 //! The nodes that belong together in pairs, from the section `$Periodic`.
 
 use super::{Encoding, Version};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::constraints::Affine;
 use crate::precision::Precision;
 use crate::sink::Pairs;

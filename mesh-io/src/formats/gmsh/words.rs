@@ -1,6 +1,6 @@
 //! The numbers of a binary file between its lines of text.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::text::{CUT_OFF, Cursor};
 use std::fmt::Display;

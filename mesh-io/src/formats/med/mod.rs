@@ -5,13 +5,14 @@
 
 mod families;
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::label::Label;
-use crate::records::{Field, Region, TriangleRecords};
+use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
 use crate::source::Source;
 use crate::text::{CORRECT, Cursor};

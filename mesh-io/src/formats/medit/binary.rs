@@ -4,7 +4,8 @@
 //! the next. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes, and in version 4
 //! all whole numbers have.
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -12,7 +13,7 @@ use crate::label::Label;
 use crate::numbers::{Form, Numbers};
 use crate::parsed::fixed_note;
 use crate::precision::Precision;
-use crate::records::{Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::source::Source;
 use crate::text::{CUT_OFF, Cursor};

@@ -2,11 +2,12 @@
 
 use crate::card::{self, Line, letters};
 use crate::error::ReadError;
-use crate::heights::{Heights, NO_HEIGHT};
+use crate::heights::Heights;
 use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Sink, all_rows};
 use crate::text::Cursor;
+use crate::text_numbers::NO_HEIGHT;
 use crate::token::{float, fortran_float, integer};
 use std::ops::Range;
 

@@ -4,7 +4,7 @@
 //! and data of vertices, `vertex_indices` or `vertex_index` of faces, `vertex1` and `vertex2` of edges. Other elements
 //! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;

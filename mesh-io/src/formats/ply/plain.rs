@@ -1,9 +1,10 @@
 //! Reads lists of a PLY on all threads, as long as they are plain.
 
 use super::{Items, List, Number, Property};
+use crate::binary::number_field::Field;
 use crate::heights::Heights;
 use crate::parallel_rows::take_rows;
-use crate::records::{Expected, Field, NodeRecords, Region, Tags, TriangleRecords};
+use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Sink, nodes};
 use crate::text::{CORRECT, Cursor};
 

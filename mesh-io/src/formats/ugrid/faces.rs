@@ -1,9 +1,10 @@
 //! The faces of a UGRID mesh, handed on.
 
 use super::table::Table;
+use crate::binary::number_field::Field;
 use crate::error::ReadError;
 use crate::netcdf::Number;
-use crate::records::{Field, Region, TriangleRecords};
+use crate::records::{Region, TriangleRecords};
 use crate::sink::{Element, Kind, Sink};
 
 /// Hands on all faces.

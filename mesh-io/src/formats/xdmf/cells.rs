@@ -3,13 +3,13 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
+use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::formats::vtk::legacy;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Sink};
 use crate::text::{CORRECT, Cursor};
 use crate::token::quoted;
-use crate::whole::Whole;
 
 /// How many arrays tell regions at most.
 const MOST: usize = 2;

@@ -1,6 +1,6 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::{Location, ReadError};
 use crate::hdf5::Number;
 use crate::precision::Precision;

@@ -1,7 +1,7 @@
 //! Numbers that do not stand in the XML: in HDF5 or raw, in files beside it.
 
 use super::document::{Content, Item};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
 use crate::numbers::{Encoded, Form, Places};

@@ -3,13 +3,14 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
+use crate::binary::number_field::Field;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Encoding, Number};
 use crate::heights::Heights;
 use crate::numbers::{Encoded, Numbers};
 use crate::precision::Precision;
-use crate::records::{Field, NodeRecords, Tags};
+use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};
 use crate::text::CORRECT;
 use crate::token::quoted;

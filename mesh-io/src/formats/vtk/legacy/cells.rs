@@ -1,10 +1,11 @@
 //! Cells of VTK, by the numbers of their types.
 
+use crate::binary::number_field::Field;
+use crate::binary::whole::Whole;
 use crate::error::ReadError;
-use crate::records::{Expected, Field, LONG, Region, TriangleRecords};
+use crate::records::{Expected, LONG, Region, TriangleRecords};
 use crate::sink::{Element, Kind, Sink, volume};
 use crate::text::{CORRECT, Cursor};
-use crate::whole::Whole;
 use std::ops::Range;
 
 /// A cell of one of VTK's formats.

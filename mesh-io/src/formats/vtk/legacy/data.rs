@@ -1,7 +1,7 @@
 //! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the sink wants, are read.
 //! Others are skipped.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
 use crate::formats::vtk::legacy::take;
 use crate::heights::TextNumbers;

@@ -3,14 +3,14 @@
 use super::cells::{Cell, Triangles, Tries};
 use super::data::Regions;
 use super::take;
-use crate::binary::Order;
+use crate::binary::order::Order;
+use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::parallel_rows::take_rows;
 use crate::records::Region;
 use crate::sink::Sink;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::quoted;
-use crate::whole::Whole;
 use std::ops::Range;
 
 /// A list of cells.

@@ -12,13 +12,14 @@ mod passed;
 pub(crate) use cells::{Cell, Triangles, Tries};
 pub(crate) use data::names_regions;
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::numbers::{Form, Numbers};
 use crate::precision::Precision;
-use crate::records::{Field, NodeRecords, Tags};
+use crate::records::{NodeRecords, Tags};
 use crate::sink::{Layout, Sink, Walk, each_row};
 use crate::source::Source;
 use crate::text::{CORRECT, CUT_OFF, Cursor};

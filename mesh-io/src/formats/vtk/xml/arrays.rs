@@ -3,6 +3,7 @@
 use super::blocks::{Unwrapped, Wrapping};
 use super::document::{Array, Coding, Document};
 use super::encoding::Encoding;
+use crate::binary::whole::Whole;
 use crate::error::{Location, ReadError};
 use crate::heights::TextNumbers;
 use crate::numbers::{Form, Offset, Places};
@@ -11,7 +12,6 @@ use crate::sink::{Home, PointNumbers, Stored};
 use crate::source::Source;
 use crate::text::{CUT_OFF, Cursor};
 use crate::token::quoted;
-use crate::whole::Whole;
 use std::ops::Range;
 use std::sync::Arc;
 

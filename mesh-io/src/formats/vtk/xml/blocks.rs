@@ -1,6 +1,6 @@
 //! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::parallel::map_parts;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

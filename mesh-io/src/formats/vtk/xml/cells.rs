@@ -2,12 +2,12 @@
 
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
+use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::formats::vtk::legacy;
 use crate::records::Region;
 use crate::sink::{Column, Sink};
 use crate::text::{CORRECT, Cursor};
-use crate::whole::Whole;
 
 /// The most arrays that tell regions.
 const MOST: usize = 2;

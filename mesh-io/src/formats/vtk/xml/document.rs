@@ -1,6 +1,6 @@
 //! The elements of a VTK XML file, and their offsets.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::error::{Location, ReadError};
 use crate::formats::vtk::xml::blocks::Compressor;
 use crate::numbers::Offset;

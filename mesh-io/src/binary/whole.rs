@@ -1,8 +1,9 @@
 //! Lists of whole numbers, kept as they are in a binary file.
 
-use crate::binary::Order;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
 use crate::parallel::map_ranges;
-use crate::records::Field;
+
 use std::borrow::Cow;
 use std::ops::Range;
 
