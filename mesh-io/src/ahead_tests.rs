@@ -2,9 +2,9 @@
 
 use crate::assemble::parse_by;
 use crate::detect::{self, Content};
+use crate::disk::source::Source;
 use crate::numbers::Places;
 use crate::parsed::Parsed;
-use crate::source::Source;
 
 /// Vertices along a side, so that all lists are long enough to be read on all threads.
 const SIDE: usize = 135;

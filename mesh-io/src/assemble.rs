@@ -1,13 +1,13 @@
 //! Makes a mesh from a file's nodes and elements, or finds where they stand in the file.
 
 use crate::constraints::{Constraints, PeriodicPairs};
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::numbers::{FoundPlaces, Places};
 use crate::parsed::{Parsed, fixed_note};
 use crate::records::{NodeRecords, TriangleRecords};
 use crate::regions::{Numbering, Regions};
 use crate::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
-use crate::source::Source;
 use crate::tags::{FoundTags, TagMap};
 use crate::text::{CORRECT, Cursor};
 

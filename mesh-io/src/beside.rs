@@ -1,8 +1,8 @@
 //! What the files beside a mesh are called where it is written under another name.
 
+use crate::disk::replace::same_file;
+use crate::disk::source::{Source, file_name};
 use crate::numbers::Splice;
-use crate::replace::same_file;
-use crate::source::{Source, file_name};
 use quick_xml::escape::escape;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +52,7 @@ pub(crate) fn renamed(source: &Source, path: &Path) -> Vec<Splice> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::Beside;
+    use crate::disk::source::Beside;
 
     fn source(name: &str, beside: &[&str]) -> Source {
         let mut source = Source::new(Path::new(name), Vec::new()).unwrap();

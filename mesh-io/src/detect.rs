@@ -1,12 +1,12 @@
 //! Tells which format a file is in, first by its content, then by its ending.
 
+use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
 use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle::names::{Names, appended};
 use crate::sink::Reader;
-use crate::source::{Source, file_name};
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 use crate::token::integer;

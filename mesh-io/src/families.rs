@@ -1,5 +1,7 @@
 //! The table of formats: how each is recognized, and its reader.
 
+use crate::compress::packed;
+use crate::disk::source::file_name;
 use crate::format::Format;
 use crate::formats::vtk::{legacy, xml};
 use crate::formats::{
@@ -7,9 +9,7 @@ use crate::formats::{
     nastran, obj, off, ply, selafin, sms, stl, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
-use crate::packed;
 use crate::sink::{Reader, Walk};
-use crate::source::file_name;
 use std::path::Path;
 
 const fn reader<W: Walk>() -> Option<Reader> {

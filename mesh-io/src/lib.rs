@@ -9,6 +9,7 @@ mod card;
 mod centers;
 mod column;
 mod compare;
+mod compress;
 mod constraints;
 mod continued;
 mod convert;
@@ -17,8 +18,6 @@ mod disk;
 mod error;
 mod export;
 mod families;
-#[cfg(test)]
-mod faults;
 mod field;
 mod field_text;
 mod fields;
@@ -35,7 +34,6 @@ mod mesh_file;
 mod named;
 mod netcdf;
 mod numbers;
-mod packed;
 mod parallel;
 mod parallel_rows;
 mod parameters;
@@ -47,11 +45,9 @@ mod precision;
 mod read;
 mod records;
 mod regions;
-mod replace;
 mod rewrite;
 mod save;
 mod sink;
-mod source;
 mod syntax;
 mod tags;
 mod text;
@@ -73,5 +69,5 @@ pub use crate::precision::Precision;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {
-    pub use crate::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
+    pub use crate::disk::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
 }

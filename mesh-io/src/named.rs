@@ -1,12 +1,12 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::formats::triangle;
 use crate::gather;
 use crate::group::Groups;
 use crate::mesh_file::MeshFile;
-use crate::source::Source;
 use crate::tags::TagMap;
 use crate::text::Cursor;
 use std::path::Path;

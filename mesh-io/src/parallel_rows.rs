@@ -128,8 +128,8 @@ impl<'a, T: Send> Batch<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disk::source::Source;
     use crate::error::Location;
-    use crate::source::Source;
 
     /// The rows that were taken; the location of the cursor, if all were taken; location and tokens of the rows that
     /// follow.

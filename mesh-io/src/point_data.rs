@@ -1,9 +1,9 @@
 //! Walks again through a file for arrays of point data.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::field::PointField;
 use crate::sink::{PointNumbers, Reader, Sink};
-use crate::source::Source;
 use crate::tags::TagMap;
 use crate::text::Cursor;
 

@@ -2,14 +2,14 @@
 
 use crate::assemble;
 use crate::detect::{self, Content};
+use crate::disk::replace::same_file;
+use crate::disk::source::{Beside, Named, Source};
 use crate::error::{Location, ReadError};
 use crate::families::TRIANGLE;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
 use crate::mesh_file::MeshFile;
-use crate::replace::same_file;
 use crate::sink::Reader;
-use crate::source::{Beside, Named, Source};
 use crate::text::CORRECT;
 use crate::token::quoted;
 use std::path::Path;

@@ -2,7 +2,10 @@
 
 use crate::beside;
 use crate::column::Column;
+use crate::compress::packed::Packing;
 use crate::detect;
+use crate::disk::replace;
+use crate::disk::replace::Job;
 use crate::error::WriteError;
 use crate::families::{Family, TRIANGLE};
 use crate::field::PointField;
@@ -10,8 +13,6 @@ use crate::format::Format;
 use crate::formats::triangle::names::Names;
 use crate::mesh_file::MeshFile;
 use crate::numbers::{Encoded, Splice};
-use crate::packed::Packing;
-use crate::replace::{self, Job};
 use crate::rewrite::Rewrite;
 use crate::sink::{Home, Stored};
 use std::io::{self, Write};

@@ -1,13 +1,13 @@
 //! The items that readers hand on, and the trait of what takes them.
 
 use crate::constraints::Affine;
+use crate::disk::source::{Named, Source};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;
 use crate::numbers::{Encoded, Form, Numbers, Places};
 use crate::parallel_rows::take_rows;
 use crate::records::{NodeRecords, TriangleRecords};
-use crate::source::{Named, Source};
 use crate::text::Cursor;
 use std::sync::Arc;
 

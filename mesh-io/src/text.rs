@@ -1,7 +1,7 @@
 //! Rows and tokens of a text file.
 
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::source::Source;
 use crate::syntax::{Commas, Items, Syntax};
 use crate::token::line_end;
 use std::ops::Range;

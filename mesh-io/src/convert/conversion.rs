@@ -2,7 +2,10 @@
 
 use super::names;
 use super::targets::{TARGETS, Target, Write};
+use crate::compress::packed::Packing;
 use crate::detect;
+use crate::disk::replace;
+use crate::disk::replace::Job as Replacement;
 use crate::error::{ReadError, WriteError};
 use crate::export::collector;
 use crate::export::content::Content;
@@ -13,8 +16,6 @@ use crate::formats::triangle::content;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::MeshFile;
-use crate::packed::Packing;
-use crate::replace::{self, Job as Replacement};
 use std::io;
 use std::path::{Path, PathBuf};
 

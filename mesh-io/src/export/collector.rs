@@ -1,10 +1,10 @@
 //! Makes a description of a mesh from what a reader hands on.
 
 use super::content::{Content, Data, Group};
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::label::Label;
 use crate::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
-use crate::source::Source;
 use crate::tags::TagMap;
 use crate::text::Cursor;
 use std::collections::HashMap;

@@ -5,13 +5,13 @@
 //! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 

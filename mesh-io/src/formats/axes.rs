@@ -2,6 +2,7 @@
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Array, Encoding, Hdf5};
@@ -10,7 +11,6 @@ use crate::numbers::{Encoded, Form, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};
-use crate::source::Source;
 use crate::text::Cursor;
 use std::ops::Range;
 

@@ -1,5 +1,6 @@
 //! Files of HDF5 and netCDF, of which the content tells the format.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::formats::cgns;
 use crate::formats::cgns::Cgns;
@@ -9,7 +10,6 @@ use crate::formats::med::Med;
 use crate::formats::ugrid;
 use crate::formats::ugrid::Ugrid;
 use crate::sink::{Layout, Sink, Walk};
-use crate::source::Source;
 
 pub(crate) struct Container;
 

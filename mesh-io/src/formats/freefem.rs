@@ -3,11 +3,11 @@
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
 //! for a Mesh". All numbers start at one.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 

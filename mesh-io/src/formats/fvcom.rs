@@ -4,12 +4,12 @@
 //! cells and the nodes. The program reads them as Fortran reads lists. The third number of a node's row, if there is one,
 //! is its depth. Other files of a case repeat coordinates; they are not read.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, Cursor};
 use crate::token::integer;

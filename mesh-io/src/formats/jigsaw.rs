@@ -4,6 +4,7 @@
 //! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
 //! element ends in a tag.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
@@ -11,7 +12,6 @@ use crate::heights::TextNumbers;
 use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, Cursor};
 use crate::token::{integer, quoted};

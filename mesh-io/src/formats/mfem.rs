@@ -3,12 +3,12 @@
 //! The format: <https://mfem.org/mesh-format-v1.0/>. MFEM reads it word by word. Elements stand before the vertices, which are
 //! counted from zero. Curved meshes have their points in a finite element space instead, and are refused.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, Cursor};
 use crate::token::quoted;

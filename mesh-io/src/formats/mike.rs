@@ -4,12 +4,12 @@
 //! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
 //! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::source::Source;
 use crate::text::Cursor;
 use crate::token::{float, integer};
 

@@ -4,6 +4,7 @@
 //! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
 //! are not read.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -11,7 +12,6 @@ use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::regions::Numbering;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, Cursor};
 use crate::token::{integer, quoted};

@@ -3,12 +3,12 @@
 //! The format: <http://www.geomview.org/docs/html/OFF.html>. Vertices may stand
 //! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CUT_OFF, Cursor};
 use crate::token::{integer, quoted};

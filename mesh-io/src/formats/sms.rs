@@ -3,13 +3,13 @@
 //! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
 //! order. Nodes of node strings (NS) stay fixed.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
-use crate::source::Source;
 use crate::text::{CORRECT, Cursor};
 
 pub(crate) struct Sms;

@@ -4,6 +4,7 @@
 //! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;
@@ -12,7 +13,6 @@ use crate::precision::Precision;
 use crate::sink::{
     Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
 };
-use crate::source::Source;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::quoted;
 use std::collections::HashMap;

@@ -4,8 +4,8 @@ use super::bytes::{DAMAGED, Fault};
 use super::groups::{self, Link, Target};
 use super::header::Header;
 use super::raw::{Raw, SIGNATURE};
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::source::Source;
 use std::collections::HashMap;
 
 /// A file with all its objects.

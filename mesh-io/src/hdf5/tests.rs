@@ -1,9 +1,9 @@
 //! Files that other programs made, in `tests/formats/h5`.
 
 use super::{Encoding, Hdf5, Number};
+use crate::disk::source::Source;
 use crate::numbers::Encoded;
 use crate::rewrite::Rewrite;
-use crate::source::Source;
 use std::path::Path;
 
 const FILES: [&str; 10] = [

@@ -6,9 +6,9 @@ mod header;
 mod version4;
 pub(crate) mod write;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::SIGNATURE;
-use crate::source::Source;
 
 pub(crate) use header::{Header, Items, Number, Variable};
 

@@ -1,7 +1,7 @@
 //! The keywords of an input file, each with its parameters and the lines of data below it.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::source::Source;
 use crate::text::Cursor;
 use crate::token::line_end;
 use std::ops::Range;

@@ -1,8 +1,8 @@
 //! Which of an input file's blocks are of the mesh: those of the model itself, or of the one part that has elements.
 
 use super::blocks::{self, Block};
+use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::source::Source;
 use crate::token::quoted;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};

@@ -13,13 +13,13 @@ mod sets;
 mod types;
 pub(crate) mod write;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Kind, Layout, Sink, Walk, volume};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 use crate::token::quoted;

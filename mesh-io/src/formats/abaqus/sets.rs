@@ -2,8 +2,8 @@
 
 use super::blocks::{Block, unquoted};
 use super::deck::Deck;
+use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::source::Source;
 use crate::token::integer;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;

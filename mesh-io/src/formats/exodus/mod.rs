@@ -8,6 +8,7 @@ mod data;
 mod sets;
 pub(crate) mod write;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
@@ -16,7 +17,6 @@ use crate::hdf5::Hdf5;
 use crate::label::Label;
 use crate::netcdf::{self, Header, Number, Variable};
 use crate::sink::{Column, Layout, Sink, Walk};
-use crate::source::Source;
 use crate::text::Cursor;
 
 pub(crate) struct Exodus;

@@ -19,6 +19,7 @@ mod words;
 pub(crate) mod write;
 
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::heights::Heights;
@@ -26,7 +27,6 @@ use crate::layout::of_rows_or_words;
 use crate::numbers::{Form, Numbers};
 use crate::precision::Precision;
 use crate::sink::{Layout, Sink, Walk, each_item};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CUT_OFF, Cursor};
 use crate::token::quoted;

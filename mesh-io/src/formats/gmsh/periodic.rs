@@ -110,7 +110,7 @@ fn binary(cursor: &mut Cursor<'_>, version: Version, order: Order) -> Option<Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::Source;
+    use crate::disk::source::Source;
 
     fn read_as(version: Version, order: Option<Order>, bytes: &[u8]) -> Option<Vec<Pairs>> {
         let source = Source::new("m.msh".as_ref(), bytes.to_vec()).unwrap();

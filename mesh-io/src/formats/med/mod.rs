@@ -7,6 +7,7 @@ mod families;
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
@@ -14,7 +15,6 @@ use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::label::Label;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
-use crate::source::Source;
 use crate::text::{CORRECT, Cursor};
 use crate::token::quoted;
 use families::Families;

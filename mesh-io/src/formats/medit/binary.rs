@@ -6,6 +6,7 @@
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -15,7 +16,6 @@ use crate::parsed::fixed_note;
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
-use crate::source::Source;
 use crate::text::{CUT_OFF, Cursor};
 
 pub(crate) struct MeditBinary;

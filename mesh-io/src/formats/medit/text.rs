@@ -4,6 +4,7 @@
 //! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
 //! edges and ridges need no reading, as they are among the edges.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -11,7 +12,6 @@ use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::parsed::fixed_note;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CUT_OFF, Cursor};
 use crate::token::{float, quoted};

@@ -12,10 +12,10 @@ mod section;
 mod types;
 
 use crate::card::{self, Line, letters};
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::sink::{Layout, Sink, Walk};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 use crate::token::integer;

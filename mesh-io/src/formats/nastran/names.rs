@@ -1,7 +1,7 @@
 //! Names of properties, which preprocessors write in comments.
 
+use crate::disk::source::Source;
 use crate::sink::Sink;
-use crate::source::Source;
 use crate::token::line_end;
 
 /// Hands on the names of properties.

@@ -1,6 +1,6 @@
 //! Which lines of a file are its bulk data.
 
-use crate::source::Source;
+use crate::disk::source::Source;
 use crate::syntax::Syntax;
 use crate::text::Cursor;
 use crate::token::line_end;

@@ -5,6 +5,7 @@
 //! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -12,7 +13,6 @@ use crate::layout::of_rows_or_words;
 use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
-use crate::source::Source;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::quoted;
 

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::source::Source;
 use crate::text::{CORRECT, Cursor};
 use crate::token::{float, quoted};
 

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::source::Source;
 use crate::token::quoted;
 
 /// A mesh with a number on each vertex, such as the size wanted there.

@@ -3,6 +3,7 @@
 //! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
 //! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::su2::motions::Motions;
@@ -10,7 +11,6 @@ use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::parallel_rows::take_rows;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, Cursor};
 use crate::token::{integer, quoted};

@@ -1,5 +1,6 @@
 //! Describes a mesh of the mesh generator Triangle, whose files were read before.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::export::collector::Collector;
 use crate::export::content::Content;
@@ -10,7 +11,6 @@ use crate::heights::TextNumbers;
 use crate::label::Label;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Sink};
-use crate::source::Source;
 use crate::token::float;
 
 /// Reads the description of a mesh from its files.

@@ -1,12 +1,12 @@
 //! The attributes of vertices in a `.node` of the mesh generator Triangle.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::field::PointField;
 use crate::formats::triangle::mesh::{attribute_names, rows, vertex_header};
 use crate::heights::TextNumbers;
 use crate::point_data::{PointData, Wanted};
 use crate::precision::Precision;
-use crate::source::Source;
 
 /// Reads the wanted attributes of vertices. The file must have been read before.
 pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {

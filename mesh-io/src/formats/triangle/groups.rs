@@ -1,5 +1,6 @@
 //! Groups in the files of the mesh generator Triangle: attributes of triangles, and markers of vertices and segments.
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::formats::triangle::mesh::{
     Numbers, Segments, header, rows, vertex_header, vertex_number,
@@ -7,7 +8,6 @@ use crate::formats::triangle::mesh::{
 use crate::group_table::GroupTable;
 use crate::label::Label;
 use crate::sink::Kind;
-use crate::source::Source;
 use crate::token::float;
 
 /// Gathers the groups of a mesh whose files were read before.

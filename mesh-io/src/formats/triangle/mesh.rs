@@ -4,13 +4,13 @@
 //! announced rows and columns.
 
 use crate::constraints::Constraints;
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::numbers;
 use crate::parallel_rows::take_rows;
 use crate::parsed::{Parsed, fixed_note};
 use crate::regions::{Numbering, Regions};
-use crate::source::Source;
 use crate::syntax::Syntax;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::{float, integer};

@@ -10,12 +10,12 @@ mod mesh;
 mod table;
 pub(crate) mod write;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::Hdf5;
 use crate::netcdf;
 use crate::sink::{Layout, Sink, Walk};
-use crate::source::Source;
 use mesh::Mesh;
 use table::{Table, What};
 

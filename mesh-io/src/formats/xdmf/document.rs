@@ -1,10 +1,10 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
 use crate::binary::order::Order;
+use crate::disk::source::{Named, Source};
 use crate::error::{Location, ReadError};
 use crate::hdf5::Number;
 use crate::precision::Precision;
-use crate::source::{Named, Source};
 use crate::text::{CORRECT, CUT_OFF};
 use crate::token::{ill_formed_xml, quoted, xml_text};
 use quick_xml::Reader;

@@ -2,11 +2,11 @@
 
 use super::document::{Content, Item};
 use crate::binary::order::Order;
+use crate::disk::source::{Beside, Source};
 use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
 use crate::numbers::{Encoded, Form, Places};
 use crate::sink::{Home, Stored};
-use crate::source::{Beside, Source};
 use crate::text::{CUT_OFF, Cursor};
 use crate::token::quoted;
 use std::borrow::Cow;

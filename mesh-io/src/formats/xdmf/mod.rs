@@ -9,12 +9,12 @@ mod heavy;
 mod points;
 pub(crate) mod write;
 
+use crate::disk::source::{Named, Source};
 use crate::error::ReadError;
 use crate::hdf5::Number;
 use crate::heights::TextNumbers;
 use crate::precision::Precision;
 use crate::sink::{Layout, PointNumbers, Sink, Walk};
-use crate::source::{Named, Source};
 use crate::text::Cursor;
 use document::{Content, Item};
 use heavy::Heavy;

@@ -14,6 +14,7 @@ pub(crate) use data::names_regions;
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
@@ -21,7 +22,6 @@ use crate::numbers::{Form, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Layout, Sink, Walk, each_row};
-use crate::source::Source;
 use crate::text::{CORRECT, CUT_OFF, Cursor};
 use crate::token::quoted;
 use data::Regions;

@@ -1,10 +1,10 @@
 //! The elements of a VTK XML file, and their offsets.
 
 use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::formats::vtk::xml::blocks::Compressor;
 use crate::numbers::Offset;
-use crate::source::Source;
 use crate::text::{CORRECT, CUT_OFF};
 use crate::token::{ill_formed_xml, quoted, xml_text};
 use quick_xml::Reader;

@@ -11,10 +11,10 @@ mod document;
 mod encoding;
 mod points;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::sink::{Layout, Sink, Walk};
-use crate::source::Source;
 use arrays::File;
 use document::{Content, Document};
 

@@ -1,7 +1,8 @@
 //! The bytes of one file.
 
+use crate::compress::packed;
+use crate::compress::packed::{Packed, Unpackable};
 use crate::error::{Location, ReadError};
-use crate::packed::{self, Packed, Unpackable};
 use crate::parallel::map_parts;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
