@@ -9,7 +9,7 @@ use crate::records::{NodeRecords, TriangleRecords};
 use crate::regions::{Numbering, Regions};
 use crate::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
 use crate::tags::{FoundTags, TagMap};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 
 /// Reads a mesh, long lists on all threads.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {

@@ -6,7 +6,7 @@ use crate::field::PointField;
 use crate::mesh_file::MeshFile;
 use crate::sink::{Centers, Sink};
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// How far a number may be from the center that it is taken for, as a share of how far the element reaches.
 const CLOSE: f64 = 1e-6;

@@ -6,7 +6,7 @@ use crate::mesh_file::MeshFile;
 use crate::numbers::{Encoded, Form, Numbers, Places};
 use crate::place::Place;
 use crate::sink::{Home, Stored};
-use crate::token::quoted;
+use crate::text::token::quoted;
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.

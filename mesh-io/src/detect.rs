@@ -7,9 +7,9 @@ use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle::names::{Names, appended};
 use crate::sink::Reader;
-use crate::syntax::Syntax;
-use crate::text::Cursor;
-use crate::token::integer;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::text::token::integer;
 use std::path::{Path, PathBuf};
 
 /// How a file is read.

@@ -7,7 +7,7 @@ use crate::formats::triangle;
 use crate::group::distance;
 use crate::mesh_file::MeshFile;
 use crate::point_data::{self, PointData, Wanted};
-use crate::token::quoted;
+use crate::text::token::quoted;
 
 impl MeshFile {
     /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The

@@ -7,7 +7,7 @@ use crate::label::Label;
 use crate::regions::Numbering;
 use crate::sink::{Column, Element, Kind, Reader, Sink, Within};
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Gathers the groups of a file.
 pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {

@@ -6,8 +6,8 @@ use crate::numbers::{Form, Places};
 use crate::precision::Precision;
 use crate::records::LONG;
 use crate::sink::{Home, PointNumbers, Sink, Stored};
-use crate::text::Cursor;
-use crate::text_numbers::NO_HEIGHT;
+use crate::text::cursor::Cursor;
+use crate::text::cursor_numbers::NO_HEIGHT;
 
 /// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
 /// data.

@@ -8,7 +8,7 @@ use crate::gather;
 use crate::group::Groups;
 use crate::mesh_file::MeshFile;
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use std::path::Path;
 
 impl MeshFile {

@@ -1,10 +1,10 @@
 //! How coordinates and other numbers are stored in a file.
 
 use crate::binary::order::Order;
-use crate::card;
-use crate::field_text::{ALL, field_text};
 use crate::precision::{Precision, short_text};
-use crate::token::{number_end, skip_to_number};
+use crate::text::card;
+use crate::text::field_text::{ALL, field_text};
+use crate::text::token::{number_end, skip_to_number};
 use std::io::Write;
 use std::ops::Range;
 

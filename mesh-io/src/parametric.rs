@@ -5,7 +5,7 @@ use crate::error::ReadError;
 use crate::field::PointField;
 use crate::sink::{PointNumbers, Reader, Sink};
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Returns a field for each surface, with two parameters for each of its vertices. The file must have been read before.
 pub(crate) fn parameters(reader: &Reader, source: &Source) -> Result<Vec<PointField>, ReadError> {

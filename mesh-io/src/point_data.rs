@@ -5,7 +5,7 @@ use crate::error::ReadError;
 use crate::field::PointField;
 use crate::sink::{PointNumbers, Reader, Sink};
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Which arrays are looked for.
 #[derive(Clone, Copy)]

@@ -10,8 +10,8 @@ use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
 use crate::mesh_file::MeshFile;
 use crate::sink::Reader;
-use crate::text::CORRECT;
-use crate::token::quoted;
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
 use std::path::Path;
 
 impl MeshFile {

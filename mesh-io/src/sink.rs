@@ -6,9 +6,9 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;
 use crate::numbers::{Encoded, Form, Numbers, Places};
-use crate::parallel_rows::take_rows;
 use crate::records::{NodeRecords, TriangleRecords};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
+use crate::text::parallel_rows::take_rows;
 use std::sync::Arc;
 
 /// The kinds of elements: triangles, which are smoothed, and others, whose vertices stay fixed.

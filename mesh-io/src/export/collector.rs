@@ -6,7 +6,7 @@ use crate::error::ReadError;
 use crate::label::Label;
 use crate::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
 use crate::tags::TagMap;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.

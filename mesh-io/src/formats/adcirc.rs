@@ -12,8 +12,8 @@ use crate::formats::numbered_nodes::numbered_nodes;
 use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
-use crate::syntax::Syntax;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
 
 pub(crate) struct Adcirc;
 

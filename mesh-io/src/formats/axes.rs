@@ -11,7 +11,7 @@ use crate::numbers::{Encoded, Form, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use std::ops::Range;
 
 /// The coordinates of a mesh, axis by axis. There are at least two.

@@ -8,8 +8,8 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::syntax::Syntax;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
 
 pub(crate) struct FreeFem;
 

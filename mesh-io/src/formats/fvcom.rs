@@ -10,9 +10,9 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, Cursor};
-use crate::token::integer;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::integer;
 
 pub(crate) struct Fvcom;
 

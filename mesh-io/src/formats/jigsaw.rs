@@ -12,9 +12,9 @@ use crate::heights::TextNumbers;
 use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, Cursor};
-use crate::token::{integer, quoted};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
 
 pub(crate) struct Jigsaw;
 

@@ -9,9 +9,9 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::quoted;
 
 pub(crate) struct Mfem;
 

@@ -10,8 +10,8 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::text::Cursor;
-use crate::token::{float, integer};
+use crate::text::cursor::Cursor;
+use crate::text::token::{float, integer};
 
 pub(crate) struct Mike;
 

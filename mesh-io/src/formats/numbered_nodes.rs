@@ -3,8 +3,8 @@
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::sink::{Sink, each_row};
-use crate::text::Cursor;
-use crate::text_numbers::NO_HEIGHT;
+use crate::text::cursor::Cursor;
+use crate::text::cursor_numbers::NO_HEIGHT;
 
 /// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the sink. Returns the
 /// third numbers. If these are optional, a node may end after y.

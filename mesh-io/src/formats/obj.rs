@@ -12,9 +12,9 @@ use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::regions::Numbering;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, Cursor};
-use crate::token::{integer, quoted};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
 
 pub(crate) struct Obj;
 

@@ -9,9 +9,9 @@ use crate::format::Format;
 use crate::heights::Heights;
 use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
-use crate::syntax::Syntax;
-use crate::text::{CUT_OFF, Cursor};
-use crate::token::{integer, quoted};
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
 
 pub(crate) struct Off;
 

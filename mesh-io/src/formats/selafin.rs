@@ -12,7 +12,7 @@ use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
-use crate::text::{CUT_OFF, Cursor};
+use crate::text::cursor::{CUT_OFF, Cursor};
 
 pub(crate) struct Selafin;
 

@@ -10,7 +10,7 @@ use crate::heights::Heights;
 use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 
 pub(crate) struct Sms;
 

@@ -13,8 +13,8 @@ use crate::precision::Precision;
 use crate::sink::{
     Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
 };
-use crate::text::{CORRECT, CUT_OFF, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::token::quoted;
 use std::collections::HashMap;
 
 pub(crate) struct Stl;

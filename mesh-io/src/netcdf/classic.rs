@@ -9,7 +9,7 @@ use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::precision::Precision;
-use crate::text::{CUT_OFF, Cursor};
+use crate::text::cursor::{CUT_OFF, Cursor};
 
 const ORDER: Order = Order::Big;
 

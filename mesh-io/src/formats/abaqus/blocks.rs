@@ -2,8 +2,8 @@
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::text::Cursor;
-use crate::token::line_end;
+use crate::text::cursor::Cursor;
+use crate::text::token::line_end;
 use std::ops::Range;
 
 /// A keyword with what belongs to it.

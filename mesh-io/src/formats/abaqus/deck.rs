@@ -3,7 +3,7 @@
 use super::blocks::{self, Block};
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::token::quoted;
+use crate::text::token::quoted;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

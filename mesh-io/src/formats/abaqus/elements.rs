@@ -10,8 +10,8 @@ use crate::error::ReadError;
 use crate::label::Label;
 use crate::parsed::fixed_note;
 use crate::sink::{Element, Kind, Sink, Within};
-use crate::text::Cursor;
-use crate::token::quoted;
+use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.

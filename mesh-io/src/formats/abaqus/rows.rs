@@ -4,10 +4,10 @@ use super::blocks::Block;
 use super::deck::Deck;
 use crate::error::ReadError;
 use crate::heights::Heights;
-use crate::parallel_rows::take_rows;
 use crate::sink::{Kind, Sink, all_rows, nodes};
-use crate::text::Cursor;
-use crate::token::integer;
+use crate::text::cursor::Cursor;
+use crate::text::parallel_rows::take_rows;
+use crate::text::token::integer;
 
 /// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
 pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {

@@ -4,7 +4,7 @@ use super::blocks::{Block, unquoted};
 use super::deck::Deck;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::token::integer;
+use crate::text::token::integer;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 

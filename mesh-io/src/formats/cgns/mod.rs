@@ -14,7 +14,7 @@ use crate::formats::axes::Axes;
 use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
 use crate::numbers::{Encoded, Form, Places};
 use crate::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use boundaries::Boundaries;
 use std::sync::Arc;
 

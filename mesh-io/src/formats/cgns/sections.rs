@@ -9,8 +9,8 @@ use crate::hdf5::{Array, Number, Object};
 use crate::label::Label;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Sink, volume};
-use crate::text::CORRECT;
-use crate::token::quoted;
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;
@@ -129,8 +129,10 @@ impl<'a> File<'a> {
             }
             let tag = first.saturating_add(place as u64);
             boundaries.of_element(tag, sink);
-            let cursor =
-                crate::text::Cursor::at_byte_of(self.source, nodes.array.byte_of(start * size));
+            let cursor = crate::text::cursor::Cursor::at_byte_of(
+                self.source,
+                nodes.array.byte_of(start * size),
+            );
             sink.element(&cursor, &Element { tag, kind, region: [number, 0], nodes: corners })?;
         }
         match at == length {

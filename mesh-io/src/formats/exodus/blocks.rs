@@ -7,8 +7,8 @@ use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Element, Kind, Sink, volume};
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
 
 /// Elements of one type.
 pub(super) struct Block<'a> {

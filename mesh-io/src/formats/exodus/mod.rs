@@ -17,7 +17,7 @@ use crate::hdf5::Hdf5;
 use crate::label::Label;
 use crate::netcdf::{self, Header, Number, Variable};
 use crate::sink::{Column, Layout, Sink, Walk};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 pub(crate) struct Exodus;
 

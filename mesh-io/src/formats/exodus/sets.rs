@@ -5,7 +5,7 @@ use super::{File, NO_BLOCK};
 use crate::error::ReadError;
 use crate::label::Label;
 use crate::sink::{Element, Kind, Sink, Within};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.

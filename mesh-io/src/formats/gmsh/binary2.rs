@@ -11,7 +11,7 @@ use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Sink};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -11,7 +11,7 @@ use crate::heights::Heights;
 use crate::numbers::Places;
 use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, PointNumbers, Sink, Stored};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
 pub(super) const BLOCK_HEADER: usize = 20;

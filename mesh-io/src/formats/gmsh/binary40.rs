@@ -8,7 +8,7 @@ use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::sink::Sink;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// The size of a tag in bytes.
 const TAG: usize = 4;

@@ -6,7 +6,7 @@ use crate::heights::TextNumbers;
 use crate::numbers::Places;
 use crate::precision::Precision;
 use crate::sink::{PointNumbers, Sink, Stored};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Data of nodes are skipped if fewer than one in this many nodes has them.
 const FEW: u64 = 16;

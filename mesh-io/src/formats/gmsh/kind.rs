@@ -2,7 +2,7 @@
 
 use crate::error::ReadError;
 use crate::sink::Kind;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Returns the kind of an element by its number in gmsh, or an error on the current line.
 pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {

@@ -6,7 +6,7 @@ use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::label::Label;
 use crate::sink::{Kind, Sink, Within};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 use std::collections::HashMap;
 
 /// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.

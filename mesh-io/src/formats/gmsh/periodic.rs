@@ -5,8 +5,8 @@ use crate::binary::order::Order;
 use crate::constraints::Affine;
 use crate::precision::Precision;
 use crate::sink::Pairs;
-use crate::text::Cursor;
-use crate::token::{float, integer};
+use crate::text::cursor::Cursor;
+use crate::text::token::{float, integer};
 
 /// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;

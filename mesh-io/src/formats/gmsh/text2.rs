@@ -5,7 +5,7 @@ use super::{counts, each};
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::sink::{Column, Element, Sink};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -7,8 +7,8 @@ use crate::error::ReadError;
 use crate::heights::{Heights, TextNumbers};
 use crate::precision::Precision;
 use crate::sink::{Element, Sink};
-use crate::syntax::Syntax;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.

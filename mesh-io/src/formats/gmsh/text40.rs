@@ -5,7 +5,7 @@ use super::{all_in_blocks, block_fits, by_rows, counts, each, head};
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::sink::Sink;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -2,7 +2,7 @@
 
 use crate::binary::order::Order;
 use crate::error::ReadError;
-use crate::text::{CUT_OFF, Cursor};
+use crate::text::cursor::{CUT_OFF, Cursor};
 use std::fmt::Display;
 
 /// The remedy for a number that makes no sense.

@@ -15,8 +15,8 @@ use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::label::Label;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
 use families::Families;
 
 pub(crate) struct Med;

@@ -16,7 +16,7 @@ use crate::parsed::fixed_note;
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
-use crate::text::{CUT_OFF, Cursor};
+use crate::text::cursor::{CUT_OFF, Cursor};
 
 pub(crate) struct MeditBinary;
 

@@ -12,9 +12,9 @@ use crate::label::Label;
 use crate::numbers::Numbers;
 use crate::parsed::fixed_note;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
-use crate::syntax::Syntax;
-use crate::text::{CUT_OFF, Cursor};
-use crate::token::{float, quoted};
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{float, quoted};
 
 pub(crate) struct Medit;
 

@@ -2,12 +2,13 @@
 
 use super::nodes::whole;
 use super::types::{Class, Listed, class};
-use crate::card::{self, Line, Name, letters};
 use crate::error::ReadError;
 use crate::parsed::fixed_note;
 use crate::sink::{Column, Element, Kind, Sink, all_rows, volume};
-use crate::text::Cursor;
-use crate::token::{integer, quoted};
+use crate::text::card;
+use crate::text::card::{Line, Name, letters};
+use crate::text::cursor::Cursor;
+use crate::text::token::{integer, quoted};
 use std::collections::{BTreeSet, HashSet};
 
 /// A card, as far as it is of elements.

@@ -11,14 +11,15 @@ mod nodes;
 mod section;
 mod types;
 
-use crate::card::{self, Line, letters};
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::sink::{Layout, Sink, Walk};
-use crate::syntax::Syntax;
-use crate::text::Cursor;
-use crate::token::integer;
+use crate::text::card;
+use crate::text::card::{Line, letters};
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::text::token::integer;
 use types::Class;
 
 pub(crate) struct Nastran;

@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::sink::Sink;
-use crate::token::line_end;
+use crate::text::token::line_end;
 
 /// Hands on the names of properties.
 pub(super) fn send(source: &Source, sink: &mut dyn Sink) {

@@ -1,14 +1,15 @@
 //! The nodes: GRID, with what GRDSET says of all of them.
 
-use crate::card::{self, Line, letters};
 use crate::error::ReadError;
 use crate::heights::Heights;
 use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Sink, all_rows};
-use crate::text::Cursor;
-use crate::text_numbers::NO_HEIGHT;
-use crate::token::{float, fortran_float, integer};
+use crate::text::card;
+use crate::text::card::{Line, letters};
+use crate::text::cursor::Cursor;
+use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::text::token::{float, fortran_float, integer};
 use std::ops::Range;
 
 /// A card, as far as it is of nodes.

@@ -1,9 +1,9 @@
 //! Which lines of a file are its bulk data.
 
 use crate::disk::source::Source;
-use crate::syntax::Syntax;
-use crate::text::Cursor;
-use crate::token::line_end;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::text::token::line_end;
 
 /// Makes a cursor before the first row of the bulk data, which ends where they do. They start after `BEGIN BULK`, or where the file
 /// starts if it has no other sections, and end before `ENDDATA`.

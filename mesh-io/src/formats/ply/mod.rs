@@ -9,12 +9,12 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::layout::of_rows_or_words;
 use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
-use crate::text::{CORRECT, CUT_OFF, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::layout::of_rows_or_words;
+use crate::text::token::quoted;
 
 mod plain;
 pub(crate) mod write;

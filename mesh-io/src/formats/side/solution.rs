@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::text::{CORRECT, Cursor};
-use crate::token::{float, quoted};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::{float, quoted};
 
 /// Numbers for the vertices of a mesh, in the order of the mesh file. Each vertex has one number, a size in the unit of
 /// the mesh, or three, a symmetric tensor as xx, xy, yy.
@@ -115,7 +115,7 @@ fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solu
         if !cursor.next_word() {
             let vertex = i / components as u64;
             let problem = format!("the file ends after {vertex} of {count} vertices");
-            return Err(cursor.error(problem, crate::text::CUT_OFF));
+            return Err(cursor.error(problem, crate::text::cursor::CUT_OFF));
         }
         values.push(cursor.real("a value")?);
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::token::quoted;
+use crate::text::token::quoted;
 
 /// A mesh with a number on each vertex, such as the size wanted there.
 #[derive(Clone, Debug, PartialEq)]

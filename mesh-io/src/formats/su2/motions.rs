@@ -2,7 +2,7 @@
 
 use crate::constraints::Affine;
 use crate::sink::Pairs;
-use crate::token::float;
+use crate::text::token::float;
 
 /// The motions read so far, in the order of the file.
 #[derive(Default)]

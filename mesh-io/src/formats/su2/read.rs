@@ -9,11 +9,11 @@ use crate::format::Format;
 use crate::formats::su2::motions::Motions;
 use crate::label::Label;
 use crate::numbers::Numbers;
-use crate::parallel_rows::take_rows;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, Cursor};
-use crate::token::{integer, quoted};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::parallel_rows::take_rows;
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
 use std::ops::Range;
 
 pub(crate) struct Su2;

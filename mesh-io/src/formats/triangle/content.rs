@@ -11,7 +11,7 @@ use crate::heights::TextNumbers;
 use crate::label::Label;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Sink};
-use crate::token::float;
+use crate::text::token::float;
 
 /// Reads the description of a mesh from its files.
 pub(crate) fn content(

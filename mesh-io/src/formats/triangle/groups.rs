@@ -8,7 +8,7 @@ use crate::formats::triangle::mesh::{
 use crate::group_table::GroupTable;
 use crate::label::Label;
 use crate::sink::Kind;
-use crate::token::float;
+use crate::text::token::float;
 
 /// Gathers the groups of a mesh whose files were read before.
 pub(crate) fn groups(

@@ -8,12 +8,12 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::numbers;
-use crate::parallel_rows::take_rows;
 use crate::parsed::{Parsed, fixed_note};
 use crate::regions::{Numbering, Regions};
-use crate::syntax::Syntax;
-use crate::text::{CORRECT, CUT_OFF, Cursor};
-use crate::token::{float, integer};
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::parallel_rows::take_rows;
+use crate::text::syntax::Syntax;
+use crate::text::token::{float, integer};
 
 /// Returns a cursor before the first row of one of the files.
 pub(crate) fn rows(source: &Source) -> Cursor<'_> {

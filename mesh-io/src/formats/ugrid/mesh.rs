@@ -4,8 +4,8 @@ use crate::error::ReadError;
 use crate::formats::axes::Axes;
 use crate::formats::netcdf_axes::axes;
 use crate::netcdf::{Header, Number, Variable};
-use crate::text::Cursor;
-use crate::token::quoted;
+use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
 
 /// A mesh of faces.
 pub(super) struct Mesh<'h, 'a> {

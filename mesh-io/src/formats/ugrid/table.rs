@@ -3,8 +3,8 @@
 use super::mesh::Mesh;
 use crate::error::ReadError;
 use crate::netcdf::{Header, Items, Number, Variable};
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
 
 /// The nodes of faces or edges: a row for each of them, or a column.
 pub(super) struct Table<'h, 'a> {

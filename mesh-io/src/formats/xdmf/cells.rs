@@ -8,8 +8,8 @@ use crate::error::ReadError;
 use crate::formats::vtk::legacy;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Sink};
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
 
 /// How many arrays tell regions at most.
 const MOST: usize = 2;

@@ -15,7 +15,7 @@ use crate::hdf5::Number;
 use crate::heights::TextNumbers;
 use crate::precision::Precision;
 use crate::sink::{Layout, PointNumbers, Sink, Walk};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use document::{Content, Item};
 use heavy::Heavy;
 use std::ops::Range;

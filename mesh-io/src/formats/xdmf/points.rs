@@ -12,8 +12,8 @@ use crate::numbers::{Encoded, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};
-use crate::text::CORRECT;
-use crate::token::quoted;
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
 
 impl File<'_> {
     /// Hands on the points. Returns how they stand, and how many there are.

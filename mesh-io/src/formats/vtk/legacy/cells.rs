@@ -5,7 +5,7 @@ use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::records::{Expected, LONG, Region, TriangleRecords};
 use crate::sink::{Element, Kind, Sink, volume};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 use std::ops::Range;
 
 /// A cell of one of VTK's formats.

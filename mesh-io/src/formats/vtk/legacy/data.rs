@@ -9,7 +9,7 @@ use crate::label::Label;
 use crate::numbers::{Form, Places};
 use crate::precision::Precision;
 use crate::sink::{Column, PointNumbers, Sink, Stored};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 use std::borrow::Cow;
 
 /// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own

@@ -22,8 +22,8 @@ use crate::numbers::{Form, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Layout, Sink, Walk, each_row};
-use crate::text::{CORRECT, CUT_OFF, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::token::quoted;
 use data::Regions;
 use lists::{Cells, List};
 

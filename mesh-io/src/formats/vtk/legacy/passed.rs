@@ -2,8 +2,8 @@
 
 use crate::error::ReadError;
 use crate::formats::vtk::legacy::take;
-use crate::text::{CUT_OFF, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::token::quoted;
 
 /// Skips an array of `count` numbers, bits or strings.
 pub(super) fn pass(

@@ -10,8 +10,8 @@ use crate::heights::TextNumbers;
 use crate::numbers::{Form, Offset, Places};
 use crate::precision::Precision;
 use crate::sink::{Home, PointNumbers, Stored};
-use crate::text::{CUT_OFF, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::token::quoted;
 use std::ops::Range;
 use std::sync::Arc;
 

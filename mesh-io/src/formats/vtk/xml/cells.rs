@@ -7,7 +7,7 @@ use crate::error::ReadError;
 use crate::formats::vtk::legacy;
 use crate::records::Region;
 use crate::sink::{Column, Sink};
-use crate::text::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, Cursor};
 
 /// The most arrays that tell regions.
 const MOST: usize = 2;

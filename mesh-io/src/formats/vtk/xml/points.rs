@@ -11,8 +11,8 @@ use crate::numbers::{Encoded, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Sink};
-use crate::text::{CORRECT, Cursor};
-use crate::token::quoted;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
 use std::ops::Range;
 use std::sync::Arc;
 

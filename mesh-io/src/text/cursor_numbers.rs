@@ -1,9 +1,9 @@
 //! Reads the numbers of a text file.
 
 use crate::error::ReadError;
-use crate::syntax::Commas;
-use crate::text::{CORRECT, CUT_OFF, Cursor};
-use crate::token::{float, fortran_float, integer, quoted, short_float};
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::syntax::Commas;
+use crate::text::token::{float, fortran_float, integer, quoted, short_float};
 use std::fmt::Display;
 
 /// The third coordinate of a point that has only two in the file.
@@ -192,7 +192,7 @@ impl<'a> Cursor<'a> {
 
 #[cfg(test)]
 mod tests {
-    use crate::text::tests::{row_of, source};
+    use crate::text::cursor::tests::{row_of, source};
 
     #[test]
     fn signed_integers() {

@@ -1,7 +1,7 @@
 //! Rows that go on in lines which start with a blank, a comma, `+` or `*`, as cards of Nastran do.
 
-use crate::text::Cursor;
-use crate::token::line_end;
+use crate::text::cursor::Cursor;
+use crate::text::token::line_end;
 use std::ops::Range;
 
 impl Cursor<'_> {

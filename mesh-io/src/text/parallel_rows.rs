@@ -5,7 +5,7 @@
 
 use crate::error::ReadError;
 use crate::parallel::{map_parts, meanwhile};
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
 
 /// Bytes of text that one thread reads at a time.
 const CHUNK: usize = 1 << 17;

@@ -2,8 +2,8 @@
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::syntax::{Commas, Items, Syntax};
-use crate::token::line_end;
+use crate::text::syntax::{Commas, Items, Syntax};
+use crate::text::token::line_end;
 use std::ops::Range;
 
 /// The remedy for a single wrong line.
@@ -419,5 +419,5 @@ impl<'a> Cursor<'a> {
 }
 
 #[cfg(test)]
-#[path = "text_tests.rs"]
+#[path = "cursor_tests.rs"]
 pub(crate) mod tests;

@@ -1,7 +1,7 @@
 //! Tells whether the items of a list stand on rows of their own, or anywhere.
 
-use crate::syntax::Syntax;
-use crate::text::Cursor;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
 
 /// Chooses how to read the text from the cursor to byte `end`. If it has `count` rows, it is read by rows, so that
 /// errors name a row that lacks a number. Otherwise it is read by words.
