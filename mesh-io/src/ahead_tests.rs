@@ -3,7 +3,7 @@
 use crate::assemble::parse_by;
 use crate::detect::{self, Content};
 use crate::disk::source::Source;
-use crate::numbers::Places;
+use crate::edit::numbers::Places;
 use crate::parsed::Parsed;
 
 /// Vertices along a side, so that all lists are long enough to be read on all threads.

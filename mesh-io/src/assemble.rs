@@ -2,8 +2,8 @@
 
 use crate::constraints::{Constraints, PeriodicPairs};
 use crate::disk::source::Source;
+use crate::edit::numbers::{FoundPlaces, Places};
 use crate::error::{Location, ReadError};
-use crate::numbers::{FoundPlaces, Places};
 use crate::parsed::{Parsed, fixed_note};
 use crate::records::{NodeRecords, TriangleRecords};
 use crate::regions::{Numbering, Regions};

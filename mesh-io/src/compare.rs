@@ -1,9 +1,9 @@
 //! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
 
+use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::Location;
 use crate::field::PointField;
 use crate::mesh_file::MeshFile;
-use crate::numbers::{Encoded, Form, Numbers, Places};
 use crate::place::Place;
 use crate::sink::{Home, Stored};
 use crate::text::token::quoted;

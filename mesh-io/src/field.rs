@@ -1,6 +1,6 @@
 //! Data of a file's vertices, and where the numbers stand in the file.
 
-use crate::column::Column;
+use crate::edit::column::Column;
 use crate::error::FieldError;
 use crate::sink::{PointNumbers, Stored};
 

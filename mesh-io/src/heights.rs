@@ -1,8 +1,8 @@
 //! Third coordinates and depths, which are data of points.
 
 use crate::binary::number_field::Field;
+use crate::edit::numbers::{Form, Places};
 use crate::error::ReadError;
-use crate::numbers::{Form, Places};
 use crate::precision::Precision;
 use crate::records::LONG;
 use crate::sink::{Home, PointNumbers, Sink, Stored};

@@ -2,9 +2,9 @@
 
 use crate::constraints::{Constraints, edges_between_regions};
 use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::numbers::{Encoded, Numbers, Places};
 use crate::parsed::Parsed;
 use crate::precision::Precision;
 use crate::regions::interface_vertices;

@@ -1,8 +1,8 @@
 //! What the reader of a format returns.
 
 use crate::constraints::Constraints;
+use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::format::Format;
-use crate::numbers::{Encoded, Numbers, Places};
 
 /// A mesh, and how its file stores the mesh.
 pub(crate) struct Parsed {

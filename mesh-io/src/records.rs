@@ -4,7 +4,7 @@
 //! only one that returns errors.
 
 use crate::binary::number_field::Field;
-use crate::numbers::FoundPlaces;
+use crate::edit::numbers::FoundPlaces;
 use crate::parallel::{map_parts, map_ranges};
 use crate::tags::{FoundTags, TagMap};
 use std::ops::Range;

@@ -1,19 +1,19 @@
 //! Writes a mesh file again, with the coordinates of moved vertices replaced.
 
-use crate::beside;
-use crate::column::Column;
 use crate::compress::packed::Packing;
 use crate::detect;
 use crate::disk::replace;
 use crate::disk::replace::Job;
+use crate::edit::beside;
+use crate::edit::column::Column;
+use crate::edit::numbers::{Encoded, Splice};
+use crate::edit::rewrite::Rewrite;
 use crate::error::WriteError;
 use crate::families::{Family, TRIANGLE};
 use crate::field::PointField;
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
 use crate::mesh_file::MeshFile;
-use crate::numbers::{Encoded, Splice};
-use crate::rewrite::Rewrite;
 use crate::sink::{Home, Stored};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -2,10 +2,10 @@
 
 use crate::constraints::Affine;
 use crate::disk::source::{Named, Source};
+use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;
-use crate::numbers::{Encoded, Form, Numbers, Places};
 use crate::records::{NodeRecords, TriangleRecords};
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;

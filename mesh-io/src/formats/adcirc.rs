@@ -6,11 +6,11 @@
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::label::Label;
-use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;

@@ -3,11 +3,11 @@
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Array, Encoding, Hdf5};
 use crate::heights::Heights;
-use crate::numbers::{Encoded, Form, Numbers};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Tags};
 use crate::sink::{Home, Layout, Sink};

@@ -4,9 +4,9 @@
 //! for a Mesh". All numbers start at one.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;

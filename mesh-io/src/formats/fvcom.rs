@@ -5,10 +5,10 @@
 //! is its depth. Other files of a case repeat coordinates; they are not read.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;

@@ -5,11 +5,11 @@
 //! element ends in a tag.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
 use crate::heights::TextNumbers;
-use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::text::cursor::{CORRECT, Cursor};

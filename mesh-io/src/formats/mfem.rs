@@ -4,10 +4,10 @@
 //! counted from zero. Curved meshes have their points in a finite element space instead, and are refused.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
-use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;

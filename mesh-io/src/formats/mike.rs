@@ -5,10 +5,10 @@
 //! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};

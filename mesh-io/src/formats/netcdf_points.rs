@@ -1,8 +1,8 @@
 //! Data of nodes: variables whose numbers are handed on record by record.
 
+use crate::edit::numbers::{Encoded, Form, Places};
 use crate::hdf5::Encoding;
 use crate::netcdf::{Header, Items, Number, Variable};
-use crate::numbers::{Encoded, Form, Places};
 use crate::sink::{Home, PointNumbers, Sink, Stored};
 use std::ops::Range;
 use std::sync::Arc;

@@ -5,11 +5,11 @@
 //! are not read.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::label::Label;
-use crate::numbers::Numbers;
 use crate::regions::Numbering;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::text::cursor::{CORRECT, Cursor};

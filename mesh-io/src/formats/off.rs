@@ -4,10 +4,10 @@
 //! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::numbers::Numbers;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;

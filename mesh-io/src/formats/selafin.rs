@@ -6,9 +6,9 @@
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};

@@ -4,11 +4,11 @@
 //! order. Nodes of node strings (NS) stay fixed.
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::label::Label;
-use crate::numbers::Numbers;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 

@@ -5,10 +5,10 @@
 
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::label::Label;
-use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{
     Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,

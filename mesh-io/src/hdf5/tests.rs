@@ -2,8 +2,8 @@
 
 use super::{Encoding, Hdf5, Number};
 use crate::disk::source::Source;
-use crate::numbers::Encoded;
-use crate::rewrite::Rewrite;
+use crate::edit::numbers::Encoded;
+use crate::edit::rewrite::Rewrite;
 use std::path::Path;
 
 const FILES: [&str; 10] = [

@@ -14,10 +14,10 @@ mod types;
 pub(crate) mod write;
 
 use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Kind, Layout, Sink, Walk, volume};
 use crate::text::cursor::Cursor;

@@ -8,11 +8,11 @@ mod boundaries;
 mod sections;
 
 use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Form, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
-use crate::numbers::{Encoded, Form, Places};
 use crate::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::text::cursor::Cursor;
 use boundaries::Boundaries;

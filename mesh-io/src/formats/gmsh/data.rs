@@ -2,8 +2,8 @@
 
 use super::form;
 use crate::binary::order::Order;
+use crate::edit::numbers::Places;
 use crate::heights::TextNumbers;
-use crate::numbers::Places;
 use crate::precision::Precision;
 use crate::sink::{PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;

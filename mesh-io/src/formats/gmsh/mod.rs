@@ -20,10 +20,10 @@ pub(crate) mod write;
 
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers};
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::numbers::{Form, Numbers};
 use crate::precision::Precision;
 use crate::sink::{Layout, Sink, Walk, each_item};
 use crate::text::cursor::{CUT_OFF, Cursor};

@@ -7,11 +7,11 @@
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
 use crate::label::Label;
-use crate::numbers::{Form, Numbers};
 use crate::parsed::fixed_note;
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};

@@ -1,8 +1,8 @@
 //! The nodes: GRID, with what GRDSET says of all of them.
 
+use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::heights::Heights;
-use crate::numbers::Numbers;
 use crate::precision::Precision;
 use crate::sink::{Sink, all_rows};
 use crate::text::card;

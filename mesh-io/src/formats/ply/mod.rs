@@ -6,10 +6,10 @@
 
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::numbers::{Form, Numbers, Places};
 use crate::precision::Precision;
 use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};

@@ -5,9 +5,9 @@
 
 use crate::constraints::Constraints;
 use crate::disk::source::Source;
+use crate::edit::numbers;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
-use crate::numbers;
 use crate::parsed::{Parsed, fixed_note};
 use crate::regions::{Numbering, Regions};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};

@@ -3,9 +3,9 @@
 use super::document::{Content, Item};
 use crate::binary::order::Order;
 use crate::disk::source::{Beside, Source};
+use crate::edit::numbers::{Encoded, Form, Places};
 use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
-use crate::numbers::{Encoded, Form, Places};
 use crate::sink::{Home, Stored};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;

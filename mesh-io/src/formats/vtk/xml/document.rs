@@ -2,9 +2,9 @@
 
 use crate::binary::order::Order;
 use crate::disk::source::Source;
+use crate::edit::numbers::Offset;
 use crate::error::{Location, ReadError};
 use crate::formats::vtk::xml::blocks::Compressor;
-use crate::numbers::Offset;
 use crate::text::cursor::{CORRECT, CUT_OFF};
 use crate::text::token::{ill_formed_xml, quoted, xml_text};
 use quick_xml::Reader;

@@ -1,7 +1,7 @@
 //! Encoded arrays (base64 or compressed), and their encoding with new numbers.
 
 use super::blocks::{Unwrapped, Wrapping};
-use crate::numbers::{Encoded, Offset, Splice};
+use crate::edit::numbers::{Encoded, Offset, Splice};
 use std::ops::Range;
 use std::sync::Arc;
 

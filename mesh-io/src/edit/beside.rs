@@ -2,7 +2,7 @@
 
 use crate::disk::replace::same_file;
 use crate::disk::source::{Source, file_name};
-use crate::numbers::Splice;
+use crate::edit::numbers::Splice;
 use quick_xml::escape::escape;
 use std::path::{Path, PathBuf};
 

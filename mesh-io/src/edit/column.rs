@@ -1,6 +1,6 @@
 //! Numbers of a file that may be replaced, with their new values.
 
-use crate::numbers::{Form, Numbers, Places};
+use crate::edit::numbers::{Form, Numbers, Places};
 use std::ops::Range;
 
 /// A list of numbers in the order in which they stand in the file, with their old and new values.

@@ -1,7 +1,7 @@
 //! Writes a file again with some of its numbers replaced.
 
-use crate::column::{Change, Column};
-use crate::numbers::Splice;
+use crate::edit::column::{Change, Column};
+use crate::edit::numbers::Splice;
 use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
@@ -115,7 +115,7 @@ fn write_blocks(
 mod tests {
     use super::*;
     use crate::binary::order::Order;
-    use crate::numbers::{Form, Numbers, Places};
+    use crate::edit::numbers::{Form, Numbers, Places};
     use crate::precision::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
