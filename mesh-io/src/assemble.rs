@@ -1,14 +1,14 @@
 //! Makes a mesh from a file's nodes and elements, or finds where they stand in the file.
 
-use crate::constraints::{Constraints, PeriodicPairs};
+use crate::content::constraints::{Constraints, PeriodicPairs};
+use crate::content::regions::{Numbering, Regions};
+use crate::content::tags::{FoundTags, TagMap};
 use crate::disk::source::Source;
 use crate::edit::numbers::{FoundPlaces, Places};
 use crate::error::{Location, ReadError};
 use crate::parsed::{Parsed, fixed_note};
 use crate::records::{NodeRecords, TriangleRecords};
-use crate::regions::{Numbering, Regions};
 use crate::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
-use crate::tags::{FoundTags, TagMap};
 use crate::text::cursor::{CORRECT, Cursor};
 
 /// Reads a mesh, long lists on all threads.

@@ -1,11 +1,11 @@
 //! Centers of faces and edges, which UGRID's files may have.
 
+use crate::content::tags::TagMap;
 use crate::error::FieldError;
 use crate::families::Family;
 use crate::field::PointField;
 use crate::mesh_file::MeshFile;
 use crate::sink::{Centers, Sink};
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 
 /// How far a number may be from the center that it is taken for, as a share of how far the element reaches.

@@ -1,10 +1,10 @@
 //! Data of the vertices of a mesh file, by name.
 
+use crate::content::group::distance;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::field::PointField;
 use crate::formats::triangle;
-use crate::group::distance;
 use crate::mesh_file::MeshFile;
 use crate::point_data::{self, PointData, Wanted};
 use crate::text::token::quoted;

@@ -1,12 +1,12 @@
 //! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
 
+use crate::content::label::Label;
+use crate::content::regions::Numbering;
+use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::group_table::GroupTable;
-use crate::label::Label;
-use crate::regions::Numbering;
 use crate::sink::{Column, Element, Kind, Reader, Sink, Within};
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 
 /// Gathers the groups of a file.

@@ -1,7 +1,7 @@
 //! Gathers the groups of a file during a walk through it.
 
-use crate::group::{Group, Groups};
-use crate::label::Label;
+use crate::content::group::{Group, Groups};
+use crate::content::label::Label;
 use crate::sink::Kind;
 use std::collections::HashMap;
 

@@ -1,13 +1,13 @@
 //! A mesh with its file, which is read once and written with nothing changed but coordinates.
 
-use crate::constraints::{Constraints, edges_between_regions};
+use crate::content::constraints::{Constraints, edges_between_regions};
+use crate::content::regions::interface_vertices;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::parsed::Parsed;
 use crate::precision::Precision;
-use crate::regions::interface_vertices;
 use std::fmt;
 use std::path::Path;
 

@@ -1,13 +1,13 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
+use crate::content::group::Groups;
+use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::formats::triangle;
 use crate::gather;
-use crate::group::Groups;
 use crate::mesh_file::MeshFile;
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! Walks again through a file for the parameters of vertices on surfaces of a model.
 
+use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::field::PointField;
 use crate::sink::{PointNumbers, Reader, Sink};
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 
 /// Returns a field for each surface, with two parameters for each of its vertices. The file must have been read before.

@@ -1,6 +1,6 @@
 //! What the reader of a format returns.
 
-use crate::constraints::Constraints;
+use crate::content::constraints::Constraints;
 use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::format::Format;
 

@@ -1,10 +1,10 @@
 //! Walks again through a file for arrays of point data.
 
+use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::field::PointField;
 use crate::sink::{PointNumbers, Reader, Sink};
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 
 /// Which arrays are looked for.

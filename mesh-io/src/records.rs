@@ -4,9 +4,9 @@
 //! only one that returns errors.
 
 use crate::binary::number_field::Field;
+use crate::content::tags::{FoundTags, TagMap};
 use crate::edit::numbers::FoundPlaces;
 use crate::parallel::{map_parts, map_ranges};
-use crate::tags::{FoundTags, TagMap};
 use std::ops::Range;
 
 /// Records that one thread reads at a time.

@@ -1,11 +1,11 @@
 //! The items that readers hand on, and the trait of what takes them.
 
-use crate::constraints::Affine;
+use crate::content::constraints::Affine;
+use crate::content::label::Label;
 use crate::disk::source::{Named, Source};
 use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::label::Label;
 use crate::records::{NodeRecords, TriangleRecords};
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;

@@ -1,11 +1,11 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
+use crate::content::label::Label;
 use crate::export::content::{Content, Group};
 use crate::export::holds::{Holds, first};
 use crate::export::spelling::{Spelling, distinct};
 use crate::export::tags::Tags;
 use crate::formats::ugrid;
-use crate::label::Label;
 use std::collections::HashMap;
 
 /// Changes the names that the format holds to what it can hold. Names that were different stay so, and where the

@@ -1,11 +1,11 @@
 //! Makes a description of a mesh from what a reader hands on.
 
 use super::content::{Content, Data, Group};
+use crate::content::label::Label;
+use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::label::Label;
 use crate::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
-use crate::tags::TagMap;
 use crate::text::cursor::Cursor;
 use std::collections::HashMap;
 

@@ -1,6 +1,6 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
-use crate::label::Label;
+use crate::content::label::Label;
 use crate::sink::Kind;
 
 /// A mesh with its elements of all kinds, groups and data.

@@ -4,7 +4,7 @@ use super::content::{Content, Data, Group};
 use super::sides;
 use super::spelling::Spelling;
 use super::tags::{Tags, decides};
-use crate::label::Label;
+use crate::content::label::Label;
 use crate::precision::Precision;
 use crate::sink::Kind;
 

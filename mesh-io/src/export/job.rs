@@ -3,7 +3,7 @@
 use super::content::{Content, Data, Group};
 use super::holds::Holds;
 use super::tags::Tags;
-use crate::label::Label;
+use crate::content::label::Label;
 use crate::sink::Kind;
 
 /// A mesh to be written, with what the format holds of it.

@@ -1,7 +1,7 @@
 //! One group and number for each element, for formats that hold no more.
 
 use super::content::{Content, Group};
-use crate::label::Label;
+use crate::content::label::Label;
 use std::collections::{HashMap, HashSet};
 
 /// The most important group of each element, and a number for each group.

@@ -5,12 +5,12 @@
 //! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::label::Label;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;

@@ -4,13 +4,13 @@
 //! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
 //! are not read.
 
+use crate::content::label::Label;
+use crate::content::regions::Numbering;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::label::Label;
-use crate::regions::Numbering;
 use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;

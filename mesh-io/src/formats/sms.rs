@@ -3,12 +3,12 @@
 //! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
 //! order. Nodes of node strings (NS) stay fixed.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::label::Label;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 

@@ -4,11 +4,11 @@
 //! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
 use crate::binary::order::Order;
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::label::Label;
 use crate::precision::Precision;
 use crate::sink::{
     Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,

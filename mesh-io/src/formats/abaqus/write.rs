@@ -1,9 +1,9 @@
 //! Writes input files of Abaqus and CalculiX, `.inp`, with the mesh alone.
 
+use crate::content::label::Label;
 use crate::export::job::Job;
 use crate::export::put;
 use crate::export::spelling::{Spelling, distinct};
-use crate::label::Label;
 use crate::precision::short_text;
 use crate::sink::Kind;
 use std::fmt::Write;

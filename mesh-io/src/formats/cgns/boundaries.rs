@@ -1,8 +1,8 @@
 //! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
 
 use super::{File, labeled};
+use crate::content::label::Label;
 use crate::hdf5::Object;
-use crate::label::Label;
 use crate::sink::{Sink, Within};
 use std::cell::RefCell;
 use std::collections::HashSet;

@@ -8,13 +8,13 @@ mod data;
 mod sets;
 pub(crate) mod write;
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
-use crate::label::Label;
 use crate::netcdf::{self, Header, Number, Variable};
 use crate::sink::{Column, Layout, Sink, Walk};
 use crate::text::cursor::Cursor;

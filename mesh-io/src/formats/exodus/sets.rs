@@ -2,8 +2,8 @@
 
 use super::blocks::Block;
 use super::{File, NO_BLOCK};
+use crate::content::label::Label;
 use crate::error::ReadError;
-use crate::label::Label;
 use crate::sink::{Element, Kind, Sink, Within};
 use crate::text::cursor::{CORRECT, Cursor};
 

@@ -2,10 +2,10 @@
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
+use crate::content::label::Label;
 use crate::export::content::Group;
 use crate::export::job::Job;
 use crate::export::sides::{pair, sides};
-use crate::label::Label;
 use crate::netcdf::write::{NetCdf, Values};
 use crate::sink::Kind;
 use std::collections::{HashMap, HashSet};

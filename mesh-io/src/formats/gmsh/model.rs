@@ -3,8 +3,8 @@
 use super::words::Words;
 use super::{Encoding, Version, row};
 use crate::binary::order::Order;
+use crate::content::label::Label;
 use crate::error::ReadError;
-use crate::label::Label;
 use crate::sink::{Kind, Sink, Within};
 use crate::text::cursor::{CORRECT, Cursor};
 use std::collections::HashMap;

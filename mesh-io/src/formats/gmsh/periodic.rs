@@ -2,7 +2,7 @@
 
 use super::{Encoding, Version};
 use crate::binary::order::Order;
-use crate::constraints::Affine;
+use crate::content::constraints::Affine;
 use crate::precision::Precision;
 use crate::sink::Pairs;
 use crate::text::cursor::Cursor;

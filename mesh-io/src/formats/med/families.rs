@@ -1,7 +1,7 @@
 //! The families of a MED file, and the groups that each is of.
 
+use crate::content::label::Label;
 use crate::hdf5::{Hdf5, Object};
-use crate::label::Label;
 use crate::sink::{Sink, Within};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -7,12 +7,12 @@ mod families;
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
-use crate::label::Label;
 use crate::records::{Region, TriangleRecords};
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
 use crate::text::cursor::{CORRECT, Cursor};

@@ -6,12 +6,12 @@
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::label::Label;
 use crate::parsed::fixed_note;
 use crate::precision::Precision;
 use crate::records::{NodeRecords, Region, Tags, TriangleRecords};

@@ -4,12 +4,12 @@
 //! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
 //! edges and ridges need no reading, as they are among the edges.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::heights::Heights;
-use crate::label::Label;
 use crate::parsed::fixed_note;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
 use crate::text::cursor::{CUT_OFF, Cursor};

@@ -1,6 +1,6 @@
 //! The motions of SU2's periodic boundaries, which older versions write as a list of centers, angles and translations.
 
-use crate::constraints::Affine;
+use crate::content::constraints::Affine;
 use crate::sink::Pairs;
 use crate::text::token::float;
 

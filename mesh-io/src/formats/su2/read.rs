@@ -3,12 +3,12 @@
 //! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
 //! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::su2::motions::Motions;
-use crate::label::Label;
 use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;

@@ -1,5 +1,6 @@
 //! Describes a mesh of the mesh generator Triangle, whose files were read before.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::export::collector::Collector;
@@ -8,7 +9,6 @@ use crate::formats::triangle::mesh::{
     Numbers, Segments, attribute_names, header, rows, vertex_header, vertex_number,
 };
 use crate::heights::TextNumbers;
-use crate::label::Label;
 use crate::precision::Precision;
 use crate::sink::{Column, Element, Kind, Sink};
 use crate::text::token::float;

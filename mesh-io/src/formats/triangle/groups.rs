@@ -1,12 +1,12 @@
 //! Groups in the files of the mesh generator Triangle: attributes of triangles, and markers of vertices and segments.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::formats::triangle::mesh::{
     Numbers, Segments, header, rows, vertex_header, vertex_number,
 };
 use crate::group_table::GroupTable;
-use crate::label::Label;
 use crate::sink::Kind;
 use crate::text::token::float;
 

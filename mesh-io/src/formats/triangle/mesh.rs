@@ -3,13 +3,13 @@
 //! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
 //! announced rows and columns.
 
-use crate::constraints::Constraints;
+use crate::content::constraints::Constraints;
+use crate::content::regions::{Numbering, Regions};
 use crate::disk::source::Source;
 use crate::edit::numbers;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::parsed::{Parsed, fixed_note};
-use crate::regions::{Numbering, Regions};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;

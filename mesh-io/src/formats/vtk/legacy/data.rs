@@ -2,11 +2,11 @@
 //! Others are skipped.
 
 use crate::binary::order::Order;
+use crate::content::label::Label;
 use crate::edit::numbers::{Form, Places};
 use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
 use crate::formats::vtk::legacy::take;
 use crate::heights::TextNumbers;
-use crate::label::Label;
 use crate::precision::Precision;
 use crate::sink::{Column, PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;
