@@ -1,10 +1,10 @@
 //! Reads files with long lists both on all threads and item by item. The meshes and the errors must be the same.
 
-use crate::assemble::parse_by;
 use crate::detect::{self, Content};
 use crate::disk::source::Source;
 use crate::edit::numbers::Places;
-use crate::parsed::Parsed;
+use crate::visit::assemble::parse_by;
+use crate::visit::parsed::Parsed;
 
 /// Vertices along a side, so that all lists are long enough to be read on all threads.
 const SIDE: usize = 135;

@@ -3,10 +3,10 @@
 use crate::content::tags::TagMap;
 use crate::error::FieldError;
 use crate::families::Family;
-use crate::field::PointField;
 use crate::mesh_file::MeshFile;
-use crate::sink::{Centers, Sink};
 use crate::text::cursor::Cursor;
+use crate::visit::field::PointField;
+use crate::visit::sink::{Centers, Sink};
 
 /// How far a number may be from the center that it is taken for, as a share of how far the element reaches.
 const CLOSE: f64 = 1e-6;

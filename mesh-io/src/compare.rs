@@ -2,11 +2,11 @@
 
 use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::Location;
-use crate::field::PointField;
 use crate::mesh_file::MeshFile;
 use crate::place::Place;
-use crate::sink::{Home, Stored};
 use crate::text::token::quoted;
+use crate::visit::field::PointField;
+use crate::visit::sink::{Home, Stored};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.

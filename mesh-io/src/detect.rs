@@ -6,10 +6,10 @@ use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRI
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle::names::{Names, appended};
-use crate::sink::Reader;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
+use crate::visit::sink::Reader;
 use std::path::{Path, PathBuf};
 
 /// How a file is read.

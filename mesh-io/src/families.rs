@@ -9,7 +9,7 @@ use crate::formats::{
     nastran, obj, off, ply, selafin, sms, stl, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
-use crate::sink::{Reader, Walk};
+use crate::visit::sink::{Reader, Walk};
 use std::path::Path;
 
 const fn reader<W: Walk>() -> Option<Reader> {

@@ -3,11 +3,12 @@
 use crate::content::group::distance;
 use crate::error::ReadError;
 use crate::families::Family;
-use crate::field::PointField;
 use crate::formats::triangle;
 use crate::mesh_file::MeshFile;
-use crate::point_data::{self, PointData, Wanted};
 use crate::text::token::quoted;
+use crate::visit::field::PointField;
+use crate::visit::point_data;
+use crate::visit::point_data::{PointData, Wanted};
 
 impl MeshFile {
     /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The

@@ -2,7 +2,6 @@
 
 #[cfg(test)]
 mod ahead_tests;
-mod assemble;
 mod binary;
 mod centers;
 mod compare;
@@ -15,42 +14,35 @@ mod edit;
 mod error;
 mod export;
 mod families;
-mod field;
 mod fields;
 mod format;
 mod formats;
-mod gather;
-mod group_table;
 mod hdf5;
-mod heights;
 mod mesh_file;
 mod named;
 mod netcdf;
 mod parallel;
 mod parameters;
 mod parametric;
-mod parsed;
 mod place;
-mod point_data;
 mod precision;
 mod read;
-mod records;
 mod save;
-mod sink;
 mod text;
+mod visit;
 
 pub use crate::compare::Difference;
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
 pub use crate::content::group::{Group, Groups};
 pub use crate::convert::Conversion;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use crate::field::PointField;
 pub use crate::format::Format;
 pub use crate::formats::side::solution::Solution;
 pub use crate::formats::side::view::View;
 pub use crate::mesh_file::MeshFile;
 pub use crate::place::Place;
 pub use crate::precision::Precision;
+pub use crate::visit::field::PointField;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {

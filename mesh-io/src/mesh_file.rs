@@ -6,8 +6,8 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::parsed::Parsed;
 use crate::precision::Precision;
+use crate::visit::parsed::Parsed;
 use std::fmt;
 use std::path::Path;
 

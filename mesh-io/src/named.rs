@@ -6,9 +6,9 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::formats::triangle;
-use crate::gather;
 use crate::mesh_file::MeshFile;
 use crate::text::cursor::Cursor;
+use crate::visit::gather;
 use std::path::Path;
 
 impl MeshFile {

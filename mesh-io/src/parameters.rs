@@ -2,9 +2,9 @@
 
 use crate::error::FieldError;
 use crate::families::Family;
-use crate::field::PointField;
 use crate::mesh_file::MeshFile;
 use crate::parametric;
+use crate::visit::field::PointField;
 
 /// The most that parameters may deviate from those of a plane, as a share of their range.
 const FLAT: f64 = 1e-8;

@@ -1,11 +1,11 @@
 //! Finds where a file has its vertices and triangles, for messages.
 
-use crate::assemble;
 use crate::error::Location;
 use crate::families::Family;
 use crate::format::Format;
 use crate::formats::triangle;
 use crate::mesh_file::MeshFile;
+use crate::visit::assemble;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;

@@ -1,6 +1,5 @@
 //! Reads a mesh from its file, or from memory.
 
-use crate::assemble;
 use crate::detect::{self, Content};
 use crate::disk::replace::same_file;
 use crate::disk::source::{Beside, Named, Source};
@@ -9,9 +8,10 @@ use crate::families::TRIANGLE;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
 use crate::mesh_file::MeshFile;
-use crate::sink::Reader;
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
+use crate::visit::assemble;
+use crate::visit::sink::Reader;
 use std::path::Path;
 
 impl MeshFile {

@@ -5,8 +5,8 @@ use crate::content::label::Label;
 use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
 use crate::text::cursor::Cursor;
+use crate::visit::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.

@@ -1,7 +1,7 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
 use crate::content::label::Label;
-use crate::sink::Kind;
+use crate::visit::sink::Kind;
 
 /// A mesh with its elements of all kinds, groups and data.
 #[derive(Default)]

@@ -7,11 +7,11 @@ use crate::edit::numbers::{Encoded, Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Array, Encoding, Hdf5};
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Tags};
-use crate::sink::{Home, Layout, Sink};
 use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Layout, Sink};
 use std::ops::Range;
 
 /// The coordinates of a mesh, axis by axis. There are at least two.

@@ -9,7 +9,7 @@ use crate::formats::med;
 use crate::formats::med::Med;
 use crate::formats::ugrid;
 use crate::formats::ugrid::Ugrid;
-use crate::sink::{Layout, Sink, Walk};
+use crate::visit::sink::{Layout, Sink, Walk};
 
 pub(crate) struct Container;
 

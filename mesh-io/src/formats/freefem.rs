@@ -7,9 +7,9 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
 
 pub(crate) struct FreeFem;
 

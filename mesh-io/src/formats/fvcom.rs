@@ -9,10 +9,10 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 
 pub(crate) struct Fvcom;
 

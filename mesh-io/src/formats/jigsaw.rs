@@ -9,12 +9,12 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
-use crate::heights::TextNumbers;
 use crate::precision::Precision;
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 
 pub(crate) struct Jigsaw;
 

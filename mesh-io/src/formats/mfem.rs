@@ -8,10 +8,10 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::counted_nodes;
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 
 pub(crate) struct Mfem;
 

@@ -3,7 +3,7 @@
 use crate::edit::numbers::{Encoded, Form, Places};
 use crate::hdf5::Encoding;
 use crate::netcdf::{Header, Items, Number, Variable};
-use crate::sink::{Home, PointNumbers, Sink, Stored};
+use crate::visit::sink::{Home, PointNumbers, Sink, Stored};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Lists of nodes in text, with numbers of their own, as in grids of coastal models, or without.
 
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::sink::{Sink, each_row};
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Sink, each_row};
 
 /// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the sink. Returns the
 /// third numbers. If these are optional, a node may end after y.

@@ -10,11 +10,11 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
-use crate::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
 
 pub(crate) struct Obj;
 

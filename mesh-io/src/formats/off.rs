@@ -7,11 +7,11 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
-use crate::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 
 pub(crate) struct Off;
 

@@ -10,9 +10,9 @@ use crate::edit::numbers::{Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
-use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 
 pub(crate) struct Selafin;
 

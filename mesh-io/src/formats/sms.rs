@@ -8,9 +8,9 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 
 pub(crate) struct Sms;
 

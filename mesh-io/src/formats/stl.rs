@@ -10,11 +10,11 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
-use crate::sink::{
-    Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
-};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
+use crate::visit::sink::{
+    Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
+};
 use std::collections::HashMap;
 
 pub(crate) struct Stl;

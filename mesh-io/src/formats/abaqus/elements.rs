@@ -8,10 +8,10 @@ use super::{rows, types};
 use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::parsed::fixed_note;
-use crate::sink::{Element, Kind, Sink, Within};
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{Element, Kind, Sink, Within};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.

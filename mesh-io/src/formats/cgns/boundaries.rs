@@ -3,7 +3,7 @@
 use super::{File, labeled};
 use crate::content::label::Label;
 use crate::hdf5::Object;
-use crate::sink::{Sink, Within};
+use crate::visit::sink::{Sink, Within};
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::RangeInclusive;

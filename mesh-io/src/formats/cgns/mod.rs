@@ -13,8 +13,8 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
-use crate::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::text::cursor::Cursor;
+use crate::visit::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use boundaries::Boundaries;
 use std::sync::Arc;
 

@@ -7,10 +7,10 @@ use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Number, Object};
-use crate::records::{Region, TriangleRecords};
-use crate::sink::{Column, Element, Kind, Sink, volume};
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Sink, volume};
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;

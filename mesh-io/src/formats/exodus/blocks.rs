@@ -5,10 +5,10 @@ use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
-use crate::records::{Region, TriangleRecords};
-use crate::sink::{Element, Kind, Sink, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink, volume};
 
 /// Elements of one type.
 pub(super) struct Block<'a> {

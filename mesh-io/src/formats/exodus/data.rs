@@ -4,7 +4,7 @@ use super::File;
 use super::blocks::Block;
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::Variable;
-use crate::sink::Sink;
+use crate::visit::sink::Sink;
 
 impl File<'_> {
     /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not

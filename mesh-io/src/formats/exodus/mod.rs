@@ -16,8 +16,8 @@ use crate::formats::axes::Axes;
 use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
 use crate::netcdf::{self, Header, Number, Variable};
-use crate::sink::{Column, Layout, Sink, Walk};
 use crate::text::cursor::Cursor;
+use crate::visit::sink::{Column, Layout, Sink, Walk};
 
 pub(crate) struct Exodus;
 

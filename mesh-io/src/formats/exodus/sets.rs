@@ -4,8 +4,8 @@ use super::blocks::Block;
 use super::{File, NO_BLOCK};
 use crate::content::label::Label;
 use crate::error::ReadError;
-use crate::sink::{Element, Kind, Sink, Within};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::sink::{Element, Kind, Sink, Within};
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.

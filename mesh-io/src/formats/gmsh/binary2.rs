@@ -8,10 +8,10 @@ use super::{block_fits, row};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::sink::{Element, Kind, Sink};
 use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink};
 
 /// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

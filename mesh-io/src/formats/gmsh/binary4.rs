@@ -8,10 +8,10 @@ use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::sink::{Element, Kind, PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, PointNumbers, Sink, Stored};
 
 /// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
 pub(super) const BLOCK_HEADER: usize = 20;

@@ -6,9 +6,9 @@ use super::words::Words;
 use super::{Version, all_in_blocks, block_fits};
 use crate::binary::order::Order;
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::sink::Sink;
 use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::sink::Sink;
 
 /// The size of a tag in bytes.
 const TAG: usize = 4;

@@ -3,10 +3,10 @@
 use super::form;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
-use crate::heights::TextNumbers;
 use crate::precision::Precision;
-use crate::sink::{PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{PointNumbers, Sink, Stored};
 
 /// Data of nodes are skipped if fewer than one in this many nodes has them.
 const FEW: u64 = 16;

@@ -1,8 +1,8 @@
 //! The element types of gmsh that can be read.
 
 use crate::error::ReadError;
-use crate::sink::Kind;
 use crate::text::cursor::Cursor;
+use crate::visit::sink::Kind;
 
 /// Returns the kind of an element by its number in gmsh, or an error on the current line.
 pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {

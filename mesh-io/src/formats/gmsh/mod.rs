@@ -23,13 +23,13 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::{Location, ReadError};
 use crate::format::Format;
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::sink::{Layout, Sink, Walk, each_item};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::layout::of_rows_or_words;
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Layout, Sink, Walk, each_item};
 use model::Model;
 
 /// A remark for the user on parameters that cannot be updated.

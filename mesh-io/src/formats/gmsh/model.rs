@@ -5,8 +5,8 @@ use super::{Encoding, Version, row};
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;
-use crate::sink::{Kind, Sink, Within};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::sink::{Kind, Sink, Within};
 use std::collections::HashMap;
 
 /// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.

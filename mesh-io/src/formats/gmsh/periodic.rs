@@ -4,9 +4,9 @@ use super::{Encoding, Version};
 use crate::binary::order::Order;
 use crate::content::constraints::Affine;
 use crate::precision::Precision;
-use crate::sink::Pairs;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
+use crate::visit::sink::Pairs;
 
 /// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;

@@ -3,9 +3,9 @@
 use super::kind::{kind_of, node_tags};
 use super::{counts, each};
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::sink::{Column, Element, Sink};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Column, Element, Sink};
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -4,11 +4,11 @@ use super::kind::{kind_of, node_tags};
 use super::model::Model;
 use super::{Version, all_in_blocks, block_fits, by_rows, counts, each, head, row};
 use crate::error::ReadError;
-use crate::heights::{Heights, TextNumbers};
 use crate::precision::Precision;
-use crate::sink::{Element, Sink};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
+use crate::visit::heights::{Heights, TextNumbers};
+use crate::visit::sink::{Element, Sink};
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.

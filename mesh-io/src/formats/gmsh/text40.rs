@@ -3,9 +3,9 @@
 
 use super::{all_in_blocks, block_fits, by_rows, counts, each, head};
 use crate::error::ReadError;
-use crate::heights::Heights;
-use crate::sink::Sink;
 use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::sink::Sink;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -3,7 +3,7 @@
 use crate::export::content::Data;
 use crate::export::job::Job;
 use crate::export::put;
-use crate::sink::Kind;
+use crate::visit::sink::Kind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 

@@ -2,7 +2,7 @@
 
 use crate::content::label::Label;
 use crate::hdf5::{Hdf5, Object};
-use crate::sink::{Sink, Within};
+use crate::visit::sink::{Sink, Within};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The groups of each family of a mesh.

@@ -13,10 +13,10 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
-use crate::records::{Region, TriangleRecords};
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
 use families::Families;
 
 pub(crate) struct Med;

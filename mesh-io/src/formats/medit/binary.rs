@@ -11,12 +11,12 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
-use crate::parsed::fixed_note;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Region, Tags, TriangleRecords};
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::parsed::fixed_note;
+use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 
 pub(crate) struct MeditBinary;
 

@@ -9,12 +9,14 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
-use crate::parsed::fixed_note;
-use crate::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
 
 pub(crate) struct Medit;
 

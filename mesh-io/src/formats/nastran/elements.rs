@@ -3,12 +3,12 @@
 use super::nodes::whole;
 use super::types::{Class, Listed, class};
 use crate::error::ReadError;
-use crate::parsed::fixed_note;
-use crate::sink::{Column, Element, Kind, Sink, all_rows, volume};
 use crate::text::card;
 use crate::text::card::{Line, Name, letters};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{Column, Element, Kind, Sink, all_rows, volume};
 use std::collections::{BTreeSet, HashSet};
 
 /// A card, as far as it is of elements.

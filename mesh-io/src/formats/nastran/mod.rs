@@ -14,12 +14,12 @@ mod types;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::sink::{Layout, Sink, Walk};
 use crate::text::card;
 use crate::text::card::{Line, letters};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
+use crate::visit::sink::{Layout, Sink, Walk};
 use types::Class;
 
 pub(crate) struct Nastran;

@@ -1,8 +1,8 @@
 //! Names of properties, which preprocessors write in comments.
 
 use crate::disk::source::Source;
-use crate::sink::Sink;
 use crate::text::token::line_end;
+use crate::visit::sink::Sink;
 
 /// Hands on the names of properties.
 pub(super) fn send(source: &Source, sink: &mut dyn Sink) {

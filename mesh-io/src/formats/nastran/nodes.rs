@@ -2,14 +2,14 @@
 
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::sink::{Sink, all_rows};
 use crate::text::card;
 use crate::text::card::{Line, letters};
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
 use crate::text::token::{float, fortran_float, integer};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Sink, all_rows};
 use std::ops::Range;
 
 /// A card, as far as it is of nodes.

@@ -1,7 +1,7 @@
 //! The cards of elements, by their names.
 
-use crate::sink::Kind;
 use crate::text::card::{Name, letters};
+use crate::visit::sink::Kind;
 
 /// What elements are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,12 +9,12 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::layout::of_rows_or_words;
 use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
 
 mod plain;
 pub(crate) mod write;

@@ -2,11 +2,11 @@
 
 use super::{Items, List, Number, Property};
 use crate::binary::number_field::Field;
-use crate::heights::Heights;
-use crate::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::sink::{Element, Kind, Sink, nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
+use crate::visit::heights::Heights;
+use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink, nodes};
 
 impl Items {
     /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are

@@ -1,8 +1,8 @@
 //! The motions of SU2's periodic boundaries, which older versions write as a list of centers, angles and translations.
 
 use crate::content::constraints::Affine;
-use crate::sink::Pairs;
 use crate::text::token::float;
+use crate::visit::sink::Pairs;
 
 /// The motions read so far, in the order of the file.
 #[derive(Default)]

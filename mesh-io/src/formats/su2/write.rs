@@ -2,7 +2,7 @@
 
 use crate::export::job::Job;
 use crate::export::put;
-use crate::sink::Kind;
+use crate::visit::sink::Kind;
 use std::collections::HashMap;
 use std::fmt::Write;
 

@@ -8,10 +8,10 @@ use crate::export::content::Content;
 use crate::formats::triangle::mesh::{
     Numbers, Segments, attribute_names, header, rows, vertex_header, vertex_number,
 };
-use crate::heights::TextNumbers;
 use crate::precision::Precision;
-use crate::sink::{Column, Element, Kind, Sink};
 use crate::text::token::float;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Column, Element, Kind, Sink};
 
 /// Reads the description of a mesh from its files.
 pub(crate) fn content(

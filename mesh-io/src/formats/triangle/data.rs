@@ -2,11 +2,11 @@
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::field::PointField;
 use crate::formats::triangle::mesh::{attribute_names, rows, vertex_header};
-use crate::heights::TextNumbers;
-use crate::point_data::{PointData, Wanted};
 use crate::precision::Precision;
+use crate::visit::field::PointField;
+use crate::visit::heights::TextNumbers;
+use crate::visit::point_data::{PointData, Wanted};
 
 /// Reads the wanted attributes of vertices. The file must have been read before.
 pub(crate) fn point_data(node: &Source, wanted: Wanted<'_>) -> Result<PointData, ReadError> {

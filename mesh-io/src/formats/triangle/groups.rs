@@ -6,9 +6,9 @@ use crate::error::ReadError;
 use crate::formats::triangle::mesh::{
     Numbers, Segments, header, rows, vertex_header, vertex_number,
 };
-use crate::group_table::GroupTable;
-use crate::sink::Kind;
 use crate::text::token::float;
+use crate::visit::group_table::GroupTable;
+use crate::visit::sink::Kind;
 
 /// Gathers the groups of a mesh whose files were read before.
 pub(crate) fn groups(

@@ -9,11 +9,11 @@ use crate::disk::source::Source;
 use crate::edit::numbers;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
-use crate::parsed::{Parsed, fixed_note};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, integer};
+use crate::visit::parsed::{Parsed, fixed_note};
 
 /// Returns a cursor before the first row of one of the files.
 pub(crate) fn rows(source: &Source) -> Cursor<'_> {

@@ -5,7 +5,7 @@ use super::mesh::Mesh;
 use super::table::Table;
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::{Number, Variable};
-use crate::sink::Sink;
+use crate::visit::sink::Sink;
 
 /// What a variable has numbers for.
 #[derive(Clone, Copy, PartialEq)]

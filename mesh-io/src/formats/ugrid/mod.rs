@@ -15,7 +15,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::Hdf5;
 use crate::netcdf;
-use crate::sink::{Layout, Sink, Walk};
+use crate::visit::sink::{Layout, Sink, Walk};
 use mesh::Mesh;
 use table::{Table, What};
 

@@ -3,7 +3,7 @@
 use crate::export::content::Data;
 use crate::export::job::Job;
 use crate::export::put;
-use crate::sink::Kind;
+use crate::visit::sink::Kind;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;

@@ -6,10 +6,10 @@ use super::heavy;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::formats::vtk::legacy;
-use crate::records::{Region, TriangleRecords};
-use crate::sink::{Column, Sink};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Sink};
 
 /// How many arrays tell regions at most.
 const MOST: usize = 2;

@@ -8,12 +8,12 @@ use crate::edit::numbers::{Encoded, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Encoding, Number};
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Tags};
-use crate::sink::{Home, Layout, Sink};
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Layout, Sink};
 
 impl File<'_> {
     /// Hands on the points. Returns how they stand, and how many there are.

@@ -3,9 +3,9 @@
 use crate::binary::number_field::Field;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
-use crate::records::{Expected, LONG, Region, TriangleRecords};
-use crate::sink::{Element, Kind, Sink, volume};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink, volume};
 use std::ops::Range;
 
 /// A cell of one of VTK's formats.

@@ -6,10 +6,10 @@ use crate::content::label::Label;
 use crate::edit::numbers::{Form, Places};
 use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
 use crate::formats::vtk::legacy::take;
-use crate::heights::TextNumbers;
 use crate::precision::Precision;
-use crate::sink::{Column, PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Column, PointNumbers, Sink, Stored};
 use std::borrow::Cow;
 
 /// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own

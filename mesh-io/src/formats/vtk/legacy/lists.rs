@@ -6,11 +6,11 @@ use super::take;
 use crate::binary::order::Order;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
-use crate::records::Region;
-use crate::sink::Sink;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::quoted;
+use crate::visit::records::Region;
+use crate::visit::sink::Sink;
 use std::ops::Range;
 
 /// A list of cells.

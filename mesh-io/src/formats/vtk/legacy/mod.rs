@@ -18,12 +18,12 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Tags};
-use crate::sink::{Layout, Sink, Walk, each_row};
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Layout, Sink, Walk, each_row};
 use data::Regions;
 use lists::{Cells, List};
 

@@ -7,11 +7,11 @@ use crate::binary::whole::Whole;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Offset, Places};
 use crate::error::{Location, ReadError};
-use crate::heights::TextNumbers;
 use crate::precision::Precision;
-use crate::sink::{Home, PointNumbers, Stored};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Home, PointNumbers, Stored};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -5,9 +5,9 @@ use super::document::{Array, Content};
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::formats::vtk::legacy;
-use crate::records::Region;
-use crate::sink::{Column, Sink};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::records::Region;
+use crate::visit::sink::{Column, Sink};
 
 /// The most arrays that tell regions.
 const MOST: usize = 2;

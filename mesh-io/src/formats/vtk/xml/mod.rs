@@ -14,7 +14,7 @@ mod points;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::sink::{Layout, Sink, Walk};
+use crate::visit::sink::{Layout, Sink, Walk};
 use arrays::File;
 use document::{Content, Document};
 

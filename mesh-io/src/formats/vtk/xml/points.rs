@@ -7,12 +7,12 @@ use super::encoding::Encoding;
 use crate::binary::number_field::Field;
 use crate::edit::numbers::{Encoded, Numbers};
 use crate::error::ReadError;
-use crate::heights::Heights;
 use crate::precision::Precision;
-use crate::records::{NodeRecords, Tags};
-use crate::sink::{Home, Sink};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Sink};
 use std::ops::Range;
 use std::sync::Arc;
 

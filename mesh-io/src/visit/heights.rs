@@ -4,10 +4,10 @@ use crate::binary::number_field::Field;
 use crate::edit::numbers::{Form, Places};
 use crate::error::ReadError;
 use crate::precision::Precision;
-use crate::records::LONG;
-use crate::sink::{Home, PointNumbers, Sink, Stored};
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::visit::records::LONG;
+use crate::visit::sink::{Home, PointNumbers, Sink, Stored};
 
 /// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
 /// data.

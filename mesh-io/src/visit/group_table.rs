@@ -2,7 +2,7 @@
 
 use crate::content::group::{Group, Groups};
 use crate::content::label::Label;
-use crate::sink::Kind;
+use crate::visit::sink::Kind;
 use std::collections::HashMap;
 
 /// The groups found so far. Their indices are their numbers.

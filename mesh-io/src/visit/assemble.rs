@@ -6,10 +6,10 @@ use crate::content::tags::{FoundTags, TagMap};
 use crate::disk::source::Source;
 use crate::edit::numbers::{FoundPlaces, Places};
 use crate::error::{Location, ReadError};
-use crate::parsed::{Parsed, fixed_note};
-use crate::records::{NodeRecords, TriangleRecords};
-use crate::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::parsed::{Parsed, fixed_note};
+use crate::visit::records::{NodeRecords, TriangleRecords};
+use crate::visit::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
 
 /// Reads a mesh, long lists on all threads.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {

@@ -5,9 +5,9 @@ use crate::content::regions::Numbering;
 use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::group_table::GroupTable;
-use crate::sink::{Column, Element, Kind, Reader, Sink, Within};
 use crate::text::cursor::Cursor;
+use crate::visit::group_table::GroupTable;
+use crate::visit::sink::{Column, Element, Kind, Reader, Sink, Within};
 
 /// Gathers the groups of a file.
 pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {

@@ -3,9 +3,9 @@
 use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::field::PointField;
-use crate::sink::{PointNumbers, Reader, Sink};
 use crate::text::cursor::Cursor;
+use crate::visit::field::PointField;
+use crate::visit::sink::{PointNumbers, Reader, Sink};
 
 /// Which arrays are looked for.
 #[derive(Clone, Copy)]

@@ -6,9 +6,9 @@ use crate::disk::source::{Named, Source};
 use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::records::{NodeRecords, TriangleRecords};
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
+use crate::visit::records::{NodeRecords, TriangleRecords};
 use std::sync::Arc;
 
 /// The kinds of elements: triangles, which are smoothed, and others, whose vertices stay fixed.
