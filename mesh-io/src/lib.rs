@@ -1,10 +1,6 @@
 //! Mesh files, which are read once and written with nothing changed but moved vertices.
 
-#[cfg(test)]
-mod ahead_tests;
 mod binary;
-mod centers;
-mod compare;
 mod compress;
 mod content;
 mod convert;
@@ -14,24 +10,16 @@ mod edit;
 mod error;
 mod export;
 mod families;
-mod fields;
 mod format;
 mod formats;
 mod hdf5;
 mod mesh_file;
-mod named;
 mod netcdf;
 mod parallel;
-mod parameters;
-mod parametric;
-mod place;
 mod precision;
-mod read;
-mod save;
 mod text;
 mod visit;
 
-pub use crate::compare::Difference;
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
 pub use crate::content::group::{Group, Groups};
 pub use crate::convert::Conversion;
@@ -39,8 +27,9 @@ pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
 pub use crate::format::Format;
 pub use crate::formats::side::solution::Solution;
 pub use crate::formats::side::view::View;
-pub use crate::mesh_file::MeshFile;
-pub use crate::place::Place;
+pub use crate::mesh_file::compare::Difference;
+pub use crate::mesh_file::mesh::MeshFile;
+pub use crate::mesh_file::place::Place;
 pub use crate::precision::Precision;
 pub use crate::visit::field::PointField;
 

@@ -15,7 +15,7 @@ use crate::format::Format;
 use crate::formats::triangle::content;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use crate::error::{Location, ReadError};
 use crate::families::TRIANGLE;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
 use crate::visit::assemble;

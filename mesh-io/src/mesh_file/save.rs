@@ -12,7 +12,7 @@ use crate::error::WriteError;
 use crate::families::{Family, TRIANGLE};
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::visit::field::PointField;
 use crate::visit::sink::{Home, Stored};
 use std::io::{self, Write};

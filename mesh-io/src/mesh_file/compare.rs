@@ -2,8 +2,8 @@
 
 use crate::edit::numbers::{Encoded, Form, Numbers, Places};
 use crate::error::Location;
-use crate::mesh_file::MeshFile;
-use crate::place::Place;
+use crate::mesh_file::mesh::MeshFile;
+use crate::mesh_file::place::Place;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
 use crate::visit::sink::{Home, Stored};

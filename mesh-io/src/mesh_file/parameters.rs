@@ -2,8 +2,8 @@
 
 use crate::error::FieldError;
 use crate::families::Family;
-use crate::mesh_file::MeshFile;
-use crate::parametric;
+use crate::mesh_file::mesh::MeshFile;
+use crate::mesh_file::parametric;
 use crate::visit::field::PointField;
 
 /// The most that parameters may deviate from those of a plane, as a share of their range.

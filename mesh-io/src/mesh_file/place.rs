@@ -4,7 +4,7 @@ use crate::error::Location;
 use crate::families::Family;
 use crate::format::Format;
 use crate::formats::triangle;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::visit::assemble;
 use std::collections::BTreeMap;
 use std::fmt;

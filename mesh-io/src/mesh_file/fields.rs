@@ -4,7 +4,7 @@ use crate::content::group::distance;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::formats::triangle;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
 use crate::visit::point_data;

@@ -3,7 +3,7 @@
 use crate::content::tags::TagMap;
 use crate::error::FieldError;
 use crate::families::Family;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::sink::{Centers, Sink};

@@ -6,7 +6,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::families::Family;
 use crate::formats::triangle;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::gather;
 use std::path::Path;
